@@ -481,6 +481,153 @@ TEST(Restart, Continues)
   EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
 }
 
+namespace {
+
+/** Greatest velocity of points over what the weight alone would give them in the time t. */
+double fall(Scene &run, double t)
+{
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    for (int d = 0; d < 3; d++) most = std::max(most, std::fabs(run.v()[i][d]));
+  return over_ranks(most) / (9.81 * t);
+}
+const char *const GEOSTATIC = "2.2e8 1000 9810 soil m 0.4 constant 1e-3 geostatic 0.5 1";
+std::string ground(int n, const std::string &water, const std::string &material, double offset)
+{
+  return replaced(column(n, water, material, 1.2, offset), "fix water",
+                  "fix g all gravity 9.81 vector 0 -1 0\nfix water");
+}
+
+}    // namespace
+
+// level ground of 20 cells is at rest on nodes wherever these are, with stresses that are the weight above
+SERIAL_TEST(Geostatic, StaysAtRest)
+{
+  const int n = 20;
+  const double dt = 4e-5, cell = 2002 * 9.81 / n;
+  for (const char *options : {"", "stress gradient ", "shape cubic "})
+    for (const double offset : {0.0, 0.1, 0.3, 0.5}) {
+      if (options[0] == 's' && options[1] == 'h' && offset > 0.0) continue;
+      Scene run(
+          replaced(ground(n, GEOSTATIC, SOIL, offset), "origin", std::string(options) + "origin") +
+          "run 0\n");
+      Water water(run);
+      const double *const p = water.pressures();
+      double most = 0.0, inside = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double z = 1.0 - run.x()[i][1];
+        EXPECT_NEAR(p[i] / 9810.0, z, 1e-13);
+        double sigma[6];
+        run.points().cauchy(i, sigma);
+        EXPECT_DOUBLE_EQ(sigma[0], 0.5 * sigma[1]);
+        EXPECT_DOUBLE_EQ(sigma[2], sigma[0]);
+        const double error = std::fabs(sigma[1] + 1002 * 9.81 * z) / cell;
+        most = std::max(most, error);
+        if (std::fabs(z - 0.5) < 0.35) inside = std::max(inside, error);
+      }
+      const auto name = strprintf("%s%g: ", options, offset);
+      EXPECT_LT(measured(name + "stress at the ends", most), 0.3);
+      EXPECT_LT(measured(name + "inside", inside), 0.02);
+      run.commands(strprintf("timestep %g\nrun 1\n", dt));
+      EXPECT_LT(measured(name + "force over weight", fall(run, dt)), 1e-10);
+      run.commands("run 500\n");
+      EXPECT_LT(measured(name + "velocity", fall(run, 501 * dt)), 1e-10);
+    }
+}
+
+// laws for soils keep the elastic strain: sand without cohesion, and clay with a modulus that depends on the pressure
+SERIAL_TEST(Geostatic, Soils)
+{
+  for (const char *law : {"mohr/coulomb 1e7 0.3 35 0", "drucker/prager 1e7 0.3 35",
+                          "camclay 5e6 0.888 0.161 0.062 0.92 1e5 1.5e5"}) {
+    Scene run(ground(20, GEOSTATIC, std::string("density 2002 ") + law, 0.1) + "run 0\n");
+    for (int i = 0; i < run.n(); i++) {
+      const double z = 1.0 - run.x()[i][1];
+      double sigma[6];
+      run.points().cauchy(i, sigma);
+      EXPECT_NEAR(sigma[0] / sigma[1], 0.5, 1e-12);
+      if (std::fabs(z - 0.5) < 0.35) EXPECT_NEAR(sigma[1] / (-1002 * 9.81 * z), 1.0, 0.02);
+    }
+    run.commands("timestep 4e-5\nrun 1\n");
+    EXPECT_LT(measured(strprintf("%s, force over weight", law), fall(run, 4e-5)), 1e-10);
+    run.commands("run 500\n");
+    EXPECT_LT(measured("velocity", fall(run, 501 * 4e-5)), 1e-10);
+  }
+  const auto loose =
+      ground(20, GEOSTATIC, "density 2002 mohr/coulomb 1e7 0.3 15 0", 0.0) + "run 0\n";
+  expect_error(loose, "K0 within its yield surface");
+}
+
+// two soils, grains that are not rigid, a table below the surface, weight to the other side, and three dimensions
+SERIAL_TEST(Geostatic, LayersInThreeDimensions)
+{
+  Scene run(space("si", "p p f", "0 0.4 0 0.4 0 1.15", 2, 0.03) +
+            "region low block INF INF INF INF 0.55 1.15\nregion high block INF INF INF INF 0.15 "
+            "0.55\n"
+            "create_points 1 region low spacing 0.05\ncreate_points 2 region high spacing 0.05\n"
+            "group low type 1\ngroup high type 2\n"
+            "fix grid all mpm 0.1 origin 0 0 0.03\n"
+            "fix m low mpm/material density 2200 linear 1e7 0.3\n"
+            "fix n high mpm/material density 1700 linear 1e6 0.2\n"
+            "fix floor all mpm/boundary zhi slip\nfix g all gravity 9.81 vector 0 0 1\n"
+            "fix water all mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-3 "
+            "soil n 0.5 constant 1e-4 biot 0.8 1e10 geostatic 0.7 -0.3\nrun 0\n");
+  Water water(run);
+  const double *const p = water.pressures();
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double z = run.x()[i][2];
+    EXPECT_NEAR(p[i], 9810.0 * (z - 0.3), 1e-9);
+    if (z < 0.3 || z > 1.0 || std::fabs(z - 0.55) < 0.1) continue;
+    const double total = 9.81 * (z < 0.55 ? 1700 * (z - 0.15) : 1700 * 0.4 + 2200 * (z - 0.55));
+    double sigma[6];
+    run.points().cauchy(i, sigma);
+    most = std::max(most, std::fabs(sigma[2] - (z < 0.55 ? 0.8 : 1.0) * p[i] + total));
+    EXPECT_NEAR(sigma[0] / sigma[2], 0.7, 1e-13);
+  }
+  EXPECT_LT(measured("total stress over the weight of a cell", most / (2200 * 9.81 * 0.1)), 0.05);
+  run.commands("timestep 4e-5\nrun 1\n");
+  EXPECT_LT(measured("force over weight", fall(run, 4e-5)), 1e-10);
+  run.commands("run 500\n");
+  EXPECT_LT(measured("velocity", fall(run, 501 * 4e-5)), 1e-10);
+}
+
+TEST(Geostatic, RanksAndRestart)
+{
+  const std::string water = GEOSTATIC;
+  const std::string scene = ground(20, water, SOIL, 0.3) + "timestep 4e-5\n";
+  OnRanks run(scene, "velocity all set 0 0.01 0\nrun 200\n");
+  EXPECT_LT(run.difference(), 1e-11);
+  const std::string fixes = "neighbor 0.015 bin\nfix grid all mpm 0.05 origin 0 0.015\n"
+                            "fix m all mpm/material " +
+      std::string(SOIL) +
+      "\nfix floor all mpm/boundary ylo slip\nfix g all gravity 9.81 vector 0 -1 0\n"
+      "fix water all mpm/pore " +
+      water + "\ntimestep 4e-5\n";
+  Continued again(scene + "velocity all set 0 0.01 0\n", 50, fixes, 50);
+  EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+}
+
+SERIAL_TEST(Geostatic, BadInput)
+{
+  const auto plain = ground(10, GEOSTATIC, SOIL, 0.0);
+  const auto refused = [&](const char *what, const std::string &with, const char *why) {
+    expect_error(replaced(plain, what, with) + "timestep 1e-5\nrun 0\n", why);
+  };
+  refused("geostatic 0.5 1", "geostatic -0.5 1", "K0");
+  refused("geostatic 0.5 1", "geostatic 0.5", "geostatic");
+  refused("geostatic 0.5 1", "geostatic 0.5 1 initial 5.0", "leave out initial");
+  refused("geostatic 0.5 1", "geostatic 0.5 1.05", "above the surface");
+  refused("linear 1e7", "hencky 1e7", "does not keep the stress");
+  refused("fix g all gravity 9.81 vector 0 -1 0", "", "needs a weight along an axis");
+  refused("origin 0 0", "shape cubic origin 0 0.04", "in a plane of nodes");
+  refused("vector 0 -1 0", "vector 0.1 -1 0", "needs a weight along an axis");
+  refused("vector 0 -1 0", "vector 1 0 0", "use boundary f along gravity");
+  refused("fix g all", "region cut block 0 0.2 0.7 1 INF INF\ndelete_atoms region cut\nfix g all",
+          "needs level ground");
+  refused("fix g all", "displace_atoms all move 0 0.15 0\nfix g all", "needs level ground");
+}
+
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string scene = plane("si", "f p", "0 4 0 4", 1, 0.1) +

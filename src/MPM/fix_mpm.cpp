@@ -28,6 +28,7 @@
 #include "mpm_guard.h"
 #include "mpm_halo.h"
 #include "mpm_options.h"
+#include "mpm_physics.h"
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
@@ -213,6 +214,8 @@ void FixMPM::setup_pre_neighbor()
   }
   field->frame->setup();
   field->guard->check_places();
+  if (plan)
+    for (auto *physics : find_fixes<MPMPhysics>(lmp)) physics->setup_points();
   MPMStages::give_initial_stress(*field);
   field->map->sort();
   field->map->valid = false;

@@ -17,6 +17,7 @@
 #include "input.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_geostatic.h"
 #include "mpm_options.h"
 #include "mpm_points.h"
 #include "update.h"
@@ -105,13 +106,24 @@ Options MPMPoreOptions::declare(int dim)
       {text(initial, "p",
             "pressure of points at first; v_name: an atom-style variable, for those that there are "
             "when the fix is defined")});
+  o.add("geostatic",
+        {number(K0, "K0", NOT_NEGATIVE, "1", "horizontal over vertical effective stress"),
+         number(table, "z", ANY_NUMBER, "distance",
+                "height of the water table, against fix gravity")},
+        "level ground and its water are at rest under their weight at first")
+      .then([this] {
+        geostatic = true;
+      })
+      .standard("none");
   o.add("relax",
         {number(relax, "R", NOT_NEGATIVE, "1",
                 "rate at which points take the pressure of the nodes, in the rate at which waves "
                 "cross a cell")});
   o.add("stages", {integer(most_stages, "N", POSITIVE, "most stages of the flow in a time step")});
   o.refuse([=] {
-    OptionRules rules = {{biot_alone, "biot", "needs a soil before it"}};
+    OptionRules rules = {{biot_alone, "biot", "needs a soil before it"},
+                         {geostatic && initial != "0.0", "geostatic",
+                          "gives points their pressure: leave out initial"}};
     for (int face = 4; face < 6; face++)
       rules.push_back({dim == 2 && conditions[face].kind != MPMPoreCondition::CLOSED,
                        PART_NAME[face], "does not exist in 2d"});
@@ -274,7 +286,40 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMPore::evaluate_variables()
+/* ----------------------------------------------------------------------
+   pores are full of water, also above its table, where it hangs on the air
+------------------------------------------------------------------------- */
+
+void FixMPMPore::setup_points()
+{
+  if (!geostatic || has_state) return;
+  has_state = true;
+  if (fields.size() != 1)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore geostatic needs one fix mpm, not {}",
+               fields.size());
+  find_gravity();
+  MPMGeostatic ground(lmp, fields[0]->field, gravity, "Fix mpm/pore geostatic");
+  const auto &where = ground.ground();
+  if (table > where.top + 0.01 * fields[0]->field.lattice.h)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/pore geostatic: the water table {} is above the surface of the soil, {:.6g}: "
+        "water on the soil changes no effective stress, use the height of the surface",
+        table, where.top);
+  const double weight = water.density * where.weight * force->nktv2p;
+  for (int i = 0; i < atom->nlocal; i++) {
+    std::fill_n(pressure[i], 1 + domain->dimension, 0.0);
+    if (!soil_of(i)) continue;
+    pressure[i][0] = weight * (table - ground.height(i));
+    pressure[i][1 + where.axis] = -weight * where.up;
+  }
+  ground.set_stress(K0, [&](int i) {
+    const auto *const soil = soil_of(i);
+    return soil ? soil->biot * pressure[i][0] : 0.0;
+  });
+}
+
+void FixMPMPore::find_gravity()
 {
   std::fill_n(gravity, 3, 0.0);
   for (auto *fix : weights) {
@@ -282,6 +327,11 @@ void FixMPMPore::evaluate_variables()
     const auto *const g = (const double *) const_cast<Fix *>(fix)->extract("gvec", dim);
     for (int d = 0; d < 3; d++) gravity[d] += g[d];
   }
+}
+
+void FixMPMPore::evaluate_variables()
+{
+  find_gravity();
   const bool formulas = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
     return soil.law == MPMPoreSoil::FORMULA;
   });
@@ -404,7 +454,7 @@ void FixMPMPore::write_restart(FILE *fp)
 
 void FixMPMPore::restart(char *buf)
 {
-  gradients_known = true;
+  gradients_known = has_state = true;
   if (comm->me == 0) std::copy_n((const double *) buf, came.size(), came.begin());
 }
 

@@ -32,7 +32,9 @@ struct MPMPoreOptions {
   MPMPoreWater water;
   std::vector<MPMPoreSoil> soils;
   MPMPoreSurface::Conditions conditions;
-  std::string initial = "0.0";    ///< pressure of points, a number or v_name
+  std::string initial = "0.0";     ///< pressure of points, a number or v_name
+  bool geostatic = false;          ///< at rest under the weight at first
+  double K0 = 0.0, table = 0.0;    ///< with this ratio of stresses, and height of the water table
   double relax = 0.2;
   int most_stages = 64;
 
@@ -60,6 +62,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
 
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
+  void setup_points() override;
   void extend_topology(MPMField &field) override { of(field).surface.extend_topology(); }
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
@@ -84,6 +87,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   int initial_index = -1;    // of a variable
   double initial_value = 0.0;
   bool gradients_known = true;    // not yet where pressures were given
+  bool has_state = false;         // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
   MPMSuperStep steps;                        // of the pressures of all fields together
   double gravity[3];                         // force per mass
@@ -99,6 +103,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
   void set_initial_pressure();
+  void find_gravity();
   void evaluate_variables();
   void begin_step();
   void flow();
