@@ -31,6 +31,7 @@
 #include "mpm_pore_surface.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "force.h"
 #include "mpm_field.h"
@@ -91,7 +92,8 @@ void MPMPoreSurface::extend_topology()
     }
 }
 
-/** Blocks that are not full of material, and those next to them. */
+/** Blocks that are not full of material, and those next to them. What a rank has of a block does not tell that: where one
+ *  of the ranks that share it finds it near, all must add their points. */
 void MPMPoreSurface::find_blocks_near()
 {
   const auto &blocks = field.grid.blocks;
@@ -105,6 +107,19 @@ void MPMPoreSurface::find_blocks_near()
     near[ib] = std::any_of(blocks[ib].slot, blocks[ib].slot + 27, [&](int slot) {
       return slot >= 0 && filled[slot] < FULL * full;
     });
+  if (comm->nprocs == 1) return;
+  nodes.assign(blocks.size() * NODES_PER_BLOCK, 0.0);
+  for (std::size_t ib = 0; ib < blocks.size(); ib++)
+    for (int n = 0; near[ib] && n < NODES_PER_BLOCK; n++)
+      if (!(blocks[ib].alias >> n & 1)) nodes[ib * NODES_PER_BLOCK + n] = 1.0;
+  field.nodes.sum(nodes.data(), 1, 0, 1);
+  field.nodes.complete(nodes.data(), 1, 1);
+  for (std::size_t ib = 0; ib < blocks.size(); ib++) {
+    const double *const flag = nodes.data() + ib * NODES_PER_BLOCK;
+    near[ib] = std::any_of(flag, flag + NODES_PER_BLOCK, [](double f) {
+      return f > 0.0;
+    });
+  }
 }
 
 /** Volumes of nodes, and what is minus the force of the stress -I, with the gradients of the functions: those that moving

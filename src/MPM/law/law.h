@@ -222,10 +222,14 @@ struct LawTable {
 /** What a plugin with laws must have in common with the package. */
 struct LawVersion {
   int interface;    ///< raised with each change of what laws and package expect of each other
-  int batch, info, kernels, parameters;
+  int batch, info, kernels, parameters, conduction;
 };
-constexpr LawVersion law_version{4, sizeof(Batch), sizeof(LawInfo), sizeof(LawKernels),
-                                 sizeof(LawParameters)};
+constexpr LawVersion law_version{5,
+                                 sizeof(Batch),
+                                 sizeof(LawInfo),
+                                 sizeof(LawKernels),
+                                 sizeof(LawParameters),
+                                 sizeof(Conduction)};
 
 /** A law of a plugin. */
 struct PluginLaw {
