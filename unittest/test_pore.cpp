@@ -594,7 +594,7 @@ SERIAL_TEST(Geostatic, LayersInThreeDimensions)
 
 TEST(Geostatic, RanksAndRestart)
 {
-  const std::string water = GEOSTATIC;
+  const std::string water = std::string(GEOSTATIC) + " free pressure 0";
   const std::string scene = ground(20, water, SOIL, 0.3) + "timestep 4e-5\n";
   OnRanks run(scene, "velocity all set 0 0.01 0\nrun 200\n");
   EXPECT_LT(run.difference(), 1e-11);

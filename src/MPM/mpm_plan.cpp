@@ -130,14 +130,14 @@ void MPMPlan::find_blocks()
     if (field->boxes) field->boxes->update();
 }
 
+/** Other physics may look at any node, as node actions do that do not tell. */
 bool MPMPlan::keeps_all_images() const
 {
-  return std::any_of(actions.begin(), actions.end(), [](const auto *action) {
+  return !physics.empty() || std::any_of(actions.begin(), actions.end(), [](const auto *action) {
     return action->looks_beyond_points();
   });
 }
 
-/** Other physics may look at any node, as node actions do that do not tell. */
 bool MPMPlan::looks_at_all(const MPMField &field, const MPM_NS::Grid::Block &block) const
 {
   return !physics.empty() || std::any_of(actions.begin(), actions.end(), [&](const auto *action) {

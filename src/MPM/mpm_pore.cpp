@@ -196,7 +196,11 @@ void MPMPore::begin_step(const MPMRows &state, const double *formula)
       in_forces[first + p] *= values[p];
     }
   });
-  if (surface.any()) exchange = surface.prepare(nodes, least_storage);
+  if (!surface.any()) return;
+  // places at surfaces look at nodes of periodic images, too
+  field.nodes.complete(nodes.capacity.data(), 1, 1);
+  field.nodes.complete(nodes.volume.data(), 1, 1);
+  exchange = surface.prepare(nodes, least_storage);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -151,6 +151,7 @@ void MPMPoreSurface::map_volume()
     pic.p2g(rows, step, run.first, run.last, base, field.map->tile, box);
   });
   field.nodes.sum(nodes.data(), pic.nreal, VOLUME, GRADIENT - VOLUME + field.lattice.dim);
+  field.nodes.complete(nodes.data(), pic.nreal, pic.nreal);
 }
 
 /** Value of the function of a node at the surface, along the normal. */
