@@ -188,7 +188,8 @@ PARAMETER_TEST(ThermoelasticMode, HasItsFrequencyAndDecay, Mode,
   // ledger goes astray
   const auto energy = [&]() {
     const double *const e = run.compute_vector();
-    EXPECT_NEAR(e[10], 0.0, 1e-14);
+    EXPECT_NEAR(e[10], 0.0,
+                3e-13 * 4.0 * h);    // of the heat of the bar: sums of thousands of stages
     double sum = 0.0;
     for (int i = 0; i < run.n(); i++)
       sum += 0.5 * run.mass()[i] *
