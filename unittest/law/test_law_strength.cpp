@@ -769,7 +769,13 @@ TEST(Thermal, HeatOfFusion)
   }
   EXPECT_LT(fraction, 0.9);
   EXPECT_GT(fraction, 0.0);
-  EXPECT_THROW(make("density 1 eos linear 1 thermal adiabatic 1 500 melt 400 1"), MaterialError);
+  // what is above the melting temperature at first is a melt
+  const auto liquid = make("density 1 eos linear 1 thermal adiabatic 1 500 melt 400 1");
+  double x[3] = {0.0, 0.0, 0.0}, history[2] = {500.0, 0.0};
+  liquid->initialize(x, history);
+  EXPECT_EQ(liquid->history()[1].name, "molten");
+  EXPECT_EQ(history[0], 500.0);
+  EXPECT_EQ(history[1], 1.0);
 }
 
 // all viscous work becomes heat, whatever CHI
