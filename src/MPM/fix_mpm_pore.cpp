@@ -217,15 +217,7 @@ void FixMPMPore::init()
                  soil.formula.substr(2), soil.material,
                  index < 0 ? "does not exist" : "is not atom-style");
   }
-  weights.clear();
-  for (auto *fix : modify->get_fix_by_style("^gravity")) {
-    if (fix->igroup != 0)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/pore takes the weight of the water from fix gravity {}, which must be of "
-                 "group all",
-                 fix->id);
-    weights.push_back(fix);
-  }
+  weight = MPMGravity(lmp, "Fix mpm/pore");
   for (int part = 0; part < MPMPoreSurface::NPART; part++) {
     auto &c = conditions[part];
     if (c.kind == MPMPoreCondition::CLOSED) continue;
@@ -233,7 +225,7 @@ void FixMPMPore::init()
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/pore face {} belongs to a periodic axis: use boundary f there",
                  PART_NAME[part]);
-    if (c.kind == MPMPoreCondition::HEAD && weights.empty())
+    if (c.kind == MPMPoreCondition::HEAD && weight.empty())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/pore {} head needs a fix gravity of group all, which tells where up is",
                  PART_NAME[part]);
@@ -297,7 +289,7 @@ void FixMPMPore::setup_points()
   if (fields.size() != 1)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore geostatic needs one fix mpm, not {}",
                fields.size());
-  find_gravity();
+  weight.find(gravity);
   MPMGeostatic ground(lmp, fields[0]->field, gravity, "Fix mpm/pore geostatic");
   const auto &where = ground.ground();
   if (table > where.top + 0.01 * fields[0]->field.lattice.h)
@@ -306,12 +298,12 @@ void FixMPMPore::setup_points()
         "Fix mpm/pore geostatic: the water table {} is above the surface of the soil, {:.6g}: "
         "water on the soil changes no effective stress, use the height of the surface",
         table, where.top);
-  const double weight = water.density * where.weight * force->nktv2p;
+  const double slope = water.density * where.weight * force->nktv2p;
   for (int i = 0; i < atom->nlocal; i++) {
     std::fill_n(pressure[i], 1 + domain->dimension, 0.0);
     if (!soil_of(i)) continue;
-    pressure[i][0] = weight * (table - ground.height(i));
-    pressure[i][1 + where.axis] = -weight * where.up;
+    pressure[i][0] = slope * (table - ground.height(i));
+    pressure[i][1 + where.axis] = -slope * where.up;
   }
   ground.set_stress(K0, [&](int i) {
     const auto *const soil = soil_of(i);
@@ -319,19 +311,9 @@ void FixMPMPore::setup_points()
   });
 }
 
-void FixMPMPore::find_gravity()
-{
-  std::fill_n(gravity, 3, 0.0);
-  for (auto *fix : weights) {
-    int dim;
-    const auto *const g = (const double *) const_cast<Fix *>(fix)->extract("gvec", dim);
-    for (int d = 0; d < 3; d++) gravity[d] += g[d];
-  }
-}
-
 void FixMPMPore::evaluate_variables()
 {
-  find_gravity();
+  weight.find(gravity);
   const bool formulas = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
     return soil.law == MPMPoreSoil::FORMULA;
   });

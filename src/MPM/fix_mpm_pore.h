@@ -16,6 +16,7 @@ FixStyle(mpm/pore,FixMPMPore);
 #define LMP_FIX_MPM_PORE_H
 
 #include "declare/option.h"
+#include "mpm_gravity.h"
 #include "mpm_physics.h"
 #include "mpm_pore.h"
 #include "mpm_state.h"
@@ -89,10 +90,10 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   bool gradients_known = true;    // not yet where pressures were given
   bool has_state = false;         // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
-  MPMSuperStep steps;                        // of the pressures of all fields together
-  double gravity[3];                         // force per mass
-  std::vector<const class Fix *> weights;    // fixes gravity
-  std::vector<double> formula_values;        // [n] permeability by variables
+  MPMSuperStep steps;    // of the pressures of all fields together
+  double gravity[3];     // force per mass
+  MPMGravity weight;
+  std::vector<double> formula_values;    // [n] permeability by variables
 
   // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this rank's share: that has come in so far; that came in the last step, and comes in a stage of
   // it for each time; the last step of all ranks for each time
@@ -103,7 +104,6 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
   void set_initial_pressure();
-  void find_gravity();
   void evaluate_variables();
   void begin_step();
   void flow();
