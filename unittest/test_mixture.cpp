@@ -697,6 +697,33 @@ TEST(TimeStep, IsThatOfTheFastestPoint)
   }
 }
 
+// Soil and what is in its pores are at the same place; two of the same kind are a mistake.
+SERIAL_TEST(Share, IsNoOverlapWithTheSoilAlone)
+{
+  const std::string fields = box(2, "lj", "p f p", "0 10 0 8", 2, 0.3) +
+      "group soil empty\ngroup water empty\nfix s soil mpm 1.0\nfix w water mpm 1.0\n"
+      "region heap block 2 5 0 5 INF INF\n";
+  const std::string soil = "create_points 1 region heap ppc 2 fix s group soil\n",
+                    water = "create_points 2 region heap ppc 2 fix w group water share 0.5\n";
+  Scene fine(fields + soil + water);
+  EXPECT_EQ(fine.n(), 120);
+  expect_error(fields + soil + water + water, "refuses overlapping bodies: 60 existing");
+  expect_error(fields + soil + water + soil, "refuses overlapping bodies: 120 existing");
+  expect_error(fields + water + soil, "make the soil first");
+  expect_error(fields + soil + soil, "refuses overlapping bodies: 60 existing");
+  Scene allowed(fields + soil + water + replaced(water, "\n", " overlap yes\n"));
+  EXPECT_EQ(allowed.n(), 180);
+
+  // in no field yet: by type
+  const std::string free_soil = replaced(soil, " group soil", ""),
+                    free_water = replaced(water, " group water", "");
+  Scene later(fields + free_soil + free_water);
+  EXPECT_EQ(later.n(), 120);
+  expect_error(fields + free_soil + free_water + free_water, "refuses overlapping bodies: 60");
+  expect_error(fields + free_soil + replaced(free_water, "create_points 2", "create_points 1"),
+               "refuses overlapping bodies: 60");
+}
+
 SERIAL_TEST(Mixture, RefusesBadInput)
 {
   const std::string good =
