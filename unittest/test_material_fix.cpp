@@ -204,16 +204,8 @@ TEST(MaterialFix, LeavingARangeWarnsOnce)
     return "";
   };
   const auto warnings = [&](const std::string &ranges) {
-    Scene run;
-    const ScratchFile log("ranges.log");
-    run.commands("log " + log.name + "\n" + start + ranges + "\nrun 20 post no\nrun 20 post no\n" +
-                 "log none\n");
-    MPI_Barrier(MPI_COMM_WORLD);
-    std::vector<std::string> lines;
-    std::ifstream file(log.name);
-    for (std::string line; std::getline(file, line);)
-      if (contains(line, "out of the range")) lines.push_back(line);
-    return lines;
+    return lines_that_say(start + ranges + "\nrun 20 post no\nrun 20 post no\n",
+                          "out of the range");
   };
 
   // limits that are reached in the middle of the run

@@ -1454,11 +1454,42 @@ void FixMPMBoundary::count_moment(const Grid &grid, int64_t node, const double *
                                   const double *v)
 {
   if (!now.counting || !grid.owns(node)) return;
-  double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
-  grid.node_position(node, x);
+  double push[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < grid.lattice.dim; d++) push[d] = record[3] * (v[d] - record[d]);
+  add_moment(grid, node, push);
+}
+
+void FixMPMBoundary::add_moment(const Grid &grid, int64_t node, const double *push)
+{
+  double x[3], moment[3];
+  grid.node_position(node, x);
   MathExtra::cross3(x, push, moment);
   for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
+}
+
+/* ----------------------------------------------------------------------
+   counted like any other impulse, see set_velocity()
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::bear(MPMField &field, int64_t node, const double *push)
+{
+  Grid &grid = field.grid;
+  if (!grid.owns(node)) return;
+  const double *const record = grid.record(node);
+  double V[3], moved = 0.0, driven = 0.0, gained = 0.0;
+  wall.velocity(field, node, V);
+  for (int d = 0; d < grid.lattice.dim; d++) {
+    impulse[d] += push[d];
+    moved += push[d] * record[d];
+    driven += push[d] * V[d];
+    if (field.ledger.on) gained += 0.5 * push[d] * (record[d] + record[4 + d]);
+  }
+  add_moment(grid, node, push);
+  reaction_known = false;
+  past.work += moved;
+  field.ledger.boundary += moved * force->mvv2e;
+  field.ledger.driven += driven * force->mvv2e;
+  if (field.ledger.on) field.ledger.transfer += (gained - moved) * force->mvv2e;
 }
 
 /* ----------------------------------------------------------------------

@@ -97,6 +97,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
     void reset(int64_t nnodes);
   };
+  /** The wall bears another impulse of a node than what it has counted when it acted in this step: adds this one on
+   *  the body [mass velocity] to the reaction and its moment, and to the work, with the present velocities. */
+  void bear(MPMField &, int64_t node, const double *push);
+
   /** Components of nodes of a field to which this wall gives its velocity, for good: sets bit d of
    *  held[node], one entry for each node; where it mirrors a node outside, bit 3 + d. */
   void mark_held(const MPMField &, std::vector<char> &held) const;
@@ -298,6 +302,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   double slip_work(MPM_NS::Grid &, int64_t node, const double *V, const double *change,
                    const double *v, const double *counted);
   void count_moment(const MPM_NS::Grid &, int64_t node, const double *record, const double *v);
+  void add_moment(const MPM_NS::Grid &, int64_t node, const double *push);
   static bool is_constrained(MPM_NS::Grid &, const Member *, int n, bool fixed);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);

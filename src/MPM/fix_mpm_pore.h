@@ -22,6 +22,7 @@ FixStyle(mpm/pore,FixMPMPore);
 #include "mpm_state.h"
 #include "mpm_super_step.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -82,6 +83,14 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void account(double *values) const override;
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
+
+  /** Has it water in the pores of this material (ID of a fix mpm/material)? */
+  bool has(const std::string &material) const
+  {
+    return std::any_of(soils.begin(), soils.end(), [&](const MPMPoreSoil &soil) {
+      return soil.material == material;
+    });
+  }
 
  private:
   MPMRows pressure;          // [n][1+dim] with its gradient
