@@ -399,15 +399,27 @@ std::string collision(const std::string &heat)
 
 }    // namespace
 
-TEST(Ranks, Agree)
+/** The same with a body that melts and has an internal energy. */
+std::string energetic()
 {
-  OnRanks run(collision("fix heat all mpm/heat\n"), "run 90\n");
-  EXPECT_LT(run.difference(), 1e-12);
+  return replaced(collision("fix heat all mpm/heat\n"),
+                  "eos linear 20.0 strength j2 8.0 0.4 thermal conducting 1.5 1.0 0.4 expansion "
+                  "0.02 gruneisen consistent",
+                  "eos shock 4.5 1.3 1.5 strength j2 8.0 0.4 thermal conducting 1.5 1.0 0.4 melt "
+                  "1.01 0.2");
 }
 
-TEST(Restart, Continues)
+TEST(Ranks, Agree)
 {
-  const std::string scene = collision("fix heat all mpm/heat\n");
+  for (const auto &scene : {collision("fix heat all mpm/heat\n"), energetic()}) {
+    OnRanks run(scene, "run 90\n");
+    EXPECT_LT(run.difference(), 1e-12);
+  }
+}
+
+PARAMETER_TEST(Restart, Continues, bool, Values(false, true))
+{
+  const std::string scene = GetParam() ? energetic() : collision("fix heat all mpm/heat\n");
   const std::string tail = scene.substr(scene.find("fix m one"));
   std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n";
   for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
