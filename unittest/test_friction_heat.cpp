@@ -442,6 +442,12 @@ SERIAL_TEST(BadInput, IsRefused)
        {"fix b all mpm/boundary ylo slip heat yes\nfix h all mpm/heat", "needs a coefficient"},
        {"fix b all mpm/boundary ylo slip friction 0.3 heat yes", "define a fix mpm/heat"}},
       "run 1\n");
+  // a conductivity that has axes gives no effusivity: the share must be told
+  const std::string axes = bare +
+      "fix m all mpm/material density 1 eos linear 1 thermal conducting 1 0 1 orthotropic 2 3\n"
+      "timestep 0.01\nfix h all mpm/heat\nfix c all mpm/contact F1 F2 law coulomb 0.3 heat ";
+  expect_error(axes + "yes\nrun 1\n", "tell the share by 'heat share S'");
+  Scene told(axes + "share 0.5\nrun 1\n");
   expect_error(
       bare +
           "group none type 3\nfix m all mpm/material density 1 eos linear 1\n"

@@ -259,6 +259,18 @@ TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 
 /* ---------------------------------------------------------------------- history */
 
+// points whose pores have water in them have another mass, for as long as there is a fix mpm/pore
+TEST(MaterialFix, MassFollowsTheWaterOfAFixPoreOnly)
+{
+  Scene run(plane("si", "f p", "0 4 0 4", 1, 0.1) +
+            "fix grid all mpm 1.0\ncreate_points 1 box ppc 2\n"
+            "fix m all mpm/material density 2000.0 linear 1e7 0.3\ntimestep 1e-4\n"
+            "fix water all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-5\nrun 1\n");
+  EXPECT_TRUE(run.material()->mass_varies);
+  run.commands("unfix water\nrun 1\n");
+  EXPECT_FALSE(run.material()->mass_varies);
+}
+
 TEST(MaterialFix, NewPointsStartWithInitialHistory)
 {
   Scene run(scene + "fix m all mpm/material " + STEEL + "\nregion late block 1 3 5 7 1 3\n" +

@@ -174,6 +174,13 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
       fix->mass_varies = true;
 }
 
+FixMPMPore::~FixMPMPore()
+{
+  for (const auto &soil : soils)
+    if (auto *fix = dynamic_cast<FixMPMMaterial *>(modify->get_fix_by_id(soil.material)))
+      fix->mass_varies = false;
+}
+
 /* ----------------------------------------------------------------------
    of the points that there are now; a restart file has others
 ------------------------------------------------------------------------- */

@@ -54,6 +54,7 @@ struct MPMPoreOptions {
 class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions {
  public:
   FixMPMPore(class LAMMPS *, int, char **);
+  ~FixMPMPore() override;
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   double compute_scalar() override;
