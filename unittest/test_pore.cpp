@@ -164,6 +164,78 @@ SERIAL_TEST(Undrained, PressureIsEven)
     }
 }
 
+namespace {
+
+/** A block of stiff soil of 1 m, a cell of 0.1 m from the sides of its box or between them, that loses water through
+ *  faces; pressures at first are anything up to 1e4. */
+std::string leaking(const std::string &box, double spacing, double origin, const std::string &faces,
+                    double k)
+{
+  return plane("si", "f f", box, 1, 0.03) + "region soil block 0 1 0 1 INF INF\n" +
+      strprintf("create_points 1 region soil spacing %g\n", spacing) +
+      strprintf("fix grid all mpm 0.1 origin %g 0\n", origin) +
+      "fix m all mpm/material density 2002 linear 1e10 0.3\nvariable p atom 1e4*random(0,1,482)\n" +
+      strprintf("fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant %g initial v_p %s\n", k,
+                faces.c_str()) +
+      "fix dt all mpm/dt 0.5\n";
+}
+/** Greatest pressure of points in these runs of some steps. */
+double greatest_pressure(Scene &run, Water &water, int runs, int steps)
+{
+  double most = 0.0;
+  for (int k = 0; k < runs; k++) {
+    run.commands(strprintf("run %d\n", steps));
+    const double *const p = water.pressures();
+    for (int i = 0; i < run.n(); i++)
+      most = std::max(most, std::isfinite(p[i]) ? std::fabs(p[i]) : 1e300);
+  }
+  return most;
+}
+// what the motion of so stiff a soil can add: twice K_f/(n M)
+const double NEVER_ABOVE = 1e4 * (1.0 + 2.0 * 2.2e7 / 0.4 / (1e3 * MODULUS));
+
+}    // namespace
+
+// Nodes beside a body have next to nothing of it where points are in the middle of cells: a side that moves through
+// cells, or is there by the place of nodes or with one point for each cell
+SERIAL_TEST(Surface, NextToASide)
+{
+  for (const double k : {1e-3, 1e-2, 1e-1}) {
+    Scene run(leaking("-1 3 0 1.5", 0.05, 0.0, "ylo pressure 0", k) +
+              "fix floor all mpm/boundary ylo slip\nvelocity all set 100 0 0\n");
+    Water water(run);
+    EXPECT_LT(measured(strprintf("moving, k %g", k), greatest_pressure(run, water, 20, 10)),
+              NEVER_ABOVE);
+  }
+  for (const auto &[spacing, origin] :
+       {std::pair{0.05, 0.075}, std::pair{0.05, 0.0751}, std::pair{0.1, 0.0}})
+    for (const double k : {1e-3, 1e-2, 1e-1}) {
+      Scene run(leaking("0 1 0 1.5", spacing, origin, "ylo pressure 0 free pressure 0", k) +
+                "fix walls all mpm/boundary xlo xhi ylo slip\n");
+      Water water(run);
+      EXPECT_LT(measured(strprintf("spacing %g, origin %g, k %g", spacing, origin, k),
+                         greatest_pressure(run, water, 10, 5)),
+                NEVER_ABOVE);
+    }
+  for (const auto &[faces, k] : {std::pair{"xlo pressure 0", 1e-2},
+                                 std::pair{"xlo pressure 0 ylo pressure 0 zhi pressure 0", 1e-2},
+                                 std::pair{"xlo pressure 0 xhi pressure 0 ylo pressure 0 yhi "
+                                           "pressure 0 zlo pressure 0 zhi pressure 0",
+                                           1.0}}) {
+    Scene run(
+        space("si", "f f f", "0 0.5 0 0.5 0 0.5", 1, 0.03) +
+        "create_points 1 box spacing 0.1\nfix grid all mpm 0.1\n"
+        "fix m all mpm/material density 2002 linear 1e10 0.3\n"
+        "fix w all mpm/boundary xlo xhi ylo yhi zlo zhi slip\n"
+        "variable p atom 1e4*random(0,1,482)\n" +
+        strprintf("fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant %g initial v_p %s\n",
+                  k, faces) +
+        "fix dt all mpm/dt 0.5\n");
+    Water water(run);
+    EXPECT_LT(measured(faces, greatest_pressure(run, water, 10, 5)), NEVER_ABOVE);
+  }
+}
+
 // what comes to points is what comes through the surface, as volume of water and as mass
 TEST(Water, IsKept)
 {
