@@ -381,6 +381,77 @@ SERIAL_TEST(Walls, ThatSeparate)
   EXPECT_LT(measured("fastest", fastest), 0.02);
 }
 
+namespace {
+
+/** A column of 1 m with 10 cells above a floor, which a wall of this kind holds, under its weight; water has the
+ *  pressure of rest and this gradient more, and leaves at the top. offset: of the floor from nodes, in cells. */
+std::string above_floor(const std::string &wall, double gradient, double offset,
+                        const std::string &material, const std::string &axes)
+{
+  return plane("si", "p f", axes, 1, 0.03) +
+      "region soil block 0 0.4 0 1 INF INF\nregion ground block INF INF -1 0 INF INF\n"
+      "create_points 1 region soil spacing 0.05\n" +
+      strprintf("fix grid all mpm 0.1 origin 0 %g\n", 0.1 * offset) + "fix m all mpm/material " +
+      material + "\nfix floor all mpm/boundary " + wall +
+      "\nfix g all gravity 9.81 vector 0 -1 0\n" +
+      strprintf("variable p atom 9810*(1-y)*(1+%g)\n", gradient) +
+      "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 1e-2 yhi pressure 0 initial "
+      "v_p ";
+}
+double mean_velocity(Scene &run, int d)
+{
+  double sum = 0.0;
+  for (int i = 0; i < run.n(); i++) sum += run.v()[i][d] / run.n();
+  return sum;
+}
+
+}    // namespace
+
+// friction of walls is that of grains: a saturated column slides on its floor as one of its submerged weight
+SERIAL_TEST(Walls, FrictionIsThatOfGrains)
+{
+  const double slower = 0.3 * 9.81 * 990.0 / 1990.0;
+  for (const auto &[wall, offset] :
+       {std::pair{"ylo slip friction 0.3", 0.0}, std::pair{"ylo slip friction 0.3", 0.3},
+        std::pair{"ylo separate friction 0.3", 0.0}, std::pair{"ylo separate friction 0.3", 0.4},
+        std::pair{"region ground separate friction 0.3", 0.0},
+        std::pair{"region ground separate friction 0.3", 0.3},
+        std::pair{"region ground slip friction 0.3", 0.2}}) {
+    const bool face = wall[0] == 'y';
+    Scene run(above_floor(wall, 0.0, offset, "density 1990 linear 1e7 0.3",
+                          face ? "0 0.4 0 1" : "0 0.4 -0.5 1") +
+              "\n");
+    run_to(run, 0.6);
+    run.set_velocity([](const double *, double *v) {
+      v[0] = 5.0;
+    });
+    run_to(run, 0.7);
+    EXPECT_NEAR(measured(strprintf("%s, offset %g", wall, offset),
+                         (5.0 - mean_velocity(run, 0)) / (0.1 * slower)),
+                1.0, 0.01);
+  }
+}
+
+// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the critical gradient
+// is (G_s - 1)(1 - n) = 0.99
+SERIAL_TEST(Walls, HeaveAtTheCriticalGradient)
+{
+  for (const double offset : {0.0, 0.3})
+    for (const double i : {0.9, 0.96, 1.02, 1.05}) {
+      if (offset > 0.0 && std::fabs(i - 0.99) > 0.05) continue;
+      Scene run(above_floor("ylo separate", i, offset, "density 1990 linear 1e8 0.3", "0 0.4 0 1") +
+                strprintf("ylo pressure %.17g\n", 9810 * (1.0 + i)));
+      run_to(run, 0.4);
+      double lowest = 1.0;
+      for (int k = 0; k < run.n(); k++) lowest = std::min(lowest, run.x()[k][1] - 0.025);
+      measured(strprintf("offset %g, gradient %g, gap", offset, i), lowest);
+      if (i < 0.99)
+        EXPECT_LT(lowest, 1e-4);
+      else
+        EXPECT_GT(lowest, 1e-3);
+    }
+}
+
 // flow by a difference of pressures, and water at rest under its weight
 SERIAL_TEST(Flow, Darcy)
 {
@@ -521,7 +592,8 @@ TEST(Ranks, Agree)
       replaced(blocks("initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01"),
                "boundary p p p", "boundary f f p") +
       "fix b all mpm/boundary xlo xhi ylo yhi slip\n";
-  for (const auto &scene : {blocks("initial v_p"), walls}) {
+  const auto rough = replaced(walls, "yhi slip", "yhi separate friction 0.3");
+  for (const auto &scene : {blocks("initial v_p"), walls, rough}) {
     OnRanks run(scene + PORE, "run 300\n");
     EXPECT_LT(run.difference(), 1e-11);
     const auto one = pressures(run.serial), all = pressures(run.parallel);
