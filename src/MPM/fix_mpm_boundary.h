@@ -123,6 +123,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     // range of nodes along the axis that are looked at together
     int begin() const { return cut ? first : plane - DEPTH; }
     int end() const { return cut ? first + nweight - 1 : plane + DEPTH; }
+    int length() const { return cut ? nweight : 1 + 2 * DEPTH; }    // of a line of nodes
     void cut_weights(const MPMField &, double x);
     MPMWallContact contact_of(const MPMField &, double x) const;
   };
@@ -266,6 +267,8 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     int place;               // of the field in the list
     const double *normal;    // of the wall on which nodes slide and become warm; null: they do not
   } now;
+  std::vector<double>
+      water;    // [node][3] impulse of water in pores on the surface of the body; empty: none
   std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
 
   bool region_moves() const;
@@ -295,7 +298,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void find_region_gaps(FieldNodes &, double dt);
   std::function<double(const double *)> distance_from_region(const MPMField &, double dt) const;
   void check_speed(double dt);
-  double slide_share(Contact &, double push, double needed) const;
+  double slide_share(Contact &, double push, double water, double needed) const;
+  void find_water(const FieldNodes &, double dt);
+  double water_on(const int64_t *node, int n, const double *normal) const;
+  void push_by_water(MPM_NS::Grid &, int64_t node, const double *normal);
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *V, const double *v,
                     const double *old, const double *whole = nullptr);
   void heat_if_sliding(Contact, const double *normal);

@@ -240,6 +240,20 @@ void FixMPMPore::init()
   }
 }
 
+void FixMPMPore::warn_of_contact() const
+{
+  const bool any = std::any_of(fields.begin(), fields.end(), [](const auto &field) {
+    return field->has_water();
+  });
+  if (comm->me || !any) return;
+  for (const char *style : {"mpm/contact", "mpm/rigid"})
+    for (const auto *fix : modify->get_fix_by_style(std::string("^") + style + "$"))
+      error->warning(FLERR,
+                     "Fix {} {} takes the pressure of pore water for one between grains: friction "
+                     "and separation of soils of fix mpm/pore {} are those of the total stress",
+                     style, fix->id, id);
+}
+
 void FixMPMPore::init_physics(MPMPlan &plan)
 {
   fields.clear();
@@ -261,6 +275,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
           "the pressure of the water is an average already: use locking none"}});
     steps.add(mine.nodes.value, mine.nodes.rate);
   }
+  warn_of_contact();
 }
 
 MPMPore &FixMPMPore::of(const MPMField &field) const
@@ -383,6 +398,14 @@ void FixMPMPore::flow()
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
   dt_last = dt;
   flows_known = false;
+}
+
+bool FixMPMPore::surface_force(MPMField &field, const std::vector<char> &near,
+                               std::vector<double> &force) const
+{
+  const MPMPore &mine = of(field);
+  if (mine.has_water()) mine.find_surface_force(pressure, near, force);
+  return mine.has_water();
 }
 
 double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const

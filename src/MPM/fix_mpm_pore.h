@@ -76,6 +76,8 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   {
     return of(field).pressure_in_forces();
   }
+  bool surface_force(MPMField &, const std::vector<char> &near,
+                     std::vector<double> &force) const override;
   std::vector<Account> accounts() const override
   {
     return {{"energy of pore water", true, true},
@@ -113,6 +115,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
 
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
+  void warn_of_contact() const;
   void set_initial_pressure();
   void evaluate_variables();
   void begin_step();

@@ -44,6 +44,7 @@
 #include "material/material.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_node_sums.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -201,6 +202,26 @@ void MPMPore::begin_step(const MPMRows &state, const double *formula)
   field.nodes.complete(nodes.capacity.data(), 1, 1);
   field.nodes.complete(nodes.volume.data(), 1, 1);
   exchange = surface.prepare(nodes, least_storage);
+}
+
+/* ----------------------------------------------------------------------
+   int N p n dA = int (p grad N + N grad p) dV, where the first term is the force of the pressure on nodes: nothing is left
+   inside of the soil, and of the surface what water pushes with
+------------------------------------------------------------------------- */
+
+void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &near,
+                                 std::vector<double> &force) const
+{
+  const int dim = field.lattice.dim;
+  map_forces(
+      field, near,
+      [&](int i, double *tau, double *f) {
+        const MPMPoreSoil *const s = soil_of(i);
+        for (int c = 0; c < 6; c++) tau[c] = c < 3 ? -in_forces[i] : 0.0;
+        const double volume = s ? s->biot * field.points->jacobian(i) * atom->vfrac[i] : 0.0;
+        for (int d = 0; d < 3; d++) f[d] = d < dim ? volume * state[i][1 + d] : 0.0;
+      },
+      force);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -45,6 +45,9 @@ class MPMPore : protected Pointers {
   void begin_step(const MPMRows &state, const double *formula);
   /** [n] J times the pressure in internal forces. */
   const double *pressure_in_forces() const { return in_forces.data(); }
+  /** See MPMPhysics::surface_force(). */
+  void find_surface_force(const MPMRows &state, const std::vector<char> &near,
+                          std::vector<double> &force) const;
   /** The velocities of the step are known. */
   void take_motion();
   /** Rates of the pressures of nodes; adds the volumes of water that come in for each time, and the power of what

@@ -270,7 +270,11 @@ void MPMPoreSurface::find_places()
 
 /* ---------------------------------------------------------------------- */
 
-/** Makes the sum of weights one; enough: capacity of a node for its whole weight. Returns the sum before. */
+/** Makes the sum of weights one; enough: capacity of a node for its whole weight. Returns the sum before.
+ *
+ *  A point in the middle of a cell gives a node that is out of reach of all others next to no capacity. Conduction bounds what
+ *  a node stores, C p^2, hence p there may be as large as 1/sqrt(C): such nodes must not be asked with their whole weight,
+ *  neither for water nor for their pressure. */
 double MPMPoreSurface::normalize(int first, int n, double enough,
                                  const std::vector<double> &capacity)
 {
@@ -284,10 +288,14 @@ double MPMPoreSurface::normalize(int first, int n, double enough,
   return sum;
 }
 
+/** With the lists a_k of weights where water comes in and b_k where the pressure is taken, the exchange is the matrix
+ *  sum_k c_k a_k b_k^T, which is not symmetric: what counts is its norm, not its eigenvalues, as conduction is added to it.
+ *  In the norm of the capacities it is at most that of sum_k c_k a_k a_k^T and of sum_k c_k b_k b_k^T in the
+ *  geometric mean, and these are at most their greatest sum of a row, (sum_k c_k a_ki)/C_i, as weights have the sum one. */
 double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage)
 {
-  const double cell = field.lattice.cell_volume();
-  double fastest = 0.0;
+  const double cell = field.lattice.cell_volume(), enough = ENOUGH * least_storage * cell;
+  rows.assign(2 * scalar.capacity.size(), 0.0);
   for (auto &place : places) {
     double storage = 0.0;
     for (int k = place.first; k < place.first + place.n; k++) {
@@ -295,26 +303,31 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
       if (V > ENOUGH * cell) storage = std::max(storage, scalar.capacity[node[k]] / V);
     }
     // the surface may be that of another material, without water
-    const double inside = normalize(place.first, place.n, 1.0e-300, scalar.capacity);
-    const double at =
-        normalize(place.first_at, place.n_at, ENOUGH * least_storage * cell, scalar.capacity);
+    const double inside = normalize(place.first, place.n, enough, scalar.capacity);
+    const double at = normalize(place.first_at, place.n_at, enough, scalar.capacity);
     const bool has_water = storage > 0.0 && inside > 0.0 && at > 0.0;
-    place.area *= has_water ? std::min(1.0, at / MOSTLY) : 0.0;
-    double K = 0.0, C = 0.0, response = 0.0;
+    place.area *= has_water ? std::min(1.0, std::min(inside, at) / MOSTLY) : 0.0;
+    double K = 0.0, C = 0.0;
     for (int k = place.first; k < place.first + place.n && has_water; k++) {
       K += weight[k] * scalar.volume[node[k]];
       C += weight[k] * scalar.capacity[node[k]];
-      for (int j = place.first_at; j < place.first_at + place.n_at; j++)
-        if (node[j] == node[k] && weight[j] > 0.0)
-          response += weight[j] * weight[k] / scalar.capacity[node[k]];
     }
     place.conductance = C > 0.0 ? place.area * storage * K / (C * INSET * field.lattice.h) : 0.0;
-    if (conditions[place.part].kind != MPMPoreCondition::FLUX)
-      fastest = std::max(fastest, response * place.conductance);
+    if (conditions[place.part].kind == MPMPoreCondition::FLUX) continue;
+    for (int k = place.first; k < place.first + place.n; k++)
+      rows[2 * node[k]] += place.conductance * weight[k];
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+      rows[2 * node[k] + 1] += place.conductance * weight[k];
   }
-  // places of nodes next to each other share nodes
-  constexpr double TOGETHER = 3.0;
-  return TOGETHER * fastest;
+  field.nodes.sum(rows.data(), 2, 0, 2);
+  double taken = 0.0, given = 0.0;
+  for (std::size_t k = 0; k < scalar.capacity.size(); k++) {
+    const double C = scalar.capacity[k];
+    if (!(C > 0.0)) continue;
+    taken = std::max(taken, rows[2 * k] / C);
+    given = std::max(given, rows[2 * k + 1] / C);
+  }
+  return sqrt(taken * given);
 }
 
 void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflow) const
@@ -341,5 +354,5 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
 double MPMPoreSurface::memory_usage() const
 {
   return places.capacity() * sizeof(Place) + node.capacity() * sizeof(int64_t) +
-      (weight.capacity() + nodes.capacity()) * sizeof(double) + near.capacity();
+      (weight.capacity() + nodes.capacity() + rows.capacity()) * sizeof(double) + near.capacity();
 }

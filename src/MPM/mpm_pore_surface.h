@@ -55,7 +55,7 @@ class MPMPoreSurface : protected Pointers {
   /** Where the surface is. Before MPMNodeScalar::points_to_nodes(). Collective. */
   void find_places();
   /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest of a soil.
-   *  Returns the greatest rate of exchange of this rank's places [1/time]. */
+   *  Returns a bound of the rates of exchange at this rank's nodes [1/time]. Collective. */
   double prepare(const MPMNodeScalar &, double least_storage);
   /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in for each
    *  time, with the energy that this brings. */
@@ -80,7 +80,9 @@ class MPMPoreSurface : protected Pointers {
   std::vector<int64_t> node;    // of all places
   std::vector<double> weight;
   std::vector<double> nodes;    // records with volume and its gradient
-  std::vector<char> near;       // [block]
+  std::vector<double>
+      rows;    // [2*node] sums of conductances where pressures are taken, and where water comes in
+  std::vector<char> near;    // [block]
 
   void find_blocks_near();
   void map_volume();

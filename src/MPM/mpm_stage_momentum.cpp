@@ -31,6 +31,15 @@ const double *LAMMPS_NS::pressure_of_physics(const MPMField &field)
   return nullptr;
 }
 
+bool LAMMPS_NS::surface_force_of_physics(MPMField &field, const std::vector<char> &near,
+                                         std::vector<double> &force)
+{
+  const auto &all = field.plan->physics;
+  return std::any_of(all.begin(), all.end(), [&](const auto *physics) {
+    return physics->surface_force(field, near, force);
+  });
+}
+
 void LAMMPS_NS::add_pressure(const double *pressure, PointRows &rows, int first, int n,
                              double *room)
 {
