@@ -253,10 +253,12 @@ SERIAL_TEST(Undrained, StepLoad)
       run.commands("run 20\n");
       if (run.time() < 0.03) continue;
       const double window = std::pow(std::sin(PI * (run.time() - 0.03) / 0.07), 2);
-      sum += window * water.mean(0.0, 0.9) / LOAD;
+      sum += window * water.mean(0.0, 1.0) / LOAD;
       all += window;
     }
-    EXPECT_NEAR(measured("p/q", sum / all) * (1.0 + MODULUS * N / Kf), 1.0, 1e-3);
+    // the load is a quarter of a cell below the surface
+    EXPECT_NEAR(measured("p/q", sum / all / (1.0 - 0.25 / n)) * (1.0 + MODULUS * N / Kf), 1.0,
+                1e-3);
   }
 }
 
@@ -287,12 +289,12 @@ SERIAL_TEST(Energy, Wave)
     run.set_velocity([](const double *x, double *v) {
       v[1] = 1e-2 * std::sin(PI * x[1]);
     });
-    run.commands("compute e all mpm/energy\nfix dt all mpm/dt 0.2\nrun 0\n");
+    run.commands("compute e all mpm/energy\nfix dt all mpm/dt 0.1\nrun 0\n");
     const double before = run.compute_scalar();
     EXPECT_NEAR(before / (0.5 * 1990 * 1e-4 * 0.5 * 0.2), 1.0, 1e-2);
     double most = 0.0, last = before;
     for (int part = 0; part < 20; part++) {
-      run.commands("run 50\n");
+      run.commands("run 100\n");
       const double now = run.compute_scalar();
       most = std::max(most, (now - last) / before);
       last = now;
@@ -339,29 +341,37 @@ SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
   }
 }
 
-// soil and water together keep their momentum; two blocks collide, and water flows in them
-TEST(Momentum, IsKept)
+// Soil and water together keep their momentum: two blocks collide, and water flows in them. What water that goes from point to
+// point makes of it, which takes the velocity of where it comes to, is not part of the equations, and is counted here
+SERIAL_TEST(Momentum, IsKept)
 {
   Scene run(blocks("initial v_p " + MOVES) + "compute w all mpm/atom flow_x flow_y\n");
-  const auto momentum = [&](bool water) {
+  std::map<tagint, double> mass;
+  double start[2], now[2], moved[2], carried[2] = {}, most = 0.0;
+  run.each_step([&](double **) {
     auto *compute = run.lmp->modify->get_compute_by_id("w");
     compute->compute_peratom();
-    std::vector<double> sum(2, 0.0);
-    for (int i = 0; i < run.n(); i++)
-      for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 2; d++) {
+      now[d] = moved[d] = 0.0;
+      for (int i = 0; i < run.n(); i++) {
         const double V = run.points().jacobian(i) * run.lmp->atom->vfrac[i];
-        sum[d] += run.mass()[i] * run.v()[i][d] * !water + 0.5 * V * compute->array_atom[i][d];
+        const auto before = mass.find(run.lmp->atom->tag[i]);
+        if (before != mass.end()) carried[d] += (run.mass()[i] - before->second) * run.v()[i][d];
+        moved[d] += 0.5 * V * compute->array_atom[i][d];
+        now[d] += run.mass()[i] * run.v()[i][d];
       }
-    return over_ranks(sum);
-  };
-  run.commands("run 0\n");
-  const auto before = momentum(false);
+      now[d] += moved[d];
+      if (mass.empty()) start[d] = now[d];
+      most = std::max(most, std::fabs(now[d] - start[d] - carried[d]));
+    }
+    for (int i = 0; i < run.n(); i++) mass[run.lmp->atom->tag[i]] = run.mass()[i];
+  });
   run.commands("run 400\n");
-  const auto after = momentum(false), moved = momentum(true);
   for (int d = 0; d < 2; d++) {
     measured("momentum of the water's own motion", moved[d]);
-    EXPECT_NEAR(measured("change", after[d] - before[d]), 0.0, 1e-3);
+    measured("carried", carried[d]);
   }
+  EXPECT_LT(measured("change", most), 1e-11);
 }
 
 // the time step is that of a wave in which water and soil move without drag, and it is stable just below
@@ -451,6 +461,7 @@ SERIAL_TEST(BadInput, IsRefused)
                     form);
   };
   expect_error(with("", "2000", "u-w"), "must be one of u-p u-v-p");
+  expect_error(with("", "2000", "u-v-p stages 5"), "is for formulation u-p");
   expect_error(with("", "400", "u-v-p"), "that of saturated soil");
   expect_error(with("transfer xpic 2", "2000", "u-v-p"), "use apic, aflip, or flip");
 }

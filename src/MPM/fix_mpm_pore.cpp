@@ -93,8 +93,9 @@ Options MPMPoreOptions::declare(int dim)
                 coefficient("b", "pressure time^2/length^3",
                             "gradient of the pressure per square of the flow")},
                {"ergun", ERGUN, "",
-                coefficient("d", "distance",
-                            "that of packed spheres of this diameter, by Ergun's law")}})},
+                coefficient(
+                    "d", "distance",
+                    "diameter of packed spheres, which have this coefficient by Ergun's law")}})},
         "drag with the square of the flow, besides Darcy's law, in the soil before this keyword")
       .then([this] {
         forchheimer_alone = soils.empty();
@@ -149,6 +150,8 @@ Options MPMPoreOptions::declare(int dim)
   o.refuse([=] {
     OptionRules rules = {{biot_alone, "biot", "needs a soil before it"},
                          {forchheimer_alone, "forchheimer", "needs a soil before it"},
+                         {formulation == U_V_P, "stages",
+                          "is for formulation u-p: with u-v-p waves alone limit the time step"},
                          {geostatic && initial != "0.0", "geostatic",
                           "gives points their pressure: leave out initial"}};
     for (int face = 4; face < 6; face++)
