@@ -7,7 +7,7 @@
 
 // Fix mpm/mixture: soil and water as two fields.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 #include <complex>
 
@@ -230,24 +230,6 @@ struct Mode {
   double K, k;    ///< bulk modulus of water, hydraulic conductivity
   std::string options;
 };
-
-/** Angular frequency and decay of a signal, from its first and last zeros and peaks. */
-static std::array<double, 2> frequency_and_decay(const std::vector<double> &t,
-                                                 const std::vector<double> &y)
-{
-  std::vector<double> zeros, when, peaks;
-  for (std::size_t k = 1; k + 1 < y.size(); k++) {
-    if (y[k] * y[k + 1] < 0.0) zeros.push_back(t[k] + (t[k + 1] - t[k]) * y[k] / (y[k] - y[k + 1]));
-    const double a = fabs(y[k - 1]), b = fabs(y[k]), c = fabs(y[k + 1]);
-    if (b > a && b >= c && k > 3) {
-      const double u = 0.5 * (a - c) / (a - 2.0 * b + c);
-      peaks.push_back(b - 0.25 * (a - c) * u);
-      when.push_back(t[k] + u * (t[k + 1] - t[k]));
-    }
-  }
-  return {PI * (zeros.size() - 1.0) / (zeros.back() - zeros.front()),
-          log(peaks.front() / peaks.back()) / (when.back() - when.front())};
-}
 
 PARAMETER_TEST(StandingWave, HasTheRootsOfBothVelocities, Mode,
                Values(Mode{2.2e8, 1.0e-3, "transfer aflip 1.0"},

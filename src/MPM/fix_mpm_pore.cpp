@@ -15,6 +15,7 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "input.h"
+#include "material/material.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_geostatic.h"
@@ -25,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 using namespace LAMMPS_NS;
@@ -81,6 +83,31 @@ Options MPMPoreOptions::declare(int dim)
         soils.back().grains = biot.second;
       })
       .standard("1, rigid grains");
+  const auto coefficient = [this](const std::string &name, const std::string &unit,
+                                  const std::string &meaning) {
+    return std::vector<OptionValue>{number(forchheimer_value, name, POSITIVE, unit, meaning)};
+  };
+  o.add("forchheimer",
+        {word(forchheimer,
+              {{"number", NUMBER, "",
+                coefficient("b", "pressure time^2/length^3",
+                            "gradient of the pressure per square of the flow")},
+               {"ergun", ERGUN, "",
+                coefficient(
+                    "d", "distance",
+                    "diameter of packed spheres, which have this coefficient by Ergun's law")}})},
+        "drag with the square of the flow, besides Darcy's law, in the soil before this keyword")
+      .then([this] {
+        forchheimer_alone = soils.empty();
+        if (forchheimer_alone) return;
+        soils.back().quadratic = forchheimer == NUMBER ? forchheimer_value : 0.0;
+        soils.back().diameter = forchheimer == ERGUN ? forchheimer_value : 0.0;
+      })
+      .standard("none");
+  o.add("formulation",
+        {word(formulation,
+              {{"u-p", U_P, "the water has no inertia relative to the soil: slow flow"},
+               {"u-v-p", U_V_P, "it has: fast loads, and soils of high permeability"}})});
   for (int part = 0; part < MPMPoreSurface::NPART; part++) {
     MPMPoreCondition &c = conditions[part];
     const bool free = part == MPMPoreSurface::FREE;
@@ -122,6 +149,9 @@ Options MPMPoreOptions::declare(int dim)
   o.add("stages", {integer(most_stages, "N", POSITIVE, "most stages of the flow in a time step")});
   o.refuse([=] {
     OptionRules rules = {{biot_alone, "biot", "needs a soil before it"},
+                         {forchheimer_alone, "forchheimer", "needs a soil before it"},
+                         {formulation == U_V_P, "stages",
+                          "is for formulation u-p: with u-v-p waves alone limit the time step"},
                          {geostatic && initial != "0.0", "geostatic",
                           "gives points their pressure: leave out initial"}};
     for (int face = 4; face < 6; face++)
@@ -160,6 +190,7 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   state.declare(pressure, "mpm/pore:pressure", 1 + domain->dimension, [this](int, double *row) {
     row[0] = initial_value;
   });
+  if (formulation == U_V_P) state.declare(inertia, "mpm/pore:flow", domain->dimension);
   keep_arrays();
   scalar_flag = vector_flag = 1;
   size_vector = MPMPoreSurface::NPART;
@@ -260,9 +291,11 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   steps.clear();
   steps.add(in_step, present);
   for (auto *field : plan.fields) {
-    fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax));
+    fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax,
+                                               formulation == U_V_P));
     auto &mine = *fields.back();
     mine.init(soils);
+    if (formulation == U_V_P) init_motion(*field);
     const auto &o = field->options;
     refuse_field(
         lmp, *this, *field,
@@ -278,6 +311,23 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   warn_of_contact();
 }
 
+/** The mass that moves by itself must be less than all, and nodes have their accelerations. */
+void FixMPMPore::init_motion(MPMField &field)
+{
+  field.keep_old = true;
+  refuse_field(
+      lmp, *this, field,
+      {{field.options.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
+        "formulation u-v-p takes a part off the mass of nodes: use apic, aflip, or flip"}});
+  for (const auto *fix : field.materials)
+    for (const auto &soil : soils)
+      if (soil.material == fix->id && fix->material->density() <= soil.porosity * water.density)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/pore formulation u-v-p: soil {} has the density {}, which is not more "
+                   "than that of the water in its pores, {}: it must be that of saturated soil",
+                   soil.material, fix->material->density(), soil.porosity * water.density);
+}
+
 MPMPore &FixMPMPore::of(const MPMField &field) const
 {
   for (const auto &mine : fields)
@@ -291,6 +341,10 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
   if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
     plan.together("pore pressure", [this]() {
       begin_step();
+    });
+  if (place == MPMPlan::BEFORE_SOLVE && formulation == U_V_P)
+    plan.together("inertia of pore water", [this]() {
+      take_off();
     });
   if (place == MPMPlan::AFTER_SOLVE)
     plan.together("flow of pore water", [this]() {
@@ -366,10 +420,16 @@ void FixMPMPore::begin_step()
   evaluate_variables();
   const double *const formula = formula_values.empty() ? nullptr : formula_values.data();
   for (auto &field : fields) {
+    if (field->motion) field->motion->begin_step(inertia);
     if (!gradients_known) field->find_gradients(pressure, formula);
-    field->begin_step(pressure, formula);
+    field->begin_step(pressure, inertia, formula);
   }
   gradients_known = true;
+}
+
+void FixMPMPore::take_off()
+{
+  for (auto &field : fields) field->take_off();
 }
 
 void FixMPMPore::flow()
@@ -377,7 +437,9 @@ void FixMPMPore::flow()
   double mine = 0.0, greatest;
   for (auto &field : fields) {
     field->take_motion();
-    mine = std::max(mine, field->greatest_rate());
+    field->move_water();
+    // waves limit the step of water with inertia, which is one of theirs
+    if (formulation == U_P) mine = std::max(mine, field->greatest_rate());
   }
   MPI_Allreduce(&mine, &greatest, 1, MPI_DOUBLE, MPI_MAX, world);
   const double dt = fields[0]->field.step_dt(), limit = MPMSuperStep::explicit_limit(greatest);
@@ -410,6 +472,7 @@ bool FixMPMPore::surface_force(MPMField &field, const std::vector<char> &near,
 
 double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
 {
+  if (formulation == U_V_P) return std::numeric_limits<double>::max();
   const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(tag));
   return most_stages < 3 ? 0.5 * limit : MPMSuperStep::reach(most_stages) * limit;
 }
@@ -437,12 +500,12 @@ double FixMPMPore::compute_vector(int i)
 }
 
 /* ----------------------------------------------------------------------
-   what the water stores, for compute mpm/energy and the energy watch
+   what the water stores, and its kinetic energy, as far as mass and velocity of points do not have it, for compute mpm/energy and the energy watch
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::account(double *values) const
 {
-  double sum = 0.0;
+  double sum = 0.0, moving = 0.0;
   const auto *const points = MPMPoints::get(atom);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->vfrac[i] > 0.0)) continue;
@@ -450,8 +513,12 @@ void FixMPMPore::account(double *values) const
     if (!soil) continue;
     const double J = points->jacobian(i), p = pressure[i][0];
     sum += 0.5 * J * atom->vfrac[i] * soil->storage_at(J, water) * p * p;
+    if (!inertia) continue;
+    const double pores = J * soil->pores_at(J);
+    for (int d = 0; d < domain->dimension; d++)
+      moving += atom->vfrac[i] * inertia[i][d] * (atom->v[i][d] + 0.5 * inertia[i][d] / pores);
   }
-  values[0] += sum / force->nktv2p;
+  values[0] += sum / force->nktv2p + water.density * moving * force->mvv2e;
   values[1] += came[MPMPoreSurface::ENERGY] / force->nktv2p;
 }
 
@@ -485,14 +552,19 @@ const MPMPoreSoil *FixMPMPore::soil_of(int i) const
 
 std::vector<std::string> FixMPMPore::quantities() const
 {
-  return {"pore", "porosity"};
+  std::vector<std::string> names = {"pore", "porosity"};
+  for (int d = 0; formulation == U_V_P && d < domain->dimension; d++)
+    names.push_back(std::string("flow_") + (char) ('x' + d));
+  return names;
 }
 
 double FixMPMPore::quantity(int k, int i) const
 {
   const MPMPoreSoil *const soil = soil_of(i);
   if (!soil) return 0.0;
-  return k == 0 ? pressure[i][0] : soil->porosity_at(MPMPoints::get(atom)->jacobian(i));
+  if (k == 0) return pressure[i][0];
+  const double J = MPMPoints::get(atom)->jacobian(i);
+  return k == 1 ? soil->porosity_at(J) : inertia[i][k - 2] / J;
 }
 
 double FixMPMPore::memory_usage()

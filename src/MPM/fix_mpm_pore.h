@@ -31,6 +31,9 @@ FixStyle(mpm/pore,FixMPMPore);
 namespace LAMMPS_NS {
 
 struct MPMPoreOptions {
+  enum Formulation { U_P, U_V_P };
+
+  Formulation formulation = U_P;
   MPMPoreWater water;
   std::vector<MPMPoreSoil> soils;
   MPMPoreSurface::Conditions conditions;
@@ -46,11 +49,13 @@ struct MPMPoreOptions {
   // while they are read
   MPMPoreSoil next;
   std::pair<double, double> biot = {0.0, 0.0};
-  bool biot_alone = false;
+  bool biot_alone = false, forchheimer_alone = false;
+  enum Forchheimer { NUMBER, ERGUN } forchheimer = NUMBER;
+  double forchheimer_value = 0.0;
 };
 
-/** Pore water in the points of soils, which move with one velocity for both (u-p): flow by Darcy's law, and the
- *  pressure of the water in the forces. */
+/** Pore water in the points of soils, which move with the velocity of the soil: the flow of the water, without
+ *  inertia of its own (u-p) or with it (u-v-p), and the pressure of the water in the forces. */
 class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions {
  public:
   FixMPMPore(class LAMMPS *, int, char **);
@@ -97,6 +102,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
 
  private:
   MPMRows pressure;          // [n][1+dim] with its gradient
+  MPMRows inertia;           // [n][dim] flow with inertia, see MPMPoreMotion
   int initial_index = -1;    // of a variable
   double initial_value = 0.0;
   bool gradients_known = true;    // not yet where pressures were given
@@ -116,9 +122,11 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
   void warn_of_contact() const;
+  void init_motion(MPMField &);
   void set_initial_pressure();
   void evaluate_variables();
   void begin_step();
+  void take_off();
   void flow();
 };
 

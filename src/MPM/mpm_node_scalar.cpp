@@ -218,6 +218,25 @@ void MPMNodeScalar::values_to_points(const TakeValues &take)
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
 }
 
+void MPMNodeScalar::gradients_to_points(const Conduct &take)
+{
+  field.nodes.complete(value.data(), 1, 1);
+  double q[BATCH][4];
+  double *const tile = tiles[1].data();
+  for (const auto &block : field.map->active) {
+    if (box_of(block)[0] > box_of(block)[3]) continue;
+    kernels.load(tile, value.data(), field.grid.blocks[block.slot].slot, box_of(block));
+    visit(block, GRADIENT_SLOPES, nullptr,
+          [&](const auto &run, int first, int n, const auto &prepare) {
+            prepare();
+            kernels.get(stencil, tile, q[0]);
+            take(run, first, n, q);
+            return true;
+          });
+  }
+  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+}
+
 double MPMNodeScalar::memory_usage() const
 {
   double bytes = 0.0;

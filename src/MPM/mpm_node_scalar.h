@@ -73,6 +73,8 @@ class MPMNodeScalar {
   /** changes: give the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
   void values_to_points(const TakeValues &);
+  /** Gradients and values at points. */
+  void gradients_to_points(const Conduct &);
 
   double memory_usage() const;
 

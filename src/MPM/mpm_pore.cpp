@@ -14,7 +14,8 @@
      S dp/dt = - alpha div v - div w,   w = - k (grad p - rho_f g),   S = n/K_f + (alpha - n)/K_s,
 
    sigma' is the stress of the material, w the volume of water that flows through a unit of area, and k the mobility.
-   The acceleration of the water relative to that of the soil is left out, and that of both in w.
+   The acceleration of the water relative to that of the soil is left out, and that of both in w; with both it is mpm_pore_motion.cpp (u-v-p).
+   With Forchheimer's term, -(grad p - rho_f g) = w/k + b |w| w, which for the length of w is a quadratic equation.
 
    On nodes, with C_p = S_p V_p, and D the matrix of sum_p alpha V_p N_ip grad N_jp,
 
@@ -42,6 +43,7 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "material/material.h"
+#include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_node_sums.h"
@@ -61,17 +63,19 @@ static constexpr int AHEAD = BATCH;    // distance of prefetches, in points
 /* ---------------------------------------------------------------------- */
 
 MPMPore::MPMPore(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
-                 const MPMPoreSurface::Conditions &conditions, const double *gravity,
-                 double relax) :
+                 const MPMPoreSurface::Conditions &conditions, const double *gravity, double relax,
+                 bool moves) :
     Pointers(lmp),
     field(field), nodes(field), surface(lmp, field, conditions, water, gravity), water(water),
     gravity(gravity), relax(relax)
 {
+  if (moves) motion = std::make_unique<MPMPoreMotion>(lmp, field, water.density, gravity);
 }
 
 void MPMPore::init(const std::vector<MPMPoreSoil> &all)
 {
   soils.clear();
+  quadratic.clear();
   slowest = waves = least_storage = std::numeric_limits<double>::max();
   for (const auto *fix : field.materials)
     for (const auto &one : all)
@@ -79,6 +83,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
         const double storage = one.storage_at(1.0, water);
         const double unit = force->mvv2e * force->nktv2p;
         soils.push_back({fix, one});
+        if (!one.is_linear()) quadratic.resize(1);
         least_storage = std::min(least_storage, storage);
         slowest = std::min(slowest, one.permeability / (water.resistance * storage));
         waves = std::min(waves, one.biot / sqrt(storage * fix->material->density() * unit));
@@ -118,6 +123,30 @@ double MPMPore::mobility(const Soil &s, int i, double J, const double *formula) 
   return (given ? formula[i] : s.of.permeability_at(J)) / water.resistance;
 }
 
+/** Weight of the water, in pressure per length. */
+double MPMPore::weight(int d) const
+{
+  return water.density * gravity[d] * force->nktv2p;
+}
+
+MPMPoreMotion::Pores MPMPore::pores(const Soil &s, int i, double J, double mobility) const
+{
+  return {J * atom->vfrac[i], J, s.of.pores_at(J), 1.0 / mobility,
+          quadratic.empty() ? 0.0 : quadratic[i]};
+}
+
+/** Mobility for the flow through the surface: that of the gradient in the step before, as there it is not known
+ *  before the flow is. */
+double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, const double *row) const
+{
+  if (motion) return motion->response(i, pores(s, i, J, mobility));
+  if (quadratic.empty()) return mobility;
+  double square = 0.0;
+  for (int d = 0; d < field.lattice.dim; d++)
+    square += (row[1 + d] - weight(d)) * (row[1 + d] - weight(d));
+  return secant_mobility(mobility, quadratic[i], sqrt(square));
+}
+
 /* ---------------------------------------------------------------------- */
 
 void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
@@ -125,6 +154,8 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
   const int dim = field.lattice.dim;
   for (auto *list : {&capacity, &conductance, &mean, &squeezed}) list->resize(atom->nmax);
   in_forces.assign(atom->nmax, 0.0);
+  if (!quadratic.empty()) quadratic.resize(atom->nmax);
+  const double density = water.density * force->mvv2e * force->nktv2p;
   fastest = exchange = 0.0;
   nodes.points_to_nodes(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
@@ -137,12 +168,14 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           __builtin_prefetch(field.points->F[std::min(i + AHEAD, atom->nlocal - 1)]);
           const double J = field.points->jacobian(i), V = J * atom->vfrac[i];
           C[p] = V * s->of.storage_at(J, water);
-          K[p] = V * mobility(*s, i, J, formula);
+          const double k = mobility(*s, i, J, formula);
+          K[p] = V * k;
           in_forces[i] = s->of.biot * J;
           if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
-          points.volume[p] = K[p];
-          points.capacity[p] = C[p];
           const double *const mine = state[i];
+          if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J, density);
+          if (surface.any()) points.volume[p] = V * at_surface(*s, i, J, k, mine);
+          points.capacity[p] = C[p];
           points.row[p][3] = mine[0];
           points.row[p][0] = mine[1];
           points.row[p][1] = mine[2];
@@ -187,21 +220,50 @@ void MPMPore::find_gradients(const MPMRows &state, const double *formula)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPore::begin_step(const MPMRows &state, const double *formula)
+void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double *formula)
 {
   if (surface.any()) surface.find_places();
+  if (motion) motion->begin_step(flow);
   points_to_nodes(state, formula);
-  nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *values) {
-    for (int p = 0; p < n; p++) {
-      mean[first + p] = values[p];
-      in_forces[first + p] *= values[p];
-    }
-  });
+  const auto take = [&](int i, double value) {
+    mean[i] = value;
+    in_forces[i] *= value;
+  };
+  if (motion) {
+    nodes.gradients_to_points(
+        [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
+          for (int p = 0; p < n; p++) {
+            motion->set_gradient(first + p, q[p]);
+            take(first + p, q[p][3]);
+          }
+        });
+  } else {
+    nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *values) {
+      for (int p = 0; p < n; p++) take(first + p, values[p]);
+    });
+  }
   if (!surface.any()) return;
   // places at surfaces look at nodes of periodic images, too
   field.nodes.complete(nodes.capacity.data(), 1, 1);
   field.nodes.complete(nodes.volume.data(), 1, 1);
   exchange = surface.prepare(nodes, least_storage);
+  if (motion) surface.share_area(nodes);
+}
+
+void MPMPore::take_off()
+{
+  if (surface.any()) {
+    surface.find_push(nodes, of_flow);
+    motion->add_gradients(of_flow);
+  }
+  for (const auto &run : field.map->runs) {
+    const Soil *const s = soil(run.material);
+    for (int i = run.first; s && i < run.last; i++) {
+      const double J = field.points->jacobian(i);
+      motion->begin_point(i, pores(*s, i, J, conductance[i] / (J * atom->vfrac[i])));
+    }
+  }
+  motion->take_off();
 }
 
 /* ----------------------------------------------------------------------
@@ -246,17 +308,40 @@ void MPMPore::take_motion()
   });
 }
 
+void MPMPore::move_water()
+{
+  if (!motion) return;
+  motion->move();
+  if (!surface.any()) return;
+  motion->flow_at_nodes(
+      [this](int slot) {
+        return surface.is_near(slot);
+      },
+      of_flow);
+  surface.take_flow(of_flow);
+}
+
 void MPMPore::find_rates(std::vector<double> &inflow)
 {
-  double weight[3];    // of the water, in pressure per length
-  for (int d = 0; d < 3; d++) weight[d] = water.density * gravity[d] * force->nktv2p;
+  const int dim = field.lattice.dim;
+  const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
     double power[3] = {0.0, 0.0, 0.0};
     for (int p = 0; p < n; p++) {
-      for (int d = 0; d < 3; d++) {
-        q[p][d] = -conductance[first + p] * (q[p][d] - weight[d]);
-        power[d] += q[p][d] * weight[d];
+      const int i = first + p;
+      if (motion) {
+        motion->discharge(i, q[p]);
+      } else {
+        double K = conductance[i];
+        for (int d = 0; d < 3; d++) q[p][d] = along[d] - q[p][d];
+        if (!quadratic.empty() && K > 0.0) {
+          const double V = field.points->jacobian(i) * atom->vfrac[i];
+          const double size = sqrt(MPM_NS::dot(q[p], q[p]));
+          K = V * secant_mobility(K / V, quadratic[i], size);
+        }
+        for (int d = 0; d < 3; d++) q[p][d] *= K;
       }
+      for (int d = 0; d < dim; d++) power[d] += q[p][d] * along[d];
       q[p][3] = squeezed[first + p];
     }
     inflow[MPMPoreSurface::ENERGY] += power[0] + power[1] + power[2];
@@ -325,14 +410,18 @@ double MPMPore::wave_speed(int i, double c) const
   const Soil *const s = soil(field.material_of(i));
   if (!s) return c;
   const double J = field.points->jacobian(i), density = atom->rmass[i] / (J * atom->vfrac[i]);
-  const double more = s->of.biot * s->of.biot / s->of.storage_at(J, water);
+  const double storage = s->of.storage_at(J, water);
+  if (motion) return motion->wave_speed(c, density, s->of.biot, storage, s->of.pores_at(J));
+  const double more = s->of.biot * s->of.biot / storage;
   return sqrt(c * c + more / (density * force->mvv2e * force->nktv2p));
 }
 
 double MPMPore::memory_usage() const
 {
-  double bytes = nodes.memory_usage() + surface.memory_usage();
-  for (const auto *list : {&in_forces, &capacity, &conductance, &mean, &squeezed})
+  double bytes =
+      nodes.memory_usage() + surface.memory_usage() + (motion ? motion->memory_usage() : 0.0);
+  for (const auto *list :
+       {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic, &of_flow})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -10,11 +10,13 @@
 #define LMP_MPM_PORE_H
 
 #include "mpm_node_scalar.h"
+#include "mpm_pore_motion.h"
 #include "mpm_pore_soil.h"
 #include "mpm_pore_surface.h"
 #include "mpm_rows.h"
 #include "pointers.h"
 
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -29,10 +31,12 @@ class MPMPore : protected Pointers {
   MPMField &field;
   MPMNodeScalar nodes;
   MPMPoreSurface surface;
+  std::unique_ptr<MPMPoreMotion>
+      motion;    ///< null: water has no inertia relative to the soil (u-p)
 
   /** gravity: force per mass that the water has, too. */
   MPMPore(class LAMMPS *, MPMField &, const MPMPoreWater &, const MPMPoreSurface::Conditions &,
-          const double *gravity, double relax);
+          const double *gravity, double relax, bool moves);
 
   /** Start of a run: the soils of this field. */
   void init(const std::vector<MPMPoreSoil> &);
@@ -42,7 +46,7 @@ class MPMPore : protected Pointers {
   void find_gradients(const MPMRows &state, const double *formula);
   /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n] permeabilities of
    *  points, or null. */
-  void begin_step(const MPMRows &state, const double *formula);
+  void begin_step(const MPMRows &state, const MPMRows &flow, const double *formula);
   /** [n] J times the pressure in internal forces. */
   const double *pressure_in_forces() const { return in_forces.data(); }
   /** See MPMPhysics::surface_force(). */
@@ -50,6 +54,10 @@ class MPMPore : protected Pointers {
                           std::vector<double> &force) const;
   /** The velocities of the step are known. */
   void take_motion();
+  /** If the water has inertia: nodes have mass, momentum, and forces, summed over ranks. */
+  void take_off();
+  /** The same: after take_motion(). */
+  void move_water();
   /** Rates of the pressures of nodes; adds the volumes of water that come in for each time, and the power of what
    *  comes in and of the weight of water that flows. */
   void find_rates(std::vector<double> &inflow);
@@ -90,10 +98,15 @@ class MPMPore : protected Pointers {
   std::vector<double> conductance;    // [n] mobility times volume
   std::vector<double> mean;           // [n] pressure by the nodes, at the start
   std::vector<double> squeezed;       // [n] rate of the volume of water that the motion drives out
+  std::vector<double> quadratic;      // [n] of the resistance, if there is any
+  std::vector<double> of_flow;        // [node][8] next to the surface
 
   void points_to_nodes(const MPMRows &state, const double *formula);
   const Soil *soil(const FixMPMMaterial *) const;
   double mobility(const Soil &, int i, double J, const double *formula) const;
+  double weight(int d) const;
+  MPMPoreMotion::Pores pores(const Soil &, int i, double J, double mobility) const;
+  double at_surface(const Soil &, int i, double J, double mobility, const double *row) const;
 };
 
 }    // namespace LAMMPS_NS

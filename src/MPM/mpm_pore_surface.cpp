@@ -50,6 +50,7 @@ enum { VOLUME = 3, GRADIENT = 4 };    // reals of a record
 static constexpr double INSET = 0.5;    // of places below the surface, in node spacings
 // gaps between material and a face of the box up to which it touches, and from which on not
 static constexpr double TOUCHES = 0.25, IS_APART = 0.5;
+static constexpr double LEAK = 0.5;       // of what a step makes from rest, for water with inertia
 static constexpr double FULL = 0.97;      // of a cell: sums over points are not exactly integrals
 static constexpr double ENOUGH = 0.01;    // of a cell at a node, for its whole weight
 static constexpr double MOSTLY = 0.5;     // part of a place that has water, for its whole area
@@ -174,11 +175,17 @@ double MPMPoreSurface::pressure_outside(const MPMPoreCondition &c, const double 
 }
 
 /** at: on the surface; normal: out of the soil. */
-void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, const double *at,
-                               const double *normal)
+void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, double touch,
+                               const double *at, const double *normal)
 {
   const auto &condition = conditions[part];
-  Place place = {part, area, pressure_outside(condition, at), 0.0, 0, 0, 0, 0};
+  Place place = {};
+  place.part = part;
+  place.area = area;
+  place.outside = place.outside_at = pressure_outside(condition, at);
+  place.touch = touch;
+  std::copy_n(at, 3, place.at);
+  std::copy_n(normal, 3, place.normal);
   double x[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < field.lattice.dim; d++) {
     const double step = -INSET * field.lattice.h * normal[d];
@@ -250,7 +257,7 @@ void MPMPoreSurface::find_places()
         at[axis] = wall;
         normal[axis] = sign;
         const double part = std::min(1.0, out / function(depth));
-        add_place(stencil, face, touch * part * (1.0 - fabs(depth)) * side, at, normal);
+        add_place(stencil, face, touch * part * (1.0 - fabs(depth)) * side, touch, at, normal);
       }
       if (conditions[FREE].kind == MPMPoreCondition::CLOSED) continue;
       const double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
@@ -263,7 +270,7 @@ void MPMPoreSurface::find_places()
         at[d] = x[d] + depth * h * normal[d];
       }
       const double part = std::min(1.0, length / function(depth));
-      add_place(stencil, FREE, part * (1.0 - fabs(depth)) * side, at, normal);
+      add_place(stencil, FREE, part * (1.0 - fabs(depth)) * side, 1.0, at, normal);
     }
   }
 }
@@ -330,22 +337,112 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
   return sqrt(taken * given);
 }
 
+/* ----------------------------------------------------------------------
+   What an even flow brings to a node by its sum over points, w . g_i, must go through the surface there: else pressures of nodes
+   beyond the surface grow until they stop the flow next to it. So each place takes from its nodes their g_i instead of the values of their
+   functions, shared with other places by these. Where they have their mean place is where the pressure outside counts
+------------------------------------------------------------------------- */
+
+void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)
+{
+  const auto &grid = field.grid;
+  const auto &lattice = field.lattice;
+  const int nreal = field.pic.nreal;
+  std::vector<double> all(grid.nnodes(), 0.0);
+  const auto visit = [&](const auto &f) {
+    for (auto &place : places) {
+      if (!(place.area > 0.0)) continue;
+      for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+        if (scalar.capacity[node[k]] > 0.0)
+          f(place, k);
+        else
+          weight[k] = 0.0;
+    }
+  };
+  visit([&](Place &place, int k) {
+    all[node[k]] += place.area * weight[k];
+  });
+  field.nodes.sum(all.data(), 1, 0, 1);
+  field.nodes.complete(all.data(), 1, 1);
+  visit([&](Place &place, int k) {
+    double out = 0.0;
+    for (int d = 0; d < lattice.dim; d++)
+      out += nodes[nreal * node[k] + GRADIENT + d] * place.normal[d];
+    const double share = all[node[k]] > 0.0 ? place.area * weight[k] / all[node[k]] : 0.0;
+    weight[k] = std::max(0.0, out) * place.touch * share;
+  });
+  for (auto &place : places) {
+    if (!(place.area > 0.0)) continue;
+    double area = 0.0;
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++) area += weight[k];
+    if (conditions[place.part].kind != MPMPoreCondition::FLUX || area == 0.0) place.area = area;
+    for (int k = place.first_at; k < place.first_at + place.n_at && area > 0.0; k++) {
+      weight[k] /= area;
+      int index[3] = {0, 0, 0};
+      grid.node_index(grid.blocks[node[k] / NODES_PER_BLOCK], node[k] % NODES_PER_BLOCK, index);
+      for (int d = 0; d < lattice.dim; d++)
+        place.outside_at += weight[k] * water.density * force->nktv2p * gravity[d] *
+            (lattice.origin[d] + index[d] * lattice.h - place.at[d]);
+    }
+  }
+}
+
+double MPMPoreSurface::at_surface(const MPMNodeScalar &scalar, const Place &place) const
+{
+  double p = 0.0;
+  for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+    p += weight[k] * scalar.value[node[k]];
+  return p;
+}
+
+void MPMPoreSurface::find_push(const MPMNodeScalar &scalar, std::vector<double> &of_nodes) const
+{
+  const int nreal = field.pic.nreal;
+  of_nodes.assign(nreal * field.grid.nnodes(), 0.0);
+  for (const auto &place : places) {
+    if (conditions[place.part].kind == MPMPoreCondition::FLUX) continue;
+    const double ahead = place.area * (at_surface(scalar, place) - place.outside_at);
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
+      const double V = nodes[nreal * node[k] + VOLUME];
+      if (!(weight[k] > 0.0 && V > 0.0)) continue;
+      // the gradient is that of a fall to the pressure outside
+      for (int d = 0; d < 3; d++)
+        of_nodes[nreal * node[k] + d] -= weight[k] * ahead / V * place.normal[d];
+    }
+  }
+  field.nodes.sum(of_nodes.data(), nreal, 0, 3);
+}
+
+void MPMPoreSurface::take_flow(const std::vector<double> &of_nodes)
+{
+  const int nreal = field.pic.nreal;
+  flow_is_given = true;
+  for (auto &place : places) {
+    double out = 0.0;
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
+      const double V = nodes[nreal * node[k] + VOLUME], *const q = &of_nodes[nreal * node[k]];
+      if (!(weight[k] > 0.0 && V > 0.0)) continue;
+      for (int d = 0; d < 3; d++) out += weight[k] * q[d] / V * place.normal[d];
+    }
+    place.inflow = -place.area * out;
+  }
+}
+
 void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflow) const
 {
   for (const auto &place : places) {
     const auto &condition = conditions[place.part];
     double Q = place.area * condition.now;
+    const double p = at_surface(scalar, place);
     if (condition.kind != MPMPoreCondition::FLUX) {
       double inside = 0.0;
       for (int k = place.first; k < place.first + place.n; k++)
         inside += weight[k] * scalar.value[node[k]];
-      Q = place.conductance * (place.outside - inside);
+      Q = flow_is_given ? place.inflow + LEAK * place.conductance * (place.outside_at - p)
+                        : place.conductance * (place.outside - inside);
     }
-    double p = 0.0;
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
       scalar.rate[node[k]] += weight[k] * Q;
-      p += weight[k] * scalar.value[node[k]];
-    }
     inflow[place.part] += Q;
     inflow[ENERGY] += Q * p;
   }

@@ -57,6 +57,13 @@ class MPMPoreSurface : protected Pointers {
   /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest of a soil.
    *  Returns a bound of the rates of exchange at this rank's nodes [1/time]. Collective. */
   double prepare(const MPMNodeScalar &, double least_storage);
+  /** For water with inertia, after prepare(): which nodes the surface belongs to. Collective. */
+  void share_area(const MPMNodeScalar &);
+  /** Water with inertia: [node][8] what drives it, gradients of pressure, by pressures of nodes. For MPMPoreMotion. */
+  void find_push(const MPMNodeScalar &, std::vector<double> &of_nodes) const;
+  /** What then flows out, [node][8]: sums of volume times flow, instead of what pressures drive. */
+  void take_flow(const std::vector<double> &of_nodes);
+  bool is_near(int slot) const { return near[slot]; }
   /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in for each
    *  time, with the energy that this brings. */
   void add_rates(MPMNodeScalar &, std::vector<double> &inflow) const;
@@ -66,10 +73,14 @@ class MPMPoreSurface : protected Pointers {
  private:
   struct Place {
     int part;
-    double area, outside;    // pressure at which nothing flows
-    double conductance;      // volume of water for a difference in pressure, and time
-    int first, n;            // nodes of the place where the pressure is taken
-    int first_at, n_at;      // nodes of the surface next to it, where water comes in
+    double area, outside;       // pressure at which nothing flows
+    double conductance;         // volume of water for a difference in pressure, and time
+    int first, n;               // nodes of the place where the pressure is taken
+    int first_at, n_at;         // nodes of the surface next to it, where water comes in
+    double at[3], normal[3];    // on the surface, out of the soil
+    double touch;               // part of the surface there that is of this place
+    double outside_at;          // pressure outside at the surface itself
+    double inflow;              // of water with inertia, volume for each time
   };
   MPMField &field;
   const Conditions &conditions;
@@ -82,14 +93,17 @@ class MPMPoreSurface : protected Pointers {
   std::vector<double> nodes;    // records with volume and its gradient
   std::vector<double>
       rows;    // [2*node] sums of conductances where pressures are taken, and where water comes in
-  std::vector<char> near;    // [block]
+  std::vector<char> near;        // [block]
+  bool flow_is_given = false;    // by take_flow()
 
   void find_blocks_near();
   void map_volume();
   double function(double depth) const;
   double pressure_outside(const MPMPoreCondition &, const double *x) const;
   int add_nodes(class MPMStencil &, const double *x);
-  void add_place(class MPMStencil &, int part, double area, const double *at, const double *normal);
+  void add_place(class MPMStencil &, int part, double area, double touch, const double *at,
+                 const double *normal);
+  double at_surface(const MPMNodeScalar &, const Place &) const;
   double normalize(int first, int n, double enough, const std::vector<double> &capacity);
 };
 
