@@ -81,6 +81,76 @@ Options MPMPoreOptions::declare(int dim)
         soils.back().grains = biot.second;
       })
       .standard("1, rigid grains");
+  const auto of_soil = [this](const char *keyword, bool of_retention) {
+    if (soils.empty())
+      without_soil = keyword;
+    else if (of_retention && !soils.back().retention.can_dry())
+      without_retention = keyword;
+    else
+      return true;
+    return false;
+  };
+  const auto per_pressure = [this]() {
+    return number(retention.alpha, "alpha", POSITIVE, "1/pressure",
+                  "rate at which suction empties the pores");
+  };
+  o.add("retention",
+        {word(
+            retention.law,
+            {{"vangenuchten",
+              MPMRetention::VAN_GENUCHTEN,
+              "(1 + (alpha s)^n)^(1/n - 1) at the suction s (van Genuchten)",
+              {per_pressure(), number(retention.n, "n", {1.0, UNBOUNDED, false}, "1", "exponent")}},
+             {"gardner", MPMRetention::GARDNER, "exp(-alpha s) (Gardner)", {per_pressure()}}})},
+        "effective saturation of the soil before this keyword, which can dry")
+      .then([this, of_soil] {
+        if (!of_soil("retention", false)) return;
+        auto &r = soils.back().retention;
+        r.law = retention.law;
+        r.alpha = retention.alpha;
+        r.n = retention.n;
+      })
+      .standard("none: pores are always full");
+  o.add("saturation",
+        {number(retention.least, "Sr", {0.0, 1.0, true, false}, "1", "residual saturation"),
+         number(retention.most, "Ss", {0.0, 1.0, false, true}, "1", "saturation without suction")},
+        "range of the saturation of the soil before this keyword")
+      .then([this, of_soil] {
+        if (!of_soil("saturation", true)) return;
+        soils.back().retention.least = retention.least;
+        soils.back().retention.most = retention.most;
+      })
+      .standard("0 1");
+  o.add("relative",
+        {word(retention.flow,
+              {{"mualem", MPMRetention::MUALEM, "by the model of Mualem for vangenuchten"},
+               {"power",
+                MPMRetention::POWER,
+                "",
+                {number(retention.power, "e", NOT_NEGATIVE, "1",
+                        "power of the effective saturation")}}})},
+        "relative permeability of the soil before this keyword")
+      .then([this, of_soil] {
+        if (!of_soil("relative", true)) return;
+        soils.back().retention.flow = retention.flow;
+        soils.back().retention.power = retention.power;
+      })
+      .standard("mualem for vangenuchten, power 1 for gardner");
+  o.add("bishop",
+        {word(
+            [this] {
+              return retention.bishop_effective ? 1 : 0;
+            },
+            [this](int value) {
+              retention.bishop_effective = value;
+            },
+            {{"saturation", 0, "the saturation"}, {"effective", 1, "the effective saturation"}})},
+        "share of the pressure of water in the effective stress of the soil before this keyword")
+      .then([this, of_soil] {
+        if (of_soil("bishop", true))
+          soils.back().retention.bishop_effective = retention.bishop_effective;
+      })
+      .standard("saturation");
   for (int part = 0; part < MPMPoreSurface::NPART; part++) {
     MPMPoreCondition &c = conditions[part];
     const bool free = part == MPMPoreSurface::FREE;
@@ -89,17 +159,22 @@ Options MPMPoreOptions::declare(int dim)
       return std::vector<OptionValue>{
           variables(&c.value, 1, name, unit, meaning + ", can be a variable")};
     };
-    o.add(PART_NAME[part],
-          {word(c.kind,
-                {{"closed", MPMPoreCondition::CLOSED,
-                  std::string("no water goes through ") +
-                      (free ? "free surfaces of the soil" : "this face of the box")},
-                 {"pressure", MPMPoreCondition::PRESSURE, "",
-                  of("p", "pressure", "pressure of the water outside")},
-                 {"head", MPMPoreCondition::HEAD, "",
-                  of("z", "distance", "height of the water table outside, against fix gravity")},
-                 {"flux", MPMPoreCondition::FLUX, "",
-                  of("q", "velocity", "volume of water that comes in for each area and time")}})});
+    o.add(
+        PART_NAME[part],
+        {word(c.kind,
+              {{"closed", MPMPoreCondition::CLOSED,
+                std::string("no water goes through ") +
+                    (free ? "free surfaces of the soil" : "this face of the box")},
+               {"pressure", MPMPoreCondition::PRESSURE, "water outside has a pressure",
+                of("p", "pressure", "pressure of the water outside")},
+               {"head", MPMPoreCondition::HEAD, "water outside stands at rest up to a height",
+                of("z", "distance", "height of the water table outside, against fix gravity")},
+               {"flux", MPMPoreCondition::FLUX, "water comes in",
+                of("q", "velocity", "volume of water that comes in for each area and time")},
+               {"rain", MPMPoreCondition::RAIN, "water falls; what the soil does not take runs off",
+                of("q", "velocity", "volume of water that falls for each area and time")},
+               {"seepage", MPMPoreCondition::SEEPAGE,
+                "water leaves where its pressure is above that of the air, and none comes in"}})});
   }
   o.add(
       "initial",
@@ -115,6 +190,10 @@ Options MPMPoreOptions::declare(int dim)
         geostatic = true;
       })
       .standard("none");
+  o.add("suction",
+        {number(most_suction, "s", NOT_NEGATIVE, "pressure",
+                "greatest suction of points above the water table of geostatic")})
+      .standard("that of water at rest");
   o.add("relax",
         {number(relax, "R", NOT_NEGATIVE, "1",
                 "rate at which points take the pressure of the nodes, in the rate at which waves "
@@ -123,13 +202,23 @@ Options MPMPoreOptions::declare(int dim)
   o.refuse([=] {
     OptionRules rules = {{biot_alone, "biot", "needs a soil before it"},
                          {geostatic && initial != "0.0", "geostatic",
-                          "gives points their pressure: leave out initial"}};
+                          "gives points their pressure: leave out initial"},
+                         {most_suction >= 0.0 && !geostatic, "suction", "needs geostatic"},
+                         {!without_soil.empty(), without_soil, "needs a soil before it"},
+                         {!without_retention.empty(), without_retention,
+                          "needs the retention of the soil before it"}};
     for (int face = 4; face < 6; face++)
       rules.push_back({dim == 2 && conditions[face].kind != MPMPoreCondition::CLOSED,
                        PART_NAME[face], "does not exist in 2d"});
     for (const auto &soil : soils) {
       rules.push_back({soil.biot < soil.porosity, "biot",
                        "must not be below the porosity of the soil: {biot}"});
+      const auto &r = soil.retention;
+      rules.push_back({r.can_dry() && (soil.biot < 1.0 || soil.grains > 0.0), "retention",
+                       "needs rigid grains: leave out biot for this soil"});
+      rules.push_back({r.least >= r.most, "saturation", "must have Sr below Ss"});
+      rules.push_back({r.law == MPMRetention::GARDNER && r.flow == MPMRetention::MUALEM, "relative",
+                       "mualem is for retention vangenuchten: use power with gardner"});
       rules.push_back({soil.law == MPMPoreSoil::FORMULA && soil.formula.compare(0, 2, "v_") != 0,
                        "soil", "needs a variable, v_name, for its formula"});
     }
@@ -160,6 +249,10 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   state.declare(pressure, "mpm/pore:pressure", 1 + domain->dimension, [this](int, double *row) {
     row[0] = initial_value;
   });
+  if (can_dry())
+    state.declare(content, "mpm/pore:water", [](int, double *row) {
+      row[0] = -1.0;
+    });
   keep_arrays();
   scalar_flag = vector_flag = 1;
   size_vector = MPMPoreSurface::NPART;
@@ -210,6 +303,12 @@ void FixMPMPore::init()
     if (!known.insert(soil.material).second)
       error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore has soil {} twice", soil.material);
     fix->mass_varies = true;
+    const double grains = fix->material->density() - soil.porosity * water.density;
+    if (soil.retention.can_dry() && !(grains > 0.0))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "The density of fix mpm/material {} is below that of the water in its pores: fix "
+                 "mpm/pore takes it for that of the soil with full pores",
+                 soil.material);
     if (soil.law != MPMPoreSoil::FORMULA) continue;
     const int index = input->variable->find(soil.formula.c_str() + 2);
     if (index < 0 || !input->variable->atomstyle(index))
@@ -249,7 +348,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   for (auto *field : plan.fields) {
     fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax));
     auto &mine = *fields.back();
-    mine.init(soils);
+    mine.init(soils, content);
     const auto &o = field->options;
     refuse_field(
         lmp, *this, *field,
@@ -287,13 +386,17 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 /* ---------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   pores are full of water, also above its table, where it hangs on the air
+   pores of soils without retention are full of water, also above its table, where it hangs on the air
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::setup_points()
 {
-  if (!geostatic || has_state) return;
+  const bool at_rest = geostatic && !has_state;
   has_state = true;
+  if (!at_rest) {
+    weigh_points();
+    return;
+  }
   if (fields.size() != 1)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore geostatic needs one fix mpm, not {}",
                fields.size());
@@ -309,14 +412,28 @@ void FixMPMPore::setup_points()
   const double weight = water.density * where.weight * force->nktv2p;
   for (int i = 0; i < atom->nlocal; i++) {
     std::fill_n(pressure[i], 1 + domain->dimension, 0.0);
-    if (!soil_of(i)) continue;
+    const MPMPoreSoil *const soil = soil_of(i);
+    if (!soil) continue;
     pressure[i][0] = weight * (table - ground.height(i));
     pressure[i][1 + where.axis] = -weight * where.up;
+    if (most_suction < 0.0 || pressure[i][0] >= -most_suction || !soil->retention.can_dry())
+      continue;
+    pressure[i][0] = -most_suction;
+    pressure[i][1 + where.axis] = 0.0;
   }
+  weigh_points();
   ground.set_stress(K0, [&](int i) {
     const auto *const soil = soil_of(i);
-    return soil ? soil->biot * pressure[i][0] : 0.0;
+    if (!soil) return 0.0;
+    return soil->biot * soil->retention.at(pressure[i][0]).bishop * pressure[i][0];
   });
+}
+
+/** The water of points that are new follows from their pressure. */
+void FixMPMPore::weigh_points()
+{
+  if (!can_dry()) return;
+  for (const auto &mine : fields) mine->weigh_points(pressure);
 }
 
 void FixMPMPore::find_gravity()
@@ -338,7 +455,12 @@ void FixMPMPore::evaluate_variables()
   bool any = formulas;
   for (const auto &c : conditions) any = any || !c.value.variable.empty();
   evaluate_in_step(lmp, any, [&] {
-    for (auto &c : conditions) c.now = evaluate(lmp, c.value);
+    for (auto &c : conditions) {
+      c.now = evaluate(lmp, c.value);
+      if (c.kind == MPMPoreCondition::RAIN && c.now < 0.0)
+        error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore {} rain is {}: it must not be negative",
+                   PART_NAME[&c - conditions.data()], c.now);
+    }
     if (!formulas) return;
     formula_values.assign(atom->nmax, 0.0);
     std::vector<double> values(atom->nmax);
@@ -398,7 +520,7 @@ void FixMPMPore::flow()
 
 double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
 {
-  const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(tag));
+  const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(pressure, tag));
   return most_stages < 3 ? 0.5 * limit : MPMSuperStep::reach(most_stages) * limit;
 }
 
@@ -437,7 +559,7 @@ void FixMPMPore::account(double *values) const
     const MPMPoreSoil *const soil = soil_of(i);
     if (!soil) continue;
     const double J = points->jacobian(i), p = pressure[i][0];
-    sum += 0.5 * J * atom->vfrac[i] * soil->storage_at(J, water) * p * p;
+    sum += J * atom->vfrac[i] * MPMPoreMoisture::energy(*soil, J, p, water);
   }
   values[0] += sum / force->nktv2p;
   values[1] += came[MPMPoreSurface::ENERGY] / force->nktv2p;
@@ -471,16 +593,25 @@ const MPMPoreSoil *FixMPMPore::soil_of(int i) const
   return nullptr;
 }
 
+bool FixMPMPore::can_dry() const
+{
+  return std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
+    return soil.retention.can_dry();
+  });
+}
+
 std::vector<std::string> FixMPMPore::quantities() const
 {
-  return {"pore", "porosity"};
+  return {"pore", "porosity", "saturation"};
 }
 
 double FixMPMPore::quantity(int k, int i) const
 {
   const MPMPoreSoil *const soil = soil_of(i);
   if (!soil) return 0.0;
-  return k == 0 ? pressure[i][0] : soil->porosity_at(MPMPoints::get(atom)->jacobian(i));
+  if (k == 0) return pressure[i][0];
+  if (k == 2) return soil->retention.at(pressure[i][0]).saturation;
+  return soil->porosity_at(MPMPoints::get(atom)->jacobian(i));
 }
 
 double FixMPMPore::memory_usage()

@@ -35,6 +35,7 @@ struct MPMPoreOptions {
   std::string initial = "0.0";     ///< pressure of points, a number or v_name
   bool geostatic = false;          ///< at rest under the weight at first
   double K0 = 0.0, table = 0.0;    ///< with this ratio of stresses, and height of the water table
+  double most_suction = -1.0;      ///< at first, positive; negative: no limit
   double relax = 0.2;
   int most_stages = 64;
 
@@ -45,6 +46,8 @@ struct MPMPoreOptions {
   MPMPoreSoil next;
   std::pair<double, double> biot = {0.0, 0.0};
   bool biot_alone = false;
+  MPMRetention retention;
+  std::string without_soil, without_retention;    // keywords that have come too early
 };
 
 /** Pore water in the points of soils, which move with one velocity for both (u-p): flow by Darcy's law, and the
@@ -67,7 +70,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
   {
-    return of(field).wave_speed(i, c);
+    return of(field).wave_speed(i, pressure[i][0], c);
   }
   const double *pressure_in_forces(const MPMField &field) const override
   {
@@ -83,8 +86,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   double quantity(int k, int i) const override;
 
  private:
-  MPMRows pressure;          // [n][1+dim] with its gradient
-  int initial_index = -1;    // of a variable
+  MPMRows pressure;             // [n][1+dim] with its gradient
+  double *content = nullptr;    // [n] volume of water, where a soil can dry (MPMPoreSuction)
+  int initial_index = -1;       // of a variable
   double initial_value = 0.0;
   bool gradients_known = true;    // not yet where pressures were given
   bool has_state = false;         // of an earlier run: what points have at first is behind them
@@ -102,7 +106,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
 
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
+  bool can_dry() const;
   void set_initial_pressure();
+  void weigh_points();
   void find_gravity();
   void evaluate_variables();
   void begin_step();

@@ -9,6 +9,8 @@
 #ifndef LMP_MPM_PORE_SOIL_H
 #define LMP_MPM_PORE_SOIL_H
 
+#include "mpm_retention.h"
+
 #include <algorithm>
 #include <string>
 
@@ -32,6 +34,7 @@ struct MPMPoreSoil {
   std::string formula;    ///< variable, with v_
   double biot = 1.0;      ///< coefficient of Biot
   double grains = 0.0;    ///< bulk modulus of the grains [pressure]; 0: rigid
+  MPMRetention retention;
 
   /** Grains keep their volume. */
   double porosity_at(double J) const { return 1.0 - (1.0 - porosity) / J; }
@@ -46,12 +49,15 @@ struct MPMPoreSoil {
     return law == SQUARED ? permeability * J * J : permeability;
   }
 
-  /** Volume of water that a unit of volume takes up for a unit of pressure. Where there are next to no pores left, it
-   *  stays that of a hundredth of the initial porosity. */
+  /** Porosity that stores water: where there are next to no pores left, a hundredth of the initial one. */
+  double storing_porosity_at(double J) const { return std::max(porosity_at(J), 0.01 * porosity); }
+
+  /** Volume of water that a unit of volume takes up for a unit of pressure, when pores are full. */
   double storage_at(double J, const MPMPoreWater &water) const
   {
-    const double n = std::max(porosity_at(J), 0.01 * porosity);
-    return n / water.bulk + (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
+    const double n = storing_porosity_at(J);
+    return retention.most * n / water.bulk +
+        (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
   }
 };
 

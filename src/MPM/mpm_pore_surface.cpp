@@ -41,6 +41,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -72,8 +73,9 @@ bool MPMPoreSurface::any() const
   });
 }
 
-void MPMPoreSurface::init()
+void MPMPoreSurface::init(bool soil_dries)
 {
+  dries = soil_dries;
   profile = std::make_unique<MPMNodeProfile>(field);
 }
 
@@ -163,6 +165,7 @@ double MPMPoreSurface::function(double depth) const
 
 double MPMPoreSurface::pressure_outside(const MPMPoreCondition &c, const double *x) const
 {
+  if (c.kind == MPMPoreCondition::SEEPAGE || c.kind == MPMPoreCondition::RAIN) return 0.0;
   if (c.kind != MPMPoreCondition::HEAD) return c.now;
   double size = 0.0, along = 0.0;
   for (int d = 0; d < 3; d++) {
@@ -178,7 +181,11 @@ void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, const
                                const double *normal)
 {
   const auto &condition = conditions[part];
-  Place place = {part, area, pressure_outside(condition, at), 0.0, 0, 0, 0, 0};
+  constexpr double ANY = std::numeric_limits<double>::max();
+  Place place = {part, area, pressure_outside(condition, at), 0.0, ANY, 0, 0, 0, 0};
+  if (condition.kind == MPMPoreCondition::RAIN) place.most = condition.now;
+  const bool air = condition.kind == MPMPoreCondition::HEAD && dries && place.outside == 0.0;
+  if (condition.kind == MPMPoreCondition::SEEPAGE || air) place.most = 0.0;
   double x[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < field.lattice.dim; d++) {
     const double step = -INSET * field.lattice.h * normal[d];
@@ -284,26 +291,36 @@ double MPMPoreSurface::normalize(int first, int n, double enough,
   return sum;
 }
 
-double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage)
+double MPMPoreSurface::suction_outside(int part) const
+{
+  const auto &c = conditions[part];
+  return c.kind == MPMPoreCondition::PRESSURE ? std::min(0.0, c.now) : 0.0;
+}
+
+double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage, const Wet *wet)
 {
   const double cell = field.lattice.cell_volume();
+  const auto &capacity = wet ? wet->capacity : scalar.capacity;
   double fastest = 0.0;
   for (auto &place : places) {
     double storage = 0.0;
     for (int k = place.first; k < place.first + place.n; k++) {
       const double V = nodes[node[k] * field.pic.nreal + VOLUME];
-      if (V > ENOUGH * cell) storage = std::max(storage, scalar.capacity[node[k]] / V);
+      if (V > ENOUGH * cell) storage = std::max(storage, capacity[node[k]] / V);
     }
     // the surface may be that of another material, without water
-    const double inside = normalize(place.first, place.n, 1.0e-300, scalar.capacity);
+    const double inside = normalize(place.first, place.n, 1.0e-300, capacity);
     const double at =
-        normalize(place.first_at, place.n_at, ENOUGH * least_storage * cell, scalar.capacity);
+        normalize(place.first_at, place.n_at, ENOUGH * least_storage * cell, capacity);
     const bool has_water = storage > 0.0 && inside > 0.0 && at > 0.0;
     place.area *= has_water ? std::min(1.0, at / MOSTLY) : 0.0;
+    const std::vector<double> *outer = nullptr;
+    if (wet) outer = &wet->conductance[suction_outside(place.part) < 0.0 ? 1 + place.part : 0];
     double K = 0.0, C = 0.0, response = 0.0;
     for (int k = place.first; k < place.first + place.n && has_water; k++) {
-      K += weight[k] * scalar.volume[node[k]];
-      C += weight[k] * scalar.capacity[node[k]];
+      const double inner = scalar.volume[node[k]];
+      K += weight[k] * (outer ? 0.5 * (inner + (*outer)[node[k]]) : inner);
+      C += weight[k] * capacity[node[k]];
       for (int j = place.first_at; j < place.first_at + place.n_at; j++)
         if (node[j] == node[k] && weight[j] > 0.0)
           response += weight[j] * weight[k] / scalar.capacity[node[k]];
@@ -326,7 +343,7 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
       double inside = 0.0;
       for (int k = place.first; k < place.first + place.n; k++)
         inside += weight[k] * scalar.value[node[k]];
-      Q = place.conductance * (place.outside - inside);
+      Q = std::min(place.conductance * (place.outside - inside), place.area * place.most);
     }
     double p = 0.0;
     for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
