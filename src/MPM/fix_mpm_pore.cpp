@@ -108,6 +108,76 @@ Options MPMPoreOptions::declare(int dim)
         {word(formulation,
               {{"u-p", U_P, "the water has no inertia relative to the soil: slow flow"},
                {"u-v-p", U_V_P, "it has: fast loads, and soils of high permeability"}})});
+  const auto of_soil = [this](const char *keyword, bool of_retention) {
+    if (soils.empty())
+      without_soil = keyword;
+    else if (of_retention && !soils.back().retention.can_dry())
+      without_retention = keyword;
+    else
+      return true;
+    return false;
+  };
+  const auto per_pressure = [this]() {
+    return number(retention.alpha, "alpha", POSITIVE, "1/pressure",
+                  "rate at which suction empties the pores");
+  };
+  o.add("retention",
+        {word(
+            retention.law,
+            {{"vangenuchten",
+              MPMRetention::VAN_GENUCHTEN,
+              "(1 + (alpha s)^n)^(1/n - 1) at the suction s (van Genuchten)",
+              {per_pressure(), number(retention.n, "n", {1.0, UNBOUNDED, false}, "1", "exponent")}},
+             {"gardner", MPMRetention::GARDNER, "exp(-alpha s) (Gardner)", {per_pressure()}}})},
+        "effective saturation of the soil before this keyword, which can dry")
+      .then([this, of_soil] {
+        if (!of_soil("retention", false)) return;
+        auto &r = soils.back().retention;
+        r.law = retention.law;
+        r.alpha = retention.alpha;
+        r.n = retention.n;
+      })
+      .standard("none: pores are always full");
+  o.add("saturation",
+        {number(retention.least, "Sr", {0.0, 1.0, true, false}, "1", "residual saturation"),
+         number(retention.most, "Ss", {0.0, 1.0, false, true}, "1", "saturation without suction")},
+        "range of the saturation of the soil before this keyword")
+      .then([this, of_soil] {
+        if (!of_soil("saturation", true)) return;
+        soils.back().retention.least = retention.least;
+        soils.back().retention.most = retention.most;
+      })
+      .standard("0 1");
+  o.add("relative",
+        {word(retention.flow,
+              {{"mualem", MPMRetention::MUALEM, "by the model of Mualem for vangenuchten"},
+               {"power",
+                MPMRetention::POWER,
+                "",
+                {number(retention.power, "e", NOT_NEGATIVE, "1",
+                        "power of the effective saturation")}}})},
+        "relative permeability of the soil before this keyword")
+      .then([this, of_soil] {
+        if (!of_soil("relative", true)) return;
+        soils.back().retention.flow = retention.flow;
+        soils.back().retention.power = retention.power;
+      })
+      .standard("mualem for vangenuchten, power 1 for gardner");
+  o.add("bishop",
+        {word(
+            [this] {
+              return retention.bishop_effective ? 1 : 0;
+            },
+            [this](int value) {
+              retention.bishop_effective = value;
+            },
+            {{"saturation", 0, "the saturation"}, {"effective", 1, "the effective saturation"}})},
+        "share of the pressure of water in the effective stress of the soil before this keyword")
+      .then([this, of_soil] {
+        if (of_soil("bishop", true))
+          soils.back().retention.bishop_effective = retention.bishop_effective;
+      })
+      .standard("saturation");
   for (int part = 0; part < MPMPoreSurface::NPART; part++) {
     MPMPoreCondition &c = conditions[part];
     const bool free = part == MPMPoreSurface::FREE;
@@ -116,17 +186,22 @@ Options MPMPoreOptions::declare(int dim)
       return std::vector<OptionValue>{
           variables(&c.value, 1, name, unit, meaning + ", can be a variable")};
     };
-    o.add(PART_NAME[part],
-          {word(c.kind,
-                {{"closed", MPMPoreCondition::CLOSED,
-                  std::string("no water goes through ") +
-                      (free ? "free surfaces of the soil" : "this face of the box")},
-                 {"pressure", MPMPoreCondition::PRESSURE, "",
-                  of("p", "pressure", "pressure of the water outside")},
-                 {"head", MPMPoreCondition::HEAD, "",
-                  of("z", "distance", "height of the water table outside, against fix gravity")},
-                 {"flux", MPMPoreCondition::FLUX, "",
-                  of("q", "velocity", "volume of water that comes in for each area and time")}})});
+    o.add(
+        PART_NAME[part],
+        {word(c.kind,
+              {{"closed", MPMPoreCondition::CLOSED,
+                std::string("no water goes through ") +
+                    (free ? "free surfaces of the soil" : "this face of the box")},
+               {"pressure", MPMPoreCondition::PRESSURE, "water outside has a pressure",
+                of("p", "pressure", "pressure of the water outside")},
+               {"head", MPMPoreCondition::HEAD, "water outside stands at rest up to a height",
+                of("z", "distance", "height of the water table outside, against fix gravity")},
+               {"flux", MPMPoreCondition::FLUX, "water comes in",
+                of("q", "velocity", "volume of water that comes in for each area and time")},
+               {"rain", MPMPoreCondition::RAIN, "water falls; what the soil does not take runs off",
+                of("q", "velocity", "volume of water that falls for each area and time")},
+               {"seepage", MPMPoreCondition::SEEPAGE,
+                "water leaves where its pressure is above that of the air, and none comes in"}})});
   }
   o.add(
       "initial",
@@ -142,6 +217,10 @@ Options MPMPoreOptions::declare(int dim)
         geostatic = true;
       })
       .standard("none");
+  o.add("suction",
+        {number(most_suction, "s", NOT_NEGATIVE, "pressure",
+                "greatest suction of points above the water table of geostatic")})
+      .standard("that of water at rest");
   o.add("relax",
         {number(relax, "R", NOT_NEGATIVE, "1",
                 "rate at which points take the pressure of the nodes, in the rate at which waves "
@@ -153,13 +232,33 @@ Options MPMPoreOptions::declare(int dim)
                          {formulation == U_V_P, "stages",
                           "is for formulation u-p: with u-v-p waves alone limit the time step"},
                          {geostatic && initial != "0.0", "geostatic",
-                          "gives points their pressure: leave out initial"}};
+                          "gives points their pressure: leave out initial"},
+                         {most_suction >= 0.0 && !geostatic, "suction", "needs geostatic"},
+                         {!without_soil.empty(), without_soil, "needs a soil before it"},
+                         {!without_retention.empty(), without_retention,
+                          "needs the retention of the soil before it"}};
+    for (int part = 0; part < MPMPoreSurface::NPART; part++)
+      rules.push_back({formulation == U_V_P &&
+                           (conditions[part].kind == MPMPoreCondition::RAIN ||
+                            conditions[part].kind == MPMPoreCondition::SEEPAGE),
+                       PART_NAME[part],
+                       "rain and seepage are for formulation u-p: use flux or pressure"});
     for (int face = 4; face < 6; face++)
       rules.push_back({dim == 2 && conditions[face].kind != MPMPoreCondition::CLOSED,
                        PART_NAME[face], "does not exist in 2d"});
     for (const auto &soil : soils) {
       rules.push_back({soil.biot < soil.porosity, "biot",
                        "must not be below the porosity of the soil: {biot}"});
+      const auto &r = soil.retention;
+      rules.push_back({r.can_dry() && (soil.biot < 1.0 || soil.grains > 0.0), "retention",
+                       "needs rigid grains: leave out biot for this soil"});
+      rules.push_back({r.can_dry() && formulation == U_V_P, "retention",
+                       "is for formulation u-p: with u-v-p pores are always full"});
+      rules.push_back({r.can_dry() && !soil.is_linear(), "retention",
+                       "does not go with forchheimer: leave one of them out for this soil"});
+      rules.push_back({r.least >= r.most, "saturation", "must have Sr below Ss"});
+      rules.push_back({r.law == MPMRetention::GARDNER && r.flow == MPMRetention::MUALEM, "relative",
+                       "mualem is for retention vangenuchten: use power with gardner"});
       rules.push_back({soil.law == MPMPoreSoil::FORMULA && soil.formula.compare(0, 2, "v_") != 0,
                        "soil", "needs a variable, v_name, for its formula"});
     }
@@ -191,6 +290,10 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
     row[0] = initial_value;
   });
   if (formulation == U_V_P) state.declare(inertia, "mpm/pore:flow", domain->dimension);
+  if (can_dry())
+    state.declare(content, "mpm/pore:water", [](int, double *row) {
+      row[0] = -1.0;
+    });
   keep_arrays();
   scalar_flag = vector_flag = 1;
   size_vector = MPMPoreSurface::NPART;
@@ -248,6 +351,12 @@ void FixMPMPore::init()
     if (!known.insert(soil.material).second)
       error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore has soil {} twice", soil.material);
     fix->mass_varies = true;
+    const double grains = fix->material->density() - soil.porosity * water.density;
+    if (soil.retention.can_dry() && !(grains > 0.0))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "The density of fix mpm/material {} is below that of the water in its pores: fix "
+                 "mpm/pore takes it for that of the soil with full pores",
+                 soil.material);
     if (soil.law != MPMPoreSoil::FORMULA) continue;
     const int index = input->variable->find(soil.formula.c_str() + 2);
     if (index < 0 || !input->variable->atomstyle(index))
@@ -294,7 +403,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
     fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax,
                                                formulation == U_V_P));
     auto &mine = *fields.back();
-    mine.init(soils);
+    mine.init(soils, content);
     if (formulation == U_V_P) init_motion(*field);
     const auto &o = field->options;
     refuse_field(
@@ -355,13 +464,17 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 /* ---------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   pores are full of water, also above its table, where it hangs on the air
+   pores of soils without retention are full of water, also above its table, where it hangs on the air
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::setup_points()
 {
-  if (!geostatic || has_state) return;
+  const bool at_rest = geostatic && !has_state;
   has_state = true;
+  if (!at_rest) {
+    weigh_points();
+    return;
+  }
   if (fields.size() != 1)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore geostatic needs one fix mpm, not {}",
                fields.size());
@@ -377,14 +490,28 @@ void FixMPMPore::setup_points()
   const double slope = water.density * where.weight * force->nktv2p;
   for (int i = 0; i < atom->nlocal; i++) {
     std::fill_n(pressure[i], 1 + domain->dimension, 0.0);
-    if (!soil_of(i)) continue;
+    const MPMPoreSoil *const soil = soil_of(i);
+    if (!soil) continue;
     pressure[i][0] = slope * (table - ground.height(i));
     pressure[i][1 + where.axis] = -slope * where.up;
+    if (most_suction < 0.0 || pressure[i][0] >= -most_suction || !soil->retention.can_dry())
+      continue;
+    pressure[i][0] = -most_suction;
+    pressure[i][1 + where.axis] = 0.0;
   }
+  weigh_points();
   ground.set_stress(K0, [&](int i) {
     const auto *const soil = soil_of(i);
-    return soil ? soil->biot * pressure[i][0] : 0.0;
+    if (!soil) return 0.0;
+    return soil->biot * soil->retention.at(pressure[i][0]).bishop * pressure[i][0];
   });
+}
+
+/** The water of points that are new follows from their pressure. */
+void FixMPMPore::weigh_points()
+{
+  if (!can_dry()) return;
+  for (const auto &mine : fields) mine->weigh_points(pressure);
 }
 
 void FixMPMPore::evaluate_variables()
@@ -396,7 +523,12 @@ void FixMPMPore::evaluate_variables()
   bool any = formulas;
   for (const auto &c : conditions) any = any || !c.value.variable.empty();
   evaluate_in_step(lmp, any, [&] {
-    for (auto &c : conditions) c.now = evaluate(lmp, c.value);
+    for (auto &c : conditions) {
+      c.now = evaluate(lmp, c.value);
+      if (c.kind == MPMPoreCondition::RAIN && c.now < 0.0)
+        error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore {} rain is {}: it must not be negative",
+                   PART_NAME[&c - conditions.data()], c.now);
+    }
     if (!formulas) return;
     formula_values.assign(atom->nmax, 0.0);
     std::vector<double> values(atom->nmax);
@@ -473,7 +605,7 @@ bool FixMPMPore::surface_force(MPMField &field, const std::vector<char> &near,
 double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
 {
   if (formulation == U_V_P) return std::numeric_limits<double>::max();
-  const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(tag));
+  const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(pressure, tag));
   return most_stages < 3 ? 0.5 * limit : MPMSuperStep::reach(most_stages) * limit;
 }
 
@@ -512,7 +644,7 @@ void FixMPMPore::account(double *values) const
     const MPMPoreSoil *const soil = soil_of(i);
     if (!soil) continue;
     const double J = points->jacobian(i), p = pressure[i][0];
-    sum += 0.5 * J * atom->vfrac[i] * soil->storage_at(J, water) * p * p;
+    sum += J * atom->vfrac[i] * MPMPoreMoisture::energy(*soil, J, p, water);
     if (!inertia) continue;
     const double pores = J * soil->pores_at(J);
     for (int d = 0; d < domain->dimension; d++)
@@ -550,9 +682,16 @@ const MPMPoreSoil *FixMPMPore::soil_of(int i) const
   return nullptr;
 }
 
+bool FixMPMPore::can_dry() const
+{
+  return std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
+    return soil.retention.can_dry();
+  });
+}
+
 std::vector<std::string> FixMPMPore::quantities() const
 {
-  std::vector<std::string> names = {"pore", "porosity"};
+  std::vector<std::string> names = {"pore", "porosity", "saturation"};
   for (int d = 0; formulation == U_V_P && d < domain->dimension; d++)
     names.push_back(std::string("flow_") + (char) ('x' + d));
   return names;
@@ -563,8 +702,9 @@ double FixMPMPore::quantity(int k, int i) const
   const MPMPoreSoil *const soil = soil_of(i);
   if (!soil) return 0.0;
   if (k == 0) return pressure[i][0];
+  if (k == 2) return soil->retention.at(pressure[i][0]).saturation;
   const double J = MPMPoints::get(atom)->jacobian(i);
-  return k == 1 ? soil->porosity_at(J) : inertia[i][k - 2] / J;
+  return k == 1 ? soil->porosity_at(J) : inertia[i][k - 3] / J;
 }
 
 double FixMPMPore::memory_usage()

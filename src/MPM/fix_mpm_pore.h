@@ -40,6 +40,7 @@ struct MPMPoreOptions {
   std::string initial = "0.0";     ///< pressure of points, a number or v_name
   bool geostatic = false;          ///< at rest under the weight at first
   double K0 = 0.0, table = 0.0;    ///< with this ratio of stresses, and height of the water table
+  double most_suction = -1.0;      ///< at first, positive; negative: no limit
   double relax = 0.2;
   int most_stages = 64;
 
@@ -52,6 +53,8 @@ struct MPMPoreOptions {
   bool biot_alone = false, forchheimer_alone = false;
   enum Forchheimer { NUMBER, ERGUN } forchheimer = NUMBER;
   double forchheimer_value = 0.0;
+  MPMRetention retention;
+  std::string without_soil, without_retention;    // keywords that have come too early
 };
 
 /** Pore water in the points of soils, which move with the velocity of the soil: the flow of the water, without
@@ -75,7 +78,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
   {
-    return of(field).wave_speed(i, c);
+    return of(field).wave_speed(i, pressure[i][0], c);
   }
   const double *pressure_in_forces(const MPMField &field) const override
   {
@@ -101,9 +104,10 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   }
 
  private:
-  MPMRows pressure;          // [n][1+dim] with its gradient
-  MPMRows inertia;           // [n][dim] flow with inertia, see MPMPoreMotion
-  int initial_index = -1;    // of a variable
+  MPMRows pressure;             // [n][1+dim] with its gradient
+  MPMRows inertia;              // [n][dim] flow with inertia, see MPMPoreMotion
+  double *content = nullptr;    // [n] volume of water, where a soil can dry (MPMPoreSuction)
+  int initial_index = -1;       // of a variable
   double initial_value = 0.0;
   bool gradients_known = true;    // not yet where pressures were given
   bool has_state = false;         // of an earlier run: what points have at first is behind them
@@ -123,7 +127,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   const MPMPoreSoil *soil_of(int i) const;
   void warn_of_contact() const;
   void init_motion(MPMField &);
+  bool can_dry() const;
   void set_initial_pressure();
+  void weigh_points();
   void evaluate_variables();
   void begin_step();
   void take_off();

@@ -237,6 +237,25 @@ void MPMNodeScalar::gradients_to_points(const Conduct &take)
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
 }
 
+void MPMNodeScalar::add_up(const GiveValues &give, std::vector<double> &nodes)
+{
+  nodes.assign(field.grid.nnodes(), 0.0);
+  double values[BATCH];
+  double *const tile = tiles[0].data();
+  for (const auto &block : field.map->active) {
+    if (box_of(block)[0] > box_of(block)[3]) continue;
+    visit(block, GRADIENT_SLOPES, nullptr,
+          [&](const auto &run, int first, int n, const auto &prepare) {
+            prepare();
+            give(run, first, n, values);
+            kernels.add_values(stencil, values, tile);
+            return true;
+          });
+    kernels.flush(tile, nodes.data(), field.grid.blocks[block.slot].slot, box_of(block));
+  }
+  sum(nodes);
+}
+
 double MPMNodeScalar::memory_usage() const
 {
   double bytes = 0.0;

@@ -72,10 +72,11 @@ MPMPore::MPMPore(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
   if (moves) motion = std::make_unique<MPMPoreMotion>(lmp, field, water.density, gravity);
 }
 
-void MPMPore::init(const std::vector<MPMPoreSoil> &all)
+void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
 {
   soils.clear();
   quadratic.clear();
+  bool dries = false;
   slowest = waves = least_storage = std::numeric_limits<double>::max();
   for (const auto *fix : field.materials)
     for (const auto &one : all)
@@ -87,9 +88,12 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
         least_storage = std::min(least_storage, storage);
         slowest = std::min(slowest, one.permeability / (water.resistance * storage));
         waves = std::min(waves, one.biot / sqrt(storage * fix->material->density() * unit));
+        dries = dries || one.retention.can_dry();
       }
   nodes.init(true, surface.any());
-  if (surface.any()) surface.init();
+  if (surface.any()) surface.init(dries);
+  suction.reset();
+  if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
 
   const MPMStencil stencil(field);
   constexpr int SAMPLES = 4096;
@@ -102,6 +106,14 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
       if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
     steepest = std::max(steepest, sum);
   }
+}
+
+void MPMPore::weigh_points(const MPMRows &state) const
+{
+  if (!suction) return;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (field.is_point(i))
+      if (const auto *const s = soil_of(i)) suction->weigh(i, *s, state[i][0]);
 }
 
 const MPMPore::Soil *MPMPore::soil(const FixMPMMaterial *fix) const
@@ -156,6 +168,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
   in_forces.assign(atom->nmax, 0.0);
   if (!quadratic.empty()) quadratic.resize(atom->nmax);
   const double density = water.density * force->mvv2e * force->nktv2p;
+  if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
   fastest = exchange = 0.0;
   nodes.points_to_nodes(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
@@ -171,10 +184,11 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           const double k = mobility(*s, i, J, formula);
           K[p] = V * k;
           in_forces[i] = s->of.biot * J;
-          if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
           const double *const mine = state[i];
+          if (suction) suction->begin_point(i, s->of, J, V, mine[0], C[p], K[p], in_forces[i]);
+          if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
           if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J, density);
-          if (surface.any()) points.volume[p] = V * at_surface(*s, i, J, k, mine);
+          if (surface.any()) points.volume[p] = suction ? K[p] : V * at_surface(*s, i, J, k, mine);
           points.capacity[p] = C[p];
           points.row[p][3] = mine[0];
           points.row[p][0] = mine[1];
@@ -228,6 +242,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
   const auto take = [&](int i, double value) {
     mean[i] = value;
     in_forces[i] *= value;
+    if (suction) suction->set_lag(i, state[i][0] - value);
   };
   if (motion) {
     nodes.gradients_to_points(
@@ -246,7 +261,11 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
   // places at surfaces look at nodes of periodic images, too
   field.nodes.complete(nodes.capacity.data(), 1, 1);
   field.nodes.complete(nodes.volume.data(), 1, 1);
-  exchange = surface.prepare(nodes, least_storage);
+  if (suction)
+    suction->find_conductances(nodes, surface, [this](const MPMPointMap::Run &run) {
+      return &soil(run.material)->of;
+    });
+  exchange = surface.prepare(nodes, least_storage, suction ? &suction->at_surface() : nullptr);
   if (motion) surface.share_area(nodes);
 }
 
@@ -303,9 +322,12 @@ void MPMPore::take_motion()
     for (int p = 0; p < n; p++) {
       const int i = first + p;
       const double V = field.points->jacobian(i) * atom->vfrac[i];
-      squeezed[i] = -s->of.biot * V * field.frame->volume_change(i, L + nL * p, dt) / dt;
+      const double change = field.frame->volume_change(i, L + nL * p, dt);
+      squeezed[i] = -s->of.biot * V * change / dt;
+      if (suction) squeezed[i] *= suction->take_motion(i, V * change, dt);
     }
   });
+  if (suction) suction->take_rates(dt);
 }
 
 void MPMPore::move_water()
@@ -323,6 +345,7 @@ void MPMPore::move_water()
 
 void MPMPore::find_rates(std::vector<double> &inflow)
 {
+  const double dt = field.step_dt();
   const int dim = field.lattice.dim;
   const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
@@ -343,6 +366,7 @@ void MPMPore::find_rates(std::vector<double> &inflow)
       }
       for (int d = 0; d < dim; d++) power[d] += q[p][d] * along[d];
       q[p][3] = squeezed[first + p];
+      if (suction) q[p][3] += suction->regained(first + p, capacity[first + p], dt);
     }
     inflow[MPMPoreSurface::ENERGY] += power[0] + power[1] + power[2];
   };
@@ -362,19 +386,32 @@ void MPMPore::find_rates(std::vector<double> &inflow)
    some crossings of a cell, and one over many cells stays.
 ------------------------------------------------------------------------- */
 
+double MPMPore::rate_of_waves() const
+{
+  return relax * waves / field.lattice.h;
+}
+
+double MPMPore::rate_of_lag() const
+{
+  return slowest / (field.lattice.h * field.lattice.h) + rate_of_waves();
+}
+
 void MPMPore::end_step(const MPMRows &state)
 {
   const int dim = field.lattice.dim;
-  const double dt = field.step_dt(), h = field.lattice.h;
-  const double keep = exp(-(slowest / (h * h) + relax * waves / h) * dt);
+  const double dt = field.step_dt();
+  const double keep = exp(-rate_of_lag() * dt);
   nodes.nodes_to_points(
-      [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q, const double *) {
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q, const double *) {
+        const MPMPoreSoil *const dries = suction ? &soil(run.material)->of : nullptr;
         for (int p = 0; p < n; p++) {
           const int i = first + p;
           double *const mine = state[i];
-          const double now = q[p][3] + keep * (mine[0] - mean[i]);
+          const double lag = dries ? suction->kept_lag(i) : keep * (mine[0] - mean[i]);
+          double now = q[p][3] + lag;
           const double more = capacity[i] * (now - mine[0]) - squeezed[i] * dt;
           atom->rmass[i] += water.density * more;
+          if (dries) now = suction->take_water(i, *dries, mine[0], now, more);
           mine[0] = now;
           for (int d = 0; d < dim; d++) mine[1 + d] = q[p][d];
         }
@@ -389,7 +426,7 @@ double MPMPore::greatest_rate() const
   return fastest * steepest / (field.lattice.h * field.lattice.h) + exchange;
 }
 
-double MPMPore::greatest_rate(tagint &tag) const
+double MPMPore::greatest_rate(const MPMRows &state, tagint &tag) const
 {
   double most = fastest;    // formulas are evaluated in steps
   for (int i = 0; i < atom->nlocal; i++) {
@@ -397,7 +434,11 @@ double MPMPore::greatest_rate(tagint &tag) const
     const Soil *const s = soil(field.material_of(i));
     if (!s || s->of.law == MPMPoreSoil::FORMULA) continue;
     const double J = field.points->jacobian(i);
-    const double here = mobility(*s, i, J, nullptr) / s->of.storage_at(J, water);
+    double here = mobility(*s, i, J, nullptr) / s->of.storage_at(J, water);
+    if (s->of.retention.can_dry() && state[i][0] < 0.0) {
+      const auto moisture = MPMPoreMoisture::at(s->of, J, state[i][0], water);
+      here = mobility(*s, i, J, nullptr) * moisture.relative / moisture.storage;
+    }
     if (here <= most) continue;
     most = here;
     tag = atom->tag[i];
@@ -405,14 +446,19 @@ double MPMPore::greatest_rate(tagint &tag) const
   return most * steepest / (field.lattice.h * field.lattice.h) + exchange;
 }
 
-double MPMPore::wave_speed(int i, double c) const
+double MPMPore::wave_speed(int i, double p, double c) const
 {
   const Soil *const s = soil(field.material_of(i));
   if (!s) return c;
   const double J = field.points->jacobian(i), density = atom->rmass[i] / (J * atom->vfrac[i]);
   const double storage = s->of.storage_at(J, water);
   if (motion) return motion->wave_speed(c, density, s->of.biot, storage, s->of.pores_at(J));
-  const double more = s->of.biot * s->of.biot / storage;
+  double more = s->of.biot * s->of.biot / storage;
+  if (s->of.retention.can_dry()) {
+    const auto moisture = MPMPoreMoisture::at(s->of, J, p, water);
+    more = moisture.bishop * std::min(1.0, moisture.filling) / moisture.storage;
+    c *= sqrt(s->fix->density(i) * atom->vfrac[i] / atom->rmass[i]);    // it is that of full pores
+  }
   return sqrt(c * c + more / (density * force->mvv2e * force->nktv2p));
 }
 
@@ -420,6 +466,7 @@ double MPMPore::memory_usage() const
 {
   double bytes =
       nodes.memory_usage() + surface.memory_usage() + (motion ? motion->memory_usage() : 0.0);
+  if (suction) bytes += suction->memory_usage();
   for (const auto *list :
        {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic, &of_flow})
     bytes += list->capacity() * sizeof(double);

@@ -12,6 +12,7 @@
 #include "mpm_node_scalar.h"
 #include "mpm_pore_motion.h"
 #include "mpm_pore_soil.h"
+#include "mpm_pore_suction.h"
 #include "mpm_pore_surface.h"
 #include "mpm_rows.h"
 #include "pointers.h"
@@ -38,10 +39,12 @@ class MPMPore : protected Pointers {
   MPMPore(class LAMMPS *, MPMField &, const MPMPoreWater &, const MPMPoreSurface::Conditions &,
           const double *gravity, double relax, bool moves);
 
-  /** Start of a run: the soils of this field. */
-  void init(const std::vector<MPMPoreSoil> &);
+  /** Start of a run: the soils of this field. content: of points, if there is a soil that can dry (MPMPoreSuction). */
+  void init(const std::vector<MPMPoreSoil> &, double *const &content);
   bool has_water() const { return !soils.empty(); }
 
+  /** The water of points of soils that can dry, where it is not yet known. */
+  void weigh_points(const MPMRows &state) const;
   /** Gradients of points whose pressures alone were given; those of a linear pressure are exact. Collective. */
   void find_gradients(const MPMRows &state, const double *formula);
   /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n] permeabilities of
@@ -67,9 +70,9 @@ class MPMPore : protected Pointers {
   /** Bound of the eigenvalues of minus the rates [1/time] for this rank's points, in this step and at present;
    *  tag: of the point that limits it. */
   double greatest_rate() const;
-  double greatest_rate(tagint &tag) const;
-  /** Wave speed of a point where water cannot flow, c: of the soil alone. */
-  double wave_speed(int i, double c) const;
+  double greatest_rate(const MPMRows &state, tagint &tag) const;
+  /** Wave speed of a point where water cannot flow, c: of the soil alone; p: pressure of its water. */
+  double wave_speed(int i, double p, double c) const;
   const MPMPoreSoil *soil_of(int i) const;
 
   double memory_usage() const;
@@ -90,6 +93,7 @@ class MPMPore : protected Pointers {
   double waves = 0.0;       // smallest wave speed by the stiffness of the water in a soil
   double fastest = 0.0;     // largest of the points in the last step
   double exchange = 0.0;    // rate of exchange through the surface in the last step
+  std::unique_ptr<MPMPoreSuction> suction;    // of soils that can dry
 
   // of points in this step
 
@@ -103,6 +107,8 @@ class MPMPore : protected Pointers {
 
   void points_to_nodes(const MPMRows &state, const double *formula);
   const Soil *soil(const FixMPMMaterial *) const;
+  double rate_of_waves() const;
+  double rate_of_lag() const;
   double mobility(const Soil &, int i, double J, const double *formula) const;
   double weight(int d) const;
   MPMPoreMotion::Pores pores(const Soil &, int i, double J, double mobility) const;

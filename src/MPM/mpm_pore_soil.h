@@ -10,6 +10,7 @@
 #define LMP_MPM_PORE_SOIL_H
 
 #include "mpm_drag.h"
+#include "mpm_retention.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +39,7 @@ struct MPMPoreSoil {
   double quadratic = 0.0;    ///< gradient of pressure per square of flow (Forchheimer)
   double diameter =
       0.0;    ///< of grains, from which that follows (Ergun); 0: it is the number above
+  MPMRetention retention;
 
   /** Grains keep their volume. */
   double porosity_at(double J) const { return 1.0 - (1.0 - porosity) / J; }
@@ -65,12 +67,12 @@ struct MPMPoreSoil {
     return MPM_NS::SphereDrag::bed_inertia(density, diameter, n);
   }
 
-  /** Volume of water that a unit of volume takes up for a unit of pressure. Where there are next to no pores left, it
-   *  stays that of a hundredth of the initial porosity. */
+  /** Volume of water that a unit of volume takes up for a unit of pressure, when pores are full. */
   double storage_at(double J, const MPMPoreWater &water) const
   {
     const double n = pores_at(J);
-    return n / water.bulk + (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
+    return retention.most * n / water.bulk +
+        (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
   }
 };
 

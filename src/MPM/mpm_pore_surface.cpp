@@ -41,6 +41,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -73,8 +74,9 @@ bool MPMPoreSurface::any() const
   });
 }
 
-void MPMPoreSurface::init()
+void MPMPoreSurface::init(bool soil_dries)
 {
+  dries = soil_dries;
   profile = std::make_unique<MPMNodeProfile>(field);
 }
 
@@ -164,6 +166,7 @@ double MPMPoreSurface::function(double depth) const
 
 double MPMPoreSurface::pressure_outside(const MPMPoreCondition &c, const double *x) const
 {
+  if (c.kind == MPMPoreCondition::SEEPAGE || c.kind == MPMPoreCondition::RAIN) return 0.0;
   if (c.kind != MPMPoreCondition::HEAD) return c.now;
   double size = 0.0, along = 0.0;
   for (int d = 0; d < 3; d++) {
@@ -186,6 +189,10 @@ void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, doubl
   place.touch = touch;
   std::copy_n(at, 3, place.at);
   std::copy_n(normal, 3, place.normal);
+  place.most = std::numeric_limits<double>::max();
+  if (condition.kind == MPMPoreCondition::RAIN) place.most = condition.now;
+  const bool air = condition.kind == MPMPoreCondition::HEAD && dries && place.outside == 0.0;
+  if (condition.kind == MPMPoreCondition::SEEPAGE || air) place.most = 0.0;
   double x[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < field.lattice.dim; d++) {
     const double step = -INSET * field.lattice.h * normal[d];
@@ -295,29 +302,39 @@ double MPMPoreSurface::normalize(int first, int n, double enough,
   return sum;
 }
 
+double MPMPoreSurface::suction_outside(int part) const
+{
+  const auto &c = conditions[part];
+  return c.kind == MPMPoreCondition::PRESSURE ? std::min(0.0, c.now) : 0.0;
+}
+
 /** With the lists a_k of weights where water comes in and b_k where the pressure is taken, the exchange is the matrix
  *  sum_k c_k a_k b_k^T, which is not symmetric: what counts is its norm, not its eigenvalues, as conduction is added to it.
  *  In the norm of the capacities it is at most that of sum_k c_k a_k a_k^T and of sum_k c_k b_k b_k^T in the
  *  geometric mean, and these are at most their greatest sum of a row, (sum_k c_k a_ki)/C_i, as weights have the sum one. */
-double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage)
+double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage, const Wet *wet)
 {
   const double cell = field.lattice.cell_volume(), enough = ENOUGH * least_storage * cell;
+  const auto &capacity = wet ? wet->capacity : scalar.capacity;
   rows.assign(2 * scalar.capacity.size(), 0.0);
   for (auto &place : places) {
     double storage = 0.0;
     for (int k = place.first; k < place.first + place.n; k++) {
       const double V = nodes[node[k] * field.pic.nreal + VOLUME];
-      if (V > ENOUGH * cell) storage = std::max(storage, scalar.capacity[node[k]] / V);
+      if (V > ENOUGH * cell) storage = std::max(storage, capacity[node[k]] / V);
     }
     // the surface may be that of another material, without water
-    const double inside = normalize(place.first, place.n, enough, scalar.capacity);
-    const double at = normalize(place.first_at, place.n_at, enough, scalar.capacity);
+    const double inside = normalize(place.first, place.n, enough, capacity);
+    const double at = normalize(place.first_at, place.n_at, enough, capacity);
     const bool has_water = storage > 0.0 && inside > 0.0 && at > 0.0;
     place.area *= has_water ? std::min(1.0, std::min(inside, at) / MOSTLY) : 0.0;
+    const std::vector<double> *outer = nullptr;
+    if (wet) outer = &wet->conductance[suction_outside(place.part) < 0.0 ? 1 + place.part : 0];
     double K = 0.0, C = 0.0;
     for (int k = place.first; k < place.first + place.n && has_water; k++) {
-      K += weight[k] * scalar.volume[node[k]];
-      C += weight[k] * scalar.capacity[node[k]];
+      const double inner = scalar.volume[node[k]];
+      K += weight[k] * (outer ? 0.5 * (inner + (*outer)[node[k]]) : inner);
+      C += weight[k] * capacity[node[k]];
     }
     place.conductance = C > 0.0 ? place.area * storage * K / (C * INSET * field.lattice.h) : 0.0;
     if (conditions[place.part].kind == MPMPoreCondition::FLUX) continue;
@@ -438,8 +455,9 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
       double inside = 0.0;
       for (int k = place.first; k < place.first + place.n; k++)
         inside += weight[k] * scalar.value[node[k]];
-      Q = flow_is_given ? place.inflow + LEAK * place.conductance * (place.outside_at - p)
-                        : place.conductance * (place.outside - inside);
+      Q = flow_is_given
+          ? place.inflow + LEAK * place.conductance * (place.outside_at - p)
+          : std::min(place.conductance * (place.outside - inside), place.area * place.most);
     }
     for (int k = place.first_at; k < place.first_at + place.n_at; k++)
       scalar.rate[node[k]] += weight[k] * Q;
