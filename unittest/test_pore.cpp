@@ -7,87 +7,11 @@
 
 // Fix mpm/pore: pore water in soils, with one velocity for both.
 
-#include "mpm_lammps.h"
-
-#include "compute_mpm_atom.h"
+#include "pore_testing.h"
 
 using namespace MPM_TEST;
 
 namespace {
-
-/** Pressures of points, by a compute mpm/atom. */
-struct Water {
-  Scene &run;
-  explicit Water(Scene &run) : run(run) { run.commands("compute pore all mpm/atom pore\n"); }
-
-  const double *pressures()
-  {
-    auto *compute = run.lmp->modify->get_compute_by_id("pore");
-    compute->compute_peratom();
-    return compute->vector_atom;
-  }
-  /** Mean over the points in a range of y. */
-  double mean(double low, double high)
-  {
-    const double *const p = pressures();
-    double sum = 0.0, n = 0.0;
-    for (int i = 0; i < run.n(); i++)
-      if (run.x()[i][1] > low && run.x()[i][1] < high) {
-        sum += p[i];
-        n++;
-      }
-    return sum / n;
-  }
-  double mass()
-  {
-    double sum = 0.0;
-    for (int i = 0; i < run.n(); i++) sum += run.mass()[i];
-    return over_ranks(sum);
-  }
-};
-
-constexpr double LOAD = 1.0e4, PI2 = 0.5 * PI, MODULUS = 1e7 * 0.7 / (1.3 * 0.4);
-
-/** A column of 1 m with the top at y = 1, four cells wide, on a smooth floor, with n cells. offset: of the floor from
- *  nodes, in cells. */
-std::string column(int n, const std::string &water, const std::string &material, double top = 1.2,
-                   double offset = 0.0, const std::string &floor = "ylo")
-{
-  const double h = 1.0 / n;
-  return plane("si", "p f", strprintf("0 %.17g 0 %.17g", 4 * h, top), 1, 0.3 * h) +
-      strprintf("region soil block 0 %.17g 0 1 INF INF\n", 4 * h) +
-      strprintf("create_points 1 region soil spacing %.17g\n", 0.5 * h) +
-      strprintf("fix grid all mpm %.17g origin 0 %.17g\n", h, offset * h) +
-      "fix m all mpm/material " + material + "\nfix floor all mpm/boundary " + floor + " slip\n" +
-      "fix water all mpm/pore " + water + "\n";
-}
-const char *const SOIL = "density 2002 linear 1e7 0.3";
-
-/** The row of points at the top carries q, which grows over a time. */
-std::string load(int n, double q, double ramp)
-{
-  const double h = 1.0 / n;
-  return strprintf("region top block INF INF %.17g INF INF INF\ngroup top region top\n",
-                   1.0 - 0.5 * h) +
-      strprintf("variable q equal %.17g*0.5*(1-cos(PI*((time<%g)*time/%g+(time>=%g))))\n", q, ramp,
-                ramp, ramp) +
-      "variable fy equal -v_q*lx/count(top)\nfix load top addforce 0 v_fy 0\n";
-}
-void run_to(Scene &run, double end)
-{
-  run.commands(strprintf("fix dt all mpm/dt 0.5 until %.17g\nrun 1000000\n", end));
-}
-
-/** Terzaghi: pressure over the initial one at a depth z below the drained top of a column of 1. */
-double terzaghi(double z, double T)
-{
-  double sum = 0.0;
-  for (int m = 0; m < 2000; m++) {
-    const double M = (2 * m + 1) * PI2;
-    sum += 2.0 / M * std::sin(M * z) * std::exp(-M * M * T);
-  }
-  return sum;
-}
 
 /** Consolidation by the load: rms error of the pressures in parts of the load at a time factor, and the degree of
  *  consolidation. */
