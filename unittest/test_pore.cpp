@@ -11,34 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
-/** Consolidation by the load: rms error of the pressures in parts of the load at a time factor, and the degree of
- *  consolidation. */
-struct Consolidation {
-  double rms, U;
-};
-Consolidation consolidate(int n, const std::string &drained, double top, double offset, double Kf)
-{
-  const double storage = 0.4 / Kf, c = 1e-3 / 9810.0 / (1.0 / MODULUS + storage), ramp = 0.01;
-  Scene run(column(n, strprintf("%g 1000 9810 soil m 0.4 constant 1e-3 %s", Kf, drained.c_str()),
-                   SOIL, top, offset) +
-            load(n, LOAD, ramp));
-  Water water(run);
-  const double T = 0.2, p0 = LOAD / (1.0 + MODULUS * storage);
-  run_to(run, T / c + 0.5 * ramp);
-  const double *const p = water.pressures();
-  double sum = 0.0, all = 0.0;
-  for (int i = 0; i < run.n(); i++) {
-    const double d = p[i] - p0 * terzaghi(1.0 - run.x()[i][1], T);
-    sum += d * d / run.n();
-    all += p[i] / run.n();
-  }
-  return {std::sqrt(sum) / LOAD, 1.0 - all / p0};
-}
-
-}    // namespace
-
 // Terzaghi's column at T = 0.2, drained at a face of the box or at a free surface
 SERIAL_TEST(Consolidation, Terzaghi)
 {
@@ -330,42 +302,6 @@ SERIAL_TEST(Consolidation, InThreeDimensions)
     EXPECT_LT(measured(strprintf("%s, rms", shape), std::sqrt(sum) / LOAD), 0.01);
   }
 }
-
-namespace {
-
-/** A block of two soils and one that is dry, which collide across ranks and periodic faces. */
-std::string blocks(const std::string &more)
-{
-  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
-      bodies({{"one", "sphere 3 4 0 1.6 side in"},
-              {"two", "block 5 6.6 3 5 -0.5 0.5"},
-              {"dry", "block 3 5 0.8 2 -0.5 0.5"}}) +
-      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4\n"
-      "fix n two mpm/material density 2.0 eos linear 30.0 strength j2 8.0 0.4\n"
-      "fix o dry mpm/material density 1.0 neohookean 10.0 0.3\n"
-      "velocity all set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n"
-      "variable p atom 0.1*x\nvariable k atom 0.01*(1+y)\n"
-      "fix water all mpm/pore 20.0 0.5 2.0 soil m 0.4 kozeny 0.1 soil n 0.3 formula v_k biot 0.9 "
-      "200 " +
-      more + "\ntimestep 0.005\n";
-}
-struct Named {
-  double tag, p;
-};
-std::vector<Named> pressures(Scene &run)
-{
-  const double *const p = [&]() {
-    auto *compute = run.lmp->modify->get_compute_by_id("pore");
-    compute->compute_peratom();
-    return compute->vector_atom;
-  }();
-  std::vector<Named> mine;
-  for (int i = 0; i < run.n(); i++) mine.push_back({(double) run.lmp->atom->tag[i], p[i]});
-  return all_by_tag(mine, run.lmp->world);
-}
-const char *const PORE = "compute pore all mpm/atom pore\n";
-
-}    // namespace
 
 TEST(Ranks, Agree)
 {

@@ -205,6 +205,20 @@ TEST(Expansion, ConsistentCoupling)
   }
 }
 
+TEST(Expansion, EachPointStartsFromItsOwnTemperature)
+{
+  if (!RandomField::available()) GTEST_SKIP() << "no FFTW";
+  Point p("density 1000 linear 1e6 0.3 thermal adiabatic 1e30 300 0 expansion 1e-3 "
+          "random T0 lognormal 0.1 0.1 5 random ALPHA lognormal 0.3 0.1 6");
+  const double T0 = value(p, "temperature"), alpha = 1e-3 * value(p, "random/ALPHA");
+  EXPECT_GT(std::fabs(T0 - 300), 0.1);
+  move_to(p, IDENTITY);
+  EXPECT_EQ(p.pressure(), 0.0);
+  warm_to(p, T0 + 100);
+  move_to(p, isotropic(std::exp(100 * alpha)));
+  EXPECT_NEAR(p.pressure(), 0.0, 1e-8);
+}
+
 // aluminum warmed by 100 K, or strained by 1e-3: free strain, stress between walls and in a die, elastic cooling, and the
 // adiabatic bulk modulus. These are linear in what is done, of which a small part is done here
 TEST(Expansion, Aluminum)
@@ -230,20 +244,6 @@ TEST(Expansion, Aluminum)
     move_to(*point, isotropic(std::cbrt(1 + 1e-3 * PART)));
   EXPECT_NEAR((value(s, "temperature") - 293) / PART, -0.570963, 1e-6);
   EXPECT_NEAR(s.pressure() / t.pressure(), 1.039396, 1e-6);
-}
-
-TEST(Expansion, EachPointStartsFromItsOwnTemperature)
-{
-  if (!RandomField::available()) GTEST_SKIP() << "no FFTW";
-  Point p("density 1000 linear 1e6 0.3 thermal adiabatic 1e30 300 0 expansion 1e-3 "
-          "random T0 lognormal 0.1 0.1 5 random ALPHA lognormal 0.3 0.1 6");
-  const double T0 = value(p, "temperature"), alpha = 1e-3 * value(p, "random/ALPHA");
-  EXPECT_GT(std::fabs(T0 - 300), 0.1);
-  move_to(p, IDENTITY);
-  EXPECT_EQ(p.pressure(), 0.0);
-  warm_to(p, T0 + 100);
-  move_to(p, isotropic(std::exp(100 * alpha)));
-  EXPECT_NEAR(p.pressure(), 0.0, 1e-8);
 }
 
 TEST(Expansion, BadInputIsRefused)
