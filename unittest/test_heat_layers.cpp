@@ -72,6 +72,23 @@ SERIAL_TEST(Layers, InSeries)
   }
 }
 
+// also if one of them is a single cell thick
+SERIAL_TEST(Layers, ThinOneInSeries)
+{
+  for (const int n : {12, 24})
+    for (const double offset : {0.0, 0.3, 0.5}) {
+      const double h = 1.0 / n;
+      Scene run(plate(n,
+                      {{"block 0 0.25 INF INF INF INF", 1.0},
+                       {strprintf("block 0.25 %.17g INF INF INF INF", 0.25 + h), 0.2},
+                       {strprintf("block %.17g 1 INF INF INF INF", 0.25 + h), 4.0}},
+                      4.0 * h, offset));
+      const double q =
+          power(run, 5.0 * h * h, 4.0) / (4.0 * h) * (0.25 + 5.0 * h + (0.75 - h) / 4.0);
+      EXPECT_NEAR(measured(strprintf("offset %g, %d cells", offset, n), q), 1.0, 0.02);
+    }
+}
+
 // layers beside each other let through what each of them does, also those that have so little capacity that the mean
 // of conductivities would be too fast for them
 SERIAL_TEST(Layers, InParallel)
