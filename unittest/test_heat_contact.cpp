@@ -235,6 +235,28 @@ SERIAL_TEST(Turned, SlabsCool)
   }
 }
 
+// the whole area of an interface that is inclined, also at its ends: power in the first step
+SERIAL_TEST(Turned, HasItsArea)
+{
+  const int n = 20;
+  const double h = 1.0 / n;
+  for (const double offset : {0.0, 0.3, 0.5}) {
+    Scene run(plane("lj", "f f", "-1 1 -1 1", 2, 0.1 * h) +
+              "region a block -0.5 0 -0.5 0.5 INF INF\nregion b block 0 0.5 -0.5 0.5 INF INF\n" +
+              strprintf("create_points 1 region a spacing %.17g\n", 0.5 * h) +
+              strprintf("create_points 2 region b spacing %.17g\n", 0.5 * h) +
+              "group a type 1\ngroup b type 2\ndisplace_atoms all rotate 0 0 0 0 0 1 15\n" +
+              strprintf("fix ga a mpm %.17g origin %.17g 0\nfix gb b mpm %.17g origin %.17g 0\n", h,
+                        offset * h, h, offset * h) +
+              "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1.0\n"
+              "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+              "fix touch all mpm/contact ga gb\n"
+              "fix heat all mpm/heat contact ga gb conductance 1.0\ntimestep 1e-8\nrun 1\n");
+    EXPECT_NEAR(measured(strprintf("offset %g, area", offset), run.fix_vector("heat", 10)[CONTACT]),
+                1.0, 0.01);
+  }
+}
+
 // a sheet between two blocks: said if it is thin
 TEST(Thin, IsSaid)
 {

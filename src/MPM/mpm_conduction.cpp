@@ -121,6 +121,7 @@ void MPMConduction::init(double sigma)
     }
   }
   conducted = exchanged = 0.0;
+  init_layers();
   faces.init(sigma);
   scalar.init(transfer.kind != MPMHeatTransfer::PIC, faces.any());
 }
@@ -137,6 +138,31 @@ const MPMConduction::Thermal *MPMConduction::thermal(const FixMPMMaterial *fix) 
 double MPMConduction::volume_of(int i) const
 {
   return atom->vfrac[i] * field.points->jacobian(i);
+}
+
+/** Materials of different conductivity in one field get means next to their interfaces, where these are numbers and
+ *  the functions smooth. */
+void MPMConduction::init_layers()
+{
+  layers.reset();
+  greatest = 0.0;
+  if (total || steepest == 0.0) return;
+  bool differ = false;
+  double least_capacity = std::numeric_limits<double>::max(), fastest = 0.0;
+  for (const auto &t : thermals) {
+    if (t.all.orthotropic) return;
+    differ = differ ||
+        (thermals.size() > 1 &&
+         (t.varies || t.all.conductivity != thermals.front().all.conductivity));
+    const double capacity = t.fix->material->density() * t.all.capacity;
+    greatest = std::max(greatest, t.all.conductivity);
+    least_capacity = std::min(least_capacity, capacity);
+    fastest = std::max(fastest, t.all.conductivity / capacity);
+  }
+  if (!differ) return;
+  const bool along = greatest <= MPMLayerMean::MOST * fastest * least_capacity;
+  layers = std::make_unique<MPMLayerMean>(field, along);
+  layers->init();
 }
 
 /** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160). */
@@ -285,6 +311,17 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
   const bool simple = !total && steepest > 0.0, wants_volumes = faces.any();
   double most = 0.0;
   volumes.resize(atom->nmax);
+  if (layers)
+    layers->find([&](const MPMPointMap::Run &run, int first, int n, double *k, double *V) {
+      const Thermal *const t = thermal(run.material);
+      if (!t) return false;
+      Conduction room;
+      for (int p = 0; p < n; p++) {
+        k[p] = t->at(first + p, room).conductivity;
+        V[p] = volume_of(first + p);
+      }
+      return true;
+    });
   scalar.points_to_nodes(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
         const Thermal *const t = thermal(run.material);
@@ -304,6 +341,7 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
             c = t->fix->material->conduction(history);
             greatest = c.most();
           }
+          if (layers) greatest = layers->most(i);
           const double C = points.capacity[p] = rmass[p] * c.capacity;
           points.row[p][3] = history[t->temperature];
           if (!simple)
@@ -340,6 +378,9 @@ void MPMConduction::find_rates(const double *source, Heats &power)
         tensor(*t, first + p, k);
         MathExtra::matvec(k, q[p], flux);
         for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
+      } else if (layers) {
+        layers->multiply(first + p, q[p]);
+        for (int d = 0; d < 3; d++) q[p][d] *= -conducting;
       } else {
         const double factor = -conducting * t->at(first + p, room).conductivity;
         for (int d = 0; d < 4; d++) q[p][d] *= factor;
@@ -416,6 +457,8 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     double here = 0.0;
     if (bounded) {
       here = bound(*t, i, volume_of(i));
+      // of interfaces what is possible, and not what is there at present: the same after a restart
+      if (layers) here *= layers->most_over_own(greatest / t->at(i, room).conductivity);
     } else if (conducted == 0.0) {
       double k[3][3], x[24], least = 1.0;
       tensor(*t, i, k);
@@ -435,6 +478,6 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
 
 double MPMConduction::memory_usage() const
 {
-  return faces.memory_usage() + scalar.memory_usage() +
+  return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
       (volumes.capacity() + shares.capacity() + given.capacity()) * sizeof(double);
 }

@@ -12,9 +12,11 @@
 #include "fix_mpm_material.h"
 #include "material/material.h"
 #include "mpm_heat_faces.h"
+#include "mpm_layer_mean.h"
 #include "mpm_node_scalar.h"
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -94,6 +96,9 @@ class MPMConduction : protected Pointers {
   bool total = false;
 
   std::vector<double> volumes;    // [n] of points in this step
+  std::unique_ptr<MPMLayerMean>
+      layers;               // of materials that conduct differently; null: points have their own
+  double greatest = 0.0;    // of all conductivities, with layers
   std::vector<double>
       shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
 
@@ -103,6 +108,7 @@ class MPMConduction : protected Pointers {
   double bound(const Thermal &, int i, double volume) const;
   double steepness(int i) const;
   double row_bound(double usual);
+  void init_layers();
 };
 
 }    // namespace LAMMPS_NS

@@ -8,17 +8,18 @@
 
 /* ----------------------------------------------------------------------
    Heat q through a flat surface with the normal n, per area, is in equilibrium with a constant flux in the material if
-   each node i gets q |G_i|, G_i = sum_p V_p grad N_ip, the sum over the points as it is: with these weights a temperature
-   that varies linearly stays as it is wherever points and nodes are, also at nodes that points hardly reach, and
+   each node i gets q n.G_i, G_i = sum_p V_p grad N_ip, the sum over the points as it is: with these weights a temperature
+   that varies linearly stays as it is wherever points and nodes are, also at nodes that points hardly reach. At edges G_i has a
+   part of the other surface, too, which n.G_i has not, if that is at a right angle. And
 
-     sum_i G_i x_i/sum_i G_i
+     sum_i n.G_i x_i/sum_i n.G_i
 
    along a line of nodes is the place at which the volume of the points ends. With weights from the functions at the surface
    instead, nodes next to it got up to a tenth of the heat too much or too little. As |G|^2 <= C_i sum_p V_p^2 |grad N|^2/(N C_p), the
-   response of the temperature of the surface, sum_i w_i T_i with w_i = |G_i|/sum |G|, to heat is bounded, too.
+   response of the temperature of the surface, sum_i w_i T_i with w_i = n.G_i/sum n.G, to heat is bounded, too.
 
    The area of a line is that of the whole line where the body fills all that is behind its surface, and less at the sides of
-   the body and of the box: the sum of |G| does not tell, as at edges it has parts of the other surface.
+   the body and of the box. The sum of n.G has the noise of sums over points that are no integrals.
 
    A surface that is inclined crosses lines of nodes along several axes. The lines along the axis a count with the share
    s_a = n_a^4/sum_b n_b^4 of the area, each h^(d-1)/|n_a|.
@@ -28,6 +29,7 @@
 
 #include "comm.h"
 #include "domain.h"
+#include "math_extra.h"
 #include "math_special.h"
 #include "mpm_conduction.h"
 #include "mpm_field.h"
@@ -104,7 +106,8 @@ void MPMHeatBody::find_surface()
 
 /* ---------------------------------------------------------------------- */
 
-bool MPMHeatBody::make_line(int axis, const int *base, double at, double into, Line &line) const
+bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *into,
+                            Line &line) const
 {
   const Grid &grid = field.grid;
   const auto &lattice = field.lattice;
@@ -117,8 +120,8 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, double into, L
     index[axis] = lattice.wrap(axis, first + k);
     const int64_t node = line.node[k] = grid.locate(index);
     if (node < 0 && !knows_all()) return false;
-    const double G = node < 0 ? 0.0 : gradient[3 * node + axis];
-    line.weight[k] = std::max(0.0, into > 0.0 ? -G : G);
+    const double *const G = node < 0 ? nullptr : &gradient[3 * node];
+    line.weight[k] = G ? std::max(0.0, -MathExtra::dot3(into, G)) : 0.0;
     sum += line.weight[k];
     moment += line.weight[k] * (first + k);
   }
@@ -128,7 +131,7 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, double into, L
   for (int k = 0; k < line.n; k++) {
     line.weight[k] /= sum;
     if (line.node[k] >= 0) there += w[k] * share[line.node[k]];
-    full += w[k] * profile.volume((first + k - line.place) * into);
+    full += w[k] * profile.volume((first + k - line.place) * into[axis]);
   }
   const double part = there / full;
   line.area = full_area *

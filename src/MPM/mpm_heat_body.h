@@ -54,9 +54,9 @@ class MPMHeatBody : protected Pointers {
   /** Of nodes: volume in cells, and sum of V grad N, which points out of the body. */
   std::vector<double> share, gradient;
 
-  /** The line along an axis through a place on it (in node spacings), base: a node of it; into: component along the axis of
-   *  the unit normal into the body. False if there is no surface, or this rank does not have all nodes. */
-  bool make_line(int axis, const int *base, double at, double into, Line &) const;
+  /** The line along an axis through a place on it (in node spacings), base: a node of it; into: the unit normal
+   *  into the body. False if there is no surface, or this rank does not have all nodes. */
+  bool make_line(int axis, const int *base, double at, const double *into, Line &) const;
   /** Its response, when capacities are known. False if a node has none. */
   bool find_response(Line &) const;
   double temperature(const Line &) const;

@@ -134,9 +134,9 @@ bool MPMHeatContact::make_place(int axis, const int *index, int64_t a, int64_t b
   for (double &x : normal) x /= length;
   place.share = heat_share_of_axis(normal, lattice.dim, axis);
   if (place.share == 0.0) return false;
+  const double back[3] = {-normal[0], -normal[1], -normal[2]};
   for (int k = 0; k < 2; k++)
-    if (!body[k]->make_line(axis, index, index[axis] + part, k ? normal[axis] : -normal[axis],
-                            place.line[k]))
+    if (!body[k]->make_line(axis, index, index[axis] + part, k ? normal : back, place.line[k]))
       return false;
   const double gap = (place.line[1].place - place.line[0].place) * normal[axis];
   const double near = std::min(1.0, (IS_APART - gap) / (IS_APART - TOUCHES));
@@ -147,7 +147,6 @@ bool MPMHeatContact::make_place(int axis, const int *index, int64_t a, int64_t b
   if (thin) {
     double at[3] = {(double) index[0], (double) index[1], (double) index[2]};
     at[axis] += part;
-    const double back[3] = {-normal[0], -normal[1], -normal[2]};
     for (int k = 0; k < 2; k++) thin->take(entry, *body[k], at, k ? normal : back, place.area);
   }
   return true;

@@ -185,7 +185,7 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
     Place place;
     place.share = heat_share_of_axis(into, lattice.dim, a);
     const double at = index[a] + part;
-    if (place.share == 0.0 || !body.make_line(a, index, at, into[a], place.line)) return;
+    if (place.share == 0.0 || !body.make_line(a, index, at, into, place.line)) return;
     const double gap = (place.line.place - at) * into[a];
     const double touches = std::min(1.0, (IS_APART - gap) / (IS_APART - TOUCHES));
     if (!(touches > 0.0)) return;
@@ -306,7 +306,7 @@ void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBo
     after[a] = lattice.wrap(a, after[a] + 1);
     const double others_share = (1.0 - part) * hidden(index, others) + part * hidden(after, others);
     const double open = std::min(1.0, (HIDDEN - others_share) / (HIDDEN - OPEN));
-    if (!(open > 0.0) || !body.make_line(a, index, index[a] + part, into[a], place.line)) return;
+    if (!(open > 0.0) || !body.make_line(a, index, index[a] + part, into, place.line)) return;
     place.share *= open;
     place.area = place.share * most * side * lattice.cell_volume() / (h * std::fabs(into[a]));
     place.condition = condition;

@@ -269,6 +269,33 @@ TEST(Expansion, EachPointStartsFromItsOwnTemperature)
   EXPECT_NEAR(p.pressure(), 0.0, 1e-8);
 }
 
+// aluminum warmed by 100 K, or strained by 1e-3: free strain, stress between walls and in a die, elastic cooling, and the
+// adiabatic bulk modulus. These are linear in what is done, of which a small part is done here
+TEST(Expansion, Aluminum)
+{
+  constexpr double PART = 1e-4;
+  const std::string text =
+      "density 2700 linear 70e9 0.33 thermal adiabatic 900 293 0 expansion 23e-6";
+  MixedControl free, clamped, confined;
+  for (int d = 0; d < 3; d++) free.stress_given[d] = true;
+  clamped.stress_given[1] = clamped.stress_given[2] = true;
+  Point p(text), q(text), r(text);
+  for (MaterialPoint *point : {(MaterialPoint *) &p, (MaterialPoint *) &q, (MaterialPoint *) &r})
+    warm_to(*point, 293 + 100 * PART);
+  p.step(free, 1.0);
+  q.step(clamped, 1.0);
+  r.step(confined, 1.0);
+  EXPECT_NEAR((std::cbrt(p.batch.J[0]) - 1) / PART, 2.3e-3, 1e-6 * 2.3e-3);
+  EXPECT_NEAR(q.stress(0) / PART, -1.61e8, 1e-6 * 1.61e8);
+  EXPECT_NEAR(r.stress(0) / PART, -4.735294118e8, 1e-6 * 4.73529e8);
+
+  Point s(text + " gruneisen consistent"), t(text);
+  for (MaterialPoint *point : {(MaterialPoint *) &s, (MaterialPoint *) &t})
+    move_to(*point, isotropic(std::cbrt(1 + 1e-3 * PART)));
+  EXPECT_NEAR((value(s, "temperature") - 293) / PART, -0.570963, 1e-6);
+  EXPECT_NEAR(s.pressure() / t.pressure(), 1.039396, 1e-6);
+}
+
 TEST(Expansion, BadInputIsRefused)
 {
   expect_refused(

@@ -1,0 +1,64 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_LAYER_MEAN_H
+#define LMP_MPM_LAYER_MEAN_H
+
+#include "mpm_node_scalar.h"
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** Conductivities of points next to interfaces of materials that conduct differently: the harmonic mean across an
+ *  interface and, if this is wanted, the arithmetic one along it, over about a node spacing. */
+class MPMLayerMean {
+ public:
+  /** Conductivities [n] > 0 and volumes [n] of points; false: this run does not conduct. */
+  using Fill =
+      std::function<bool(const MPMPointMap::Run &, int first, int n, double *k, double *volume)>;
+
+  /** A mean across an interface is not above so many times the conductivity of the point itself. */
+  static constexpr double MOST = 4.0;
+
+  /** along: means along interfaces, too, which may be much above the conductivity of the point. */
+  MPMLayerMean(MPMField &field, bool along) : field(field), nodes(field), means_along(along) {}
+
+  /** Start of a run. */
+  void init() { nodes.init(false, true); }
+  /** The means of this rank's points in this step. Collective. */
+  void find(const Fill &);
+  /** The greatest conductivity of a point. */
+  double most(int i) const { return means[i].along + std::max(0.0, -means[i].less); }
+  /** Bound of this over the conductivity of the point itself, from that of the greatest of all points. */
+  double most_over_own(double ratio) const { return means_along ? ratio : std::min(ratio, MOST); }
+  /** Conductivity of a point times the vector q, in place. */
+  void multiply(int i, double *q) const
+  {
+    const Mean &m = means[i];
+    const double part = m.less * (m.normal[0] * q[0] + m.normal[1] * q[1] + m.normal[2] * q[2]);
+    for (int d = 0; d < 3; d++) q[d] = m.along * q[d] - part * m.normal[d];
+  }
+
+  double memory_usage() const { return nodes.memory_usage() + means.capacity() * sizeof(Mean); }
+
+ private:
+  struct Mean {
+    double along, less;    // along an interface, and by how much less across it
+    double normal[3];
+  };
+  MPMField &field;
+  MPMNodeScalar nodes;
+  const bool means_along;
+  std::vector<Mean> means;    // [n]
+};
+
+}    // namespace LAMMPS_NS
+#endif
