@@ -788,6 +788,7 @@ void FixMPMMixture::share_strain()
       for (int k = 0; k < 3 * dim; k++) F[k] *= stretch;
     }
   });
+  field.jacobians.forget();
 }
 
 /* ----------------------------------------------------------------------

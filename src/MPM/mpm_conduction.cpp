@@ -77,8 +77,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int AHEAD = BATCH;    // distance of prefetches, in points
-
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
@@ -106,6 +104,7 @@ void MPMConduction::init(double sigma)
         : all.conductivity;
     slowest = std::min(slowest, least / (material.density() * all.capacity));
   }
+  if (conducts()) field.jacobians.ask();
   total = field.frame->is_total();
   steepest = 0.0;
   if (field.options.shape == QUADRATIC || field.options.shape == CUBIC) {
@@ -291,10 +290,9 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
         if (!t) return false;
         const double *const rmass = atom->rmass + first, *const vfrac = atom->vfrac + first;
         double *const V = volumes.data() + first;
-        for (int p = 0; p < n; p++) {
-          __builtin_prefetch(field.points->F[std::min(first + p + AHEAD, atom->nlocal - 1)]);
-          V[p] = vfrac[p] * MPMPoints::det(field.points->F[first + p]);
-        }
+        double room[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, room);
+        for (int p = 0; p < n; p++) V[p] = vfrac[p] * J[p];
         Conduction c = t->all;
         double greatest = c.most();
         for (int p = 0; p < n; p++) {

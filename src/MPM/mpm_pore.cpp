@@ -55,8 +55,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int AHEAD = BATCH;    // distance of prefetches, in points
-
 /* ---------------------------------------------------------------------- */
 
 MPMPore::MPMPore(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
@@ -83,6 +81,8 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
         waves = std::min(waves, one.biot / sqrt(storage * fix->material->density() * unit));
       }
   nodes.init(true, surface.any());
+  wet = !soils.empty();
+  if (wet) field.jacobians.ask();
   if (surface.any()) surface.init();
 
   const MPMStencil stencil(field);
@@ -96,6 +96,18 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
       if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
     steepest = std::max(steepest, sum);
   }
+}
+
+void MPMPore::look_for_water()
+{
+  int any = 0, all;
+  for (const auto &run : field.map->runs) any |= soil(run.material) != nullptr;
+  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
+  wet = all;
+  if (wet) return;
+  fastest = exchange = 0.0;
+  nodes.value.clear();
+  nodes.rate.clear();
 }
 
 const MPMPore::Soil *MPMPore::soil(const FixMPMMaterial *fix) const
@@ -130,14 +142,14 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
         const Soil *const s = soil(run.material);
         if (!s) return false;
         double *const C = capacity.data() + first, *const K = conductance.data() + first;
-        double most = fastest;
+        double most = fastest, room[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, room);
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          __builtin_prefetch(field.points->F[std::min(i + AHEAD, atom->nlocal - 1)]);
-          const double J = field.points->jacobian(i), V = J * atom->vfrac[i];
-          C[p] = V * s->of.storage_at(J, water);
-          K[p] = V * mobility(*s, i, J, formula);
-          in_forces[i] = s->of.biot * J;
+          const double V = J[p] * atom->vfrac[i];
+          C[p] = V * s->of.storage_at(J[p], water);
+          K[p] = V * mobility(*s, i, J[p], formula);
+          in_forces[i] = s->of.biot * J[p];
           if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
           points.volume[p] = K[p];
           points.capacity[p] = C[p];
@@ -217,9 +229,11 @@ void MPMPore::take_motion()
     const Soil *const s = soil(run.material);
     if (!s) return;
     field.kernel.g2p_gradient(rows, step, first, first + n, base, field.map->tile_load, L);
+    double room[BATCH];
+    const double *const J = field.jacobians.get(field, first, n, room);
     for (int p = 0; p < n; p++) {
       const int i = first + p;
-      const double V = field.points->jacobian(i) * atom->vfrac[i];
+      const double V = J[p] * atom->vfrac[i];
       squeezed[i] = -s->of.biot * V * field.frame->volume_change(i, L + nL * p, dt) / dt;
     }
   });

@@ -36,15 +36,17 @@ class MPMPore : protected Pointers {
 
   /** Start of a run: the soils of this field. */
   void init(const std::vector<MPMPoreSoil> &);
-  bool has_water() const { return !soils.empty(); }
+  /** The points are known: have any of them water, on any rank? Collective. */
+  void look_for_water();
+  bool has_water() const { return wet; }
 
   /** Gradients of points whose pressures alone were given; those of a linear pressure are exact. Collective. */
   void find_gradients(const MPMRows &state, const double *formula);
   /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n] permeabilities of
    *  points, or null. */
   void begin_step(const MPMRows &state, const double *formula);
-  /** [n] J times the pressure in internal forces. */
-  const double *pressure_in_forces() const { return in_forces.data(); }
+  /** [n] J times the pressure in internal forces; null: there is none. */
+  const double *pressure_in_forces() const { return wet ? in_forces.data() : nullptr; }
   /** The velocities of the step are known. */
   void take_motion();
   /** Rates of the pressures of nodes; adds the volumes of water that come in for each time, and the power of what
@@ -72,6 +74,7 @@ class MPMPore : protected Pointers {
   const double *const gravity;
   const double relax;    // of points, in the rate at which waves cross a cell
   std::vector<Soil> soils;
+  bool wet = false;    // there are points of these
   double steepest =
       0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
   double slowest = 0.0;    // smallest mobility over storage of a soil
