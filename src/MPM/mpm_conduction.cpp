@@ -104,7 +104,7 @@ void MPMConduction::init(double sigma)
         : all.conductivity;
     slowest = std::min(slowest, least / (material.density() * all.capacity));
   }
-  if (conducts()) field.jacobians.ask();
+  active = !thermals.empty();
   total = field.frame->is_total();
   steepest = 0.0;
   if (field.options.shape == QUADRATIC || field.options.shape == CUBIC) {
@@ -122,6 +122,18 @@ void MPMConduction::init(double sigma)
   conducted = exchanged = 0.0;
   faces.init(sigma);
   scalar.init(transfer.kind != MPMHeatTransfer::PIC, faces.any());
+}
+
+void MPMConduction::find_points(bool may_rest)
+{
+  int any = 0, all = !thermals.empty();
+  for (const auto &run : field.map->runs) any |= thermal(run.material) != nullptr;
+  if (any) field.jacobians.ask();
+  if (all && may_rest) MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
+  active = all;
+  if (active) return;
+  temperature.clear();
+  rate.clear();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -402,6 +414,7 @@ double MPMConduction::greatest_rate(double conduction, double exchange)
  *  what they have inside of a body that is not deformed. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
+  if (!active) return 0.0;
   const double h = field.lattice.h;
   const int dim = field.lattice.dim;
   const bool bounded = steepest > 0.0 || field.boxes;

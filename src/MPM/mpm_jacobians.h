@@ -28,7 +28,7 @@ class MPMJacobians {
  public:
   /** Start of a run: nobody has asked yet, and nothing is known. */
   void init() { wanted = known = false; }
-  /** They are wanted in this run; called by init_physics(). */
+  /** They are wanted in this run, by who has points in this field. */
   void ask() { wanted = true; }
 
   /** Points from first on have the F of the batch now, and all others of the field are next. nmax: room for atoms. */

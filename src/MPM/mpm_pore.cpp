@@ -82,7 +82,6 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
       }
   nodes.init(true, surface.any());
   wet = !soils.empty();
-  if (wet) field.jacobians.ask();
   if (surface.any()) surface.init();
 
   const MPMStencil stencil(field);
@@ -104,6 +103,7 @@ void MPMPore::look_for_water()
   for (const auto &run : field.map->runs) any |= soil(run.material) != nullptr;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
   wet = all;
+  if (any) field.jacobians.ask();
   if (wet) return;
   fastest = exchange = 0.0;
   nodes.value.clear();
@@ -299,6 +299,7 @@ double MPMPore::greatest_rate() const
 
 double MPMPore::greatest_rate(tagint &tag) const
 {
+  if (!wet) return 0.0;
   double most = fastest;    // formulas are evaluated in steps
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
@@ -315,7 +316,7 @@ double MPMPore::greatest_rate(tagint &tag) const
 
 double MPMPore::wave_speed(int i, double c) const
 {
-  const Soil *const s = soil(field.material_of(i));
+  const Soil *const s = wet ? soil(field.material_of(i)) : nullptr;
   if (!s) return c;
   const double J = field.points->jacobian(i), density = atom->rmass[i] / (J * atom->vfrac[i]);
   const double more = s->of.biot * s->of.biot / s->of.storage_at(J, water);
