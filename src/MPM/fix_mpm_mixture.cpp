@@ -842,6 +842,7 @@ void FixMPMMixture::share_strain()
       for (int k = 0; k < 3 * dim; k++) F[k] *= stretch;
     }
   });
+  field.jacobians.forget();
 }
 
 /* ----------------------------------------------------------------------

@@ -553,6 +553,7 @@ void FixMPMPore::begin_step()
   const double *const formula = formula_values.empty() ? nullptr : formula_values.data();
   for (auto &field : fields) {
     if (field->motion) field->motion->begin_step(inertia);
+    if (!field->has_water()) continue;
     if (!gradients_known) field->find_gradients(pressure, formula);
     field->begin_step(pressure, inertia, formula);
   }
@@ -568,6 +569,7 @@ void FixMPMPore::flow()
 {
   double mine = 0.0, greatest;
   for (auto &field : fields) {
+    if (!field->has_water()) continue;
     field->take_motion();
     field->move_water();
     // waves limit the step of water with inertia, which is one of theirs
@@ -586,9 +588,11 @@ void FixMPMPore::flow()
   std::fill(in_step.begin(), in_step.end(), 0.0);
   steps.advance(stages, dt, [this]() {
     std::fill(present.begin(), present.end(), 0.0);
-    for (auto &field : fields) field->find_rates(present);
+    for (auto &field : fields)
+      if (field->has_water()) field->find_rates(present);
   });
-  for (auto &field : fields) field->end_step(pressure);
+  for (auto &field : fields)
+    if (field->has_water()) field->end_step(pressure);
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
   dt_last = dt;
   flows_known = false;

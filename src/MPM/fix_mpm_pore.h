@@ -75,6 +75,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   void setup_points() override;
   void extend_topology(MPMField &field) override { of(field).surface.extend_topology(); }
+  void topology_changed(MPMField &field) override { of(field).look_for_water(); }
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
   {

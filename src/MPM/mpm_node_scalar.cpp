@@ -80,7 +80,8 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
   for (auto &block : field.map->active) {
     int *const box = box_of(block);
     reset_box(box);
-    visit(block, DISTANCE_SLOPES, box, [&](const auto &run, int first, int n, const auto &prepare) {
+    const auto kind = slopes ? DISTANCE_SLOPES : NO_SLOPES;
+    visit(block, kind, box, [&](const auto &run, int first, int n, const auto &prepare) {
       if (!fill(run, first, n, points)) return false;
       prepare();
       if (slopes) {
@@ -207,13 +208,12 @@ void MPMNodeScalar::values_to_points(const TakeValues &take)
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
     kernels.load(tile, value.data(), field.grid.blocks[block.slot].slot, box_of(block));
-    visit(block, GRADIENT_SLOPES, nullptr,
-          [&](const auto &run, int first, int n, const auto &prepare) {
-            prepare();
-            kernels.get_values(stencil, tile, values);
-            take(run, first, n, values);
-            return true;
-          });
+    visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
+      prepare();
+      kernels.get_values(stencil, tile, values);
+      take(run, first, n, values);
+      return true;
+    });
   }
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
 }

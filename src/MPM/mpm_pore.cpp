@@ -58,8 +58,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int AHEAD = BATCH;    // distance of prefetches, in points
-
 /* ---------------------------------------------------------------------- */
 
 MPMPore::MPMPore(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
@@ -91,6 +89,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
         dries = dries || one.retention.can_dry();
       }
   nodes.init(true, surface.any());
+  wet = !soils.empty();
   if (surface.any()) surface.init(dries);
   suction.reset();
   if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
@@ -114,6 +113,19 @@ void MPMPore::weigh_points(const MPMRows &state) const
   for (int i = 0; i < atom->nlocal; i++)
     if (field.is_point(i))
       if (const auto *const s = soil_of(i)) suction->weigh(i, *s, state[i][0]);
+}
+
+void MPMPore::look_for_water()
+{
+  int any = 0, all;
+  for (const auto &run : field.map->runs) any |= soil(run.material) != nullptr;
+  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
+  wet = all;
+  if (any) field.jacobians.ask();
+  if (wet) return;
+  fastest = exchange = 0.0;
+  nodes.value.clear();
+  nodes.rate.clear();
 }
 
 const MPMPore::Soil *MPMPore::soil(const FixMPMMaterial *fix) const
@@ -175,20 +187,21 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
         const Soil *const s = soil(run.material);
         if (!s) return false;
         double *const C = capacity.data() + first, *const K = conductance.data() + first;
-        double most = fastest;
+        double most = fastest, room[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, room);
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          __builtin_prefetch(field.points->F[std::min(i + AHEAD, atom->nlocal - 1)]);
-          const double J = field.points->jacobian(i), V = J * atom->vfrac[i];
-          C[p] = V * s->of.storage_at(J, water);
-          const double k = mobility(*s, i, J, formula);
+          const double V = J[p] * atom->vfrac[i];
+          C[p] = V * s->of.storage_at(J[p], water);
+          const double k = mobility(*s, i, J[p], formula);
           K[p] = V * k;
-          in_forces[i] = s->of.biot * J;
+          in_forces[i] = s->of.biot * J[p];
           const double *const mine = state[i];
-          if (suction) suction->begin_point(i, s->of, J, V, mine[0], C[p], K[p], in_forces[i]);
+          if (suction) suction->begin_point(i, s->of, J[p], V, mine[0], C[p], K[p], in_forces[i]);
           if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
-          if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J, density);
-          if (surface.any()) points.volume[p] = suction ? K[p] : V * at_surface(*s, i, J, k, mine);
+          if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J[p], density);
+          if (surface.any())
+            points.volume[p] = suction ? K[p] : V * at_surface(*s, i, J[p], k, mine);
           points.capacity[p] = C[p];
           points.row[p][3] = mine[0];
           points.row[p][0] = mine[1];
@@ -319,9 +332,11 @@ void MPMPore::take_motion()
     const Soil *const s = soil(run.material);
     if (!s) return;
     field.kernel.g2p_gradient(rows, step, first, first + n, base, field.map->tile_load, L);
+    double room[BATCH];
+    const double *const J = field.jacobians.get(field, first, n, room);
     for (int p = 0; p < n; p++) {
       const int i = first + p;
-      const double V = field.points->jacobian(i) * atom->vfrac[i];
+      const double V = J[p] * atom->vfrac[i];
       const double change = field.frame->volume_change(i, L + nL * p, dt);
       squeezed[i] = -s->of.biot * V * change / dt;
       if (suction) squeezed[i] *= suction->take_motion(i, V * change, dt);
@@ -428,6 +443,7 @@ double MPMPore::greatest_rate() const
 
 double MPMPore::greatest_rate(const MPMRows &state, tagint &tag) const
 {
+  if (!wet) return 0.0;
   double most = fastest;    // formulas are evaluated in steps
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
@@ -448,7 +464,7 @@ double MPMPore::greatest_rate(const MPMRows &state, tagint &tag) const
 
 double MPMPore::wave_speed(int i, double p, double c) const
 {
-  const Soil *const s = soil(field.material_of(i));
+  const Soil *const s = wet ? soil(field.material_of(i)) : nullptr;
   if (!s) return c;
   const double J = field.points->jacobian(i), density = atom->rmass[i] / (J * atom->vfrac[i]);
   const double storage = s->of.storage_at(J, water);

@@ -41,7 +41,9 @@ class MPMPore : protected Pointers {
 
   /** Start of a run: the soils of this field. content: of points, if there is a soil that can dry (MPMPoreSuction). */
   void init(const std::vector<MPMPoreSoil> &, double *const &content);
-  bool has_water() const { return !soils.empty(); }
+  /** The points are known: have any of them water, on any rank? Collective. */
+  void look_for_water();
+  bool has_water() const { return wet; }
 
   /** The water of points of soils that can dry, where it is not yet known. */
   void weigh_points(const MPMRows &state) const;
@@ -50,8 +52,8 @@ class MPMPore : protected Pointers {
   /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n] permeabilities of
    *  points, or null. */
   void begin_step(const MPMRows &state, const MPMRows &flow, const double *formula);
-  /** [n] J times the pressure in internal forces. */
-  const double *pressure_in_forces() const { return in_forces.data(); }
+  /** [n] J times the pressure in internal forces; null: there is none. */
+  const double *pressure_in_forces() const { return wet ? in_forces.data() : nullptr; }
   /** See MPMPhysics::surface_force(). */
   void find_surface_force(const MPMRows &state, const std::vector<char> &near,
                           std::vector<double> &force) const;
@@ -86,6 +88,7 @@ class MPMPore : protected Pointers {
   const double *const gravity;
   const double relax;    // of points, in the rate at which waves cross a cell
   std::vector<Soil> soils;
+  bool wet = false;    // there are points of these
   double steepest =
       0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
   double slowest = 0.0;    // smallest mobility over storage of a soil

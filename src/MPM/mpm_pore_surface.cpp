@@ -101,9 +101,13 @@ void MPMPoreSurface::find_blocks_near()
 {
   const auto &blocks = field.grid.blocks;
   std::vector<double> filled(blocks.size(), 0.0);
+  double room[BATCH];
   for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++)
-      filled[run.slot] += field.atom->vfrac[i] * field.points->jacobian(i);
+    for (int i = run.first; i < run.last; i += BATCH) {
+      const int n = std::min(BATCH, run.last - i);
+      const double *const J = field.jacobians.get(field, i, n, room);
+      for (int p = 0; p < n; p++) filled[run.slot] += field.atom->vfrac[i + p] * J[p];
+    }
   const double full = NODES_PER_BLOCK * field.lattice.cell_volume();
   near.assign(blocks.size(), 0);
   for (std::size_t ib = 0; ib < blocks.size(); ib++)
