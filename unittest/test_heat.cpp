@@ -304,6 +304,89 @@ TEST(Source, HeatsPoints)
   }
 }
 
+namespace {
+
+/** A block of 1 x 1 or 1 x 1 x 1 with 10 cells along its sides, at 1, whose material touches all faces of the box; conductivity
+ *  1e-3, so that the rates of its conduction are some 0.1 to 1. */
+std::string block(int dim, double offset, const std::string &heat)
+{
+  const std::string at = strprintf(" %g", offset);
+  return (dim == 2 ? plane("lj", "f f", "0 1 0 1", 1, 0.02)
+                   : space("lj", "f f f", "0 1 0 1 0 1", 1, 0.02)) +
+      "create_points 1 box spacing 0.05\nfix grid all mpm 0.1 dtcheck no origin" + at + at +
+      (dim == 3 ? at : "") +
+      "\nfix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e-3\n"
+      "fix heat all mpm/heat " +
+      heat + "\n";
+}
+
+/** The longest step that a single stage may have. */
+double one_stage(const std::string &scene)
+{
+  double low = 0.1, high = 10.0;
+  while (high / low > 1.005) {
+    const double middle = std::sqrt(low * high);
+    (error_of(scene + strprintf("timestep %.17g\nrun 1\n", middle)).empty() ? low : high) = middle;
+  }
+  return low;
+}
+
+}    // namespace
+
+// convection on faces that meet at edges and a corner: steps just below the limit keep temperatures between those at the start
+// and outside
+SERIAL_TEST(Corner, IsStable)
+{
+  for (const int dim : {2, 3})
+    for (const double offset : {0.0, 0.025, 0.05})
+      for (const double H : {0.1, 1e3}) {
+        const std::string on = strprintf(" convection %g 0.0 ", H);
+        const std::string scene =
+            block(dim, offset, "stages 1 xlo" + on + "ylo" + on + (dim == 3 ? "zlo" + on : ""));
+        Scene run(scene +
+                  strprintf("timestep %.17g\n", 0.99 * measured("limit", one_stage(scene))));
+        for (int k = 0; k < 4; k++) {
+          run.commands("run 40\n");
+          Warm warm(run);
+          double least = 1.0, most = 0.0;
+          for (int i = 0; i < run.n(); i++) {
+            least = std::min(least, warm.T(i));
+            most = std::max(most, warm.T(i));
+          }
+          EXPECT_GT(least, 0.0) << dim << " " << offset << " " << H;
+          EXPECT_LT(most, 1.0 + 1e-12) << dim << " " << offset << " " << H;
+        }
+      }
+}
+
+// what is held there follows that outside in no time, and heat is what comes through the faces
+SERIAL_TEST(Corner, OfPerfectConvection)
+{
+  double heat[2];
+  for (const bool held : {false, true}) {
+    Scene run(block(2, 0.03,
+                    held ? "xlo temperature 0.0 ylo temperature 0.0"
+                         : "xlo convection 1e6 0.0 ylo convection 1e6 0.0"));
+    const double before = Warm(run).heat();
+    run_to(run, 40.0, 0.5);
+    heat[held] = measured("heat", Warm(run).heat());
+    EXPECT_NEAR((heat[held] - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
+  }
+  EXPECT_NEAR(heat[0] / heat[1], 1.0, 0.01);
+}
+
+// fix mpm/dt knows how fast heat comes through faces before the first step of each run, also if all stages are needed
+SERIAL_TEST(Corner, HasATimeStep)
+{
+  for (const char *kind : {"convection 1000.0 0.0", "convection v_H 0.0"}) {
+    const std::string on = std::string(" ") + kind + " ";
+    Scene run(replaced(block(2, 0.0, "stages 5 xlo" + on + "yhi" + on), "dtcheck no", "") +
+              "variable H equal 1000\nfix dt all mpm/dt 0.95\ntimestep 1e-3\n");
+    run.commands("run 20\nrun 20\n");
+    EXPECT_GT(measured("dt", run.lmp->update->dt), 1.0);
+  }
+}
+
 // Stefan: ice at its melting point, St = 1: the front is at 2 * 0.62006263 sqrt(t), and enthalpy is kept
 PARAMETER_TEST(Melting, FrontMoves, const char *, Values("scheme usl", "scheme usf"))
 {

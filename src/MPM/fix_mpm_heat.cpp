@@ -295,7 +295,7 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
     }
     if (gradients) field->slopes.push_back(&gradients);
     fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
-    fields.back()->init(sigma());
+    fields.back()->init(sigma(), !surfaces.empty() || !pairs.empty());
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
   }
   init_contacts();
@@ -322,6 +322,24 @@ static bool conducts(const MPMField &field, MPI_Comm world)
   }
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
   return all;
+}
+
+/** Bodies that touch hide free surfaces of each other, also those that do not conduct. */
+void FixMPMHeat::find_neighbors()
+{
+  if (std::none_of(surfaces.begin(), surfaces.end(), [](const auto &s) {
+        return s.region.empty();
+      }))
+    return;
+  const auto contacts = find_fixes<FixMPMContact>(lmp);
+  for (auto &skin : skins)
+    for (auto &field : fields) {
+      const auto &mine = skin->body.field, &other = field->field;
+      if (std::any_of(contacts.begin(), contacts.end(), [&](auto *fix) {
+            return fix->couples(mine.id(), other.id());
+          }))
+        skin->neighbors.push_back(&body_of(other));
+    }
 }
 
 void FixMPMHeat::init_contacts()
@@ -355,12 +373,11 @@ void FixMPMHeat::init_contacts()
   bodies.clear();
   contacts.clear();
   skins.clear();
-  for (auto &field : fields) {
-    if (surfaces.empty()) break;
-    auto &body = body_of(field->field);    // those that do not conduct hide free surfaces
-    if (body.conduction)
-      skins.push_back(std::make_unique<MPMHeatSurfaces>(lmp, body, surfaces, sigma()));
-  }
+  for (auto &field : fields)
+    if (!surfaces.empty() && field->conducts())
+      skins.push_back(
+          std::make_unique<MPMHeatSurfaces>(lmp, body_of(field->field), surfaces, sigma()));
+  find_neighbors();
   for (auto &field : fields)
     if (field->conducts() && field->faces.any() && weighs_faces(field->field))
       body_of(field->field);
@@ -455,9 +472,7 @@ void FixMPMHeat::find_surfaces()
       thin.looks((int) (surfaces.size() + contacts.size()));
   for (std::size_t k = 0; k < contacts.size(); k++)
     contacts[k]->find_contacts(looks ? &thin : nullptr, (int) (surfaces.size() + k));
-  std::vector<const MPMHeatBody *> all;
-  for (auto &body : bodies) all.push_back(body.get());
-  for (auto &skin : skins) skin->find_lines(all, looks ? &thin : nullptr);
+  for (auto &skin : skins) skin->find_lines(looks ? &thin : nullptr);
   if (looks) report_thin();
 }
 
@@ -481,41 +496,59 @@ void FixMPMHeat::report_thin()
                  id, what, found.x[0], found.x[1], found.x[2], update->ntimestep);
 }
 
+int FixMPMHeat::exchanges(const MPMConduction &of_field) const
+{
+  return (int) contacts.size() + !skins.empty() + of_field.faces.axes_that_follow();
+}
+
 /* ----------------------------------------------------------------------
    temperatures of nodes, and the stages that all fields need for their step
 ------------------------------------------------------------------------- */
 
 int FixMPMHeat::count_stages()
 {
-  std::vector<double> mine, all;
+  static constexpr int NRATE =
+      4;    // of a field: of its conduction, of its faces normal to each axis
+  std::vector<double> mine(NRATE * fields.size(), 0.0), all;
   find_surfaces();
-  for (auto &field : fields) {
-    const bool conducts = field->conducts();
-    static const std::vector<double> unknown;
-    mine.push_back(conducts ? field->points_to_nodes(gradients) : 0.0);
-    mine.push_back(conducts && field->faces.any()
-                       ? field->faces.begin_step(
-                             field->node_capacity(), field->node_volume(),
-                             weighs_faces(field->field) ? body_of(field->field).gradient : unknown,
-                             field->temperature)
-                       : 0.0);
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    auto &field = *fields[k];
+    if (!field.conducts()) continue;
+    mine[NRATE * k] = field.points_to_nodes(gradients);
+    if (field.faces.any())
+      field.faces.begin_step(field.node_capacity(), field.node_volume(),
+                             weighs_faces(field.field) ? &body_of(field.field) : nullptr,
+                             field.temperature, &mine[NRATE * k + 1]);
   }
   for (auto &contact : contacts) mine.push_back(contact->begin_step());
   for (auto &skin : skins) mine.push_back(skin->begin_step());
   all.resize(mine.size());
   MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_MAX, world);
   double greatest = 0.0;
-  for (std::size_t k = 0; k < fields.size(); k++)
-    greatest = std::max(greatest, fields[k]->greatest_rate(all[2 * k], all[2 * k + 1]));
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    fields[k]->keep_rate(all[NRATE * k]);
+    greatest = std::max(greatest, all[NRATE * k]);
+  }
 
-  // a node can be in contacts with several bodies, and at a surface; that of one field is not another's
-  const double dt = fields[0]->field.step_dt(), cap = std::max(greatest, 1.0 / dt);
-  const double *rates = all.data() + 2 * fields.size();
+  // a node can be at faces, in contacts with several bodies, and at a surface; that of one field is not another's. What
+  // costs no stage needs no limit
+  static constexpr double BELOW_ONE_STEP = 0.95;
+  int most_at_a_node = 0;
+  for (auto &field : fields) most_at_a_node = std::max(most_at_a_node, exchanges(*field));
+  const double dt = fields[0]->field.step_dt(),
+               cap = std::max(greatest, BELOW_ONE_STEP / (dt * std::max(most_at_a_node, 1)));
+  const double *rates = all.data() + NRATE * fields.size();
+  double most = 0.0;
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    const double rate = fields[k]->faces.limit(cap, &all[NRATE * k + 1]);
+    most = std::max(most, rate);
+  }
+  greatest += most;
   for (auto &contact : contacts) {
     contact->limit(cap);
     greatest += std::min(cap, *rates++);
   }
-  double most = 0.0;
+  most = 0.0;
   for (auto &skin : skins) {
     skin->limit(cap);
     most = std::max(most, std::min(cap, *rates++));
@@ -540,7 +573,6 @@ void FixMPMHeat::find_rates()
     if (!field->conducts()) continue;
     field->find_rates(source.empty() ? nullptr : source_values.data(), present);
     field->faces.add_rates(field->temperature, field->rate, present);
-    field->faces.hold_rates(field->rate, present);
   }
   if (contacts.empty() && skins.empty()) return;
   for (auto &body : bodies)
@@ -583,10 +615,13 @@ void FixMPMHeat::conduct()
 
 double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
 {
-  // exchange is as fast as conduction at the most
-  const double stiff = (double) contacts.size() + (skins.empty() ? 0.0 : 1.0);
+  // other exchange is as fast as conduction at the most
+  const auto &conduction = of(field);
+  const double rate = conduction.greatest_rate_of_points(tag);
+  const double others = (double) contacts.size() + (skins.empty() ? 0.0 : 1.0);
   return MPMSuperStep::reach(most_stages) *
-      MPMSuperStep::explicit_limit((1.0 + stiff) * of(field).greatest_rate_of_points(tag));
+      MPMSuperStep::explicit_limit((1.0 + others) * rate +
+                                   conduction.faces.expected_rate(rate, conduction.least_capacity));
 }
 
 /* ----------------------------------------------------------------------

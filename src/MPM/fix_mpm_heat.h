@@ -109,6 +109,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
 
   double sigma() const;
   MPMHeatBody &body_of(const MPMField &);
+  void find_neighbors();
   void init_contacts();
   int places_of_surfaces() const { return GIVERS + NGIVER; }
   int places_of_contacts() const { return places_of_surfaces() + (int) surfaces.size(); }
@@ -116,6 +117,8 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   void report_thin();
   void check(MPMHeatCondition &, const std::string &name);
   void evaluate_variables();
+  /** Of how many kinds of exchange can a node of a field have a part? */
+  int exchanges(const MPMConduction &of_field) const;
   int count_stages();
   void find_rates();
   void conduct();

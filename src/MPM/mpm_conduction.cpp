@@ -90,7 +90,7 @@ MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer
 
 /* ---------------------------------------------------------------------- */
 
-void MPMConduction::init(double sigma)
+void MPMConduction::init(double sigma, bool surfaces)
 {
   thermals.clear();
   slowest = std::numeric_limits<double>::max();
@@ -104,7 +104,9 @@ void MPMConduction::init(double sigma)
     const double least = all.orthotropic
         ? std::min(all.conductivity, std::min(all.across[0], all.across[1]))
         : all.conductivity;
-    slowest = std::min(slowest, least / (material.density() * all.capacity));
+    const double capacity = material.density() * all.capacity;
+    slowest = std::min(slowest, least / capacity);
+    least_capacity = thermals.size() > 1 ? std::min(least_capacity, capacity) : capacity;
   }
   total = field.frame->is_total();
   steepest = 0.0;
@@ -120,9 +122,15 @@ void MPMConduction::init(double sigma)
       steepest = std::max(steepest, sum / (field.lattice.h * field.lattice.h));
     }
   }
-  conducted = exchanged = 0.0;
+  conducted = 0.0;
   faces.init(sigma);
-  scalar.init(transfer.kind != MPMHeatTransfer::PIC, faces.any());
+  wants_volumes = faces.any() || (surfaces && conducts_in_part());
+  scalar.init(transfer.kind != MPMHeatTransfer::PIC, wants_volumes);
+}
+
+bool MPMConduction::conducts_in_part() const
+{
+  return conducts() && thermals.size() < field.materials.size();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -282,7 +290,7 @@ static void copy_rows(int dim, int n, const double *from, int width, double *to,
 double MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
-  const bool simple = !total && steepest > 0.0, wants_volumes = faces.any();
+  const bool simple = !total && steepest > 0.0;
   double most = 0.0;
   volumes.resize(atom->nmax);
   scalar.points_to_nodes(
@@ -393,13 +401,6 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMConduction::greatest_rate(double conduction, double exchange)
-{
-  conducted = conduction;
-  exchanged = exchange;
-  return conducted + exchanged;
-}
-
 /** Functions that points alone do not bound, and domains, have the bound of the last step, and before the first one
  *  what they have inside of a body that is not deformed. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
@@ -430,7 +431,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     most = here;
     tag = atom->tag[i];
   }
-  return (bounded || conducted == 0.0 ? most : conducted) + exchanged;
+  return bounded || conducted == 0.0 ? most : conducted;
 }
 
 double MPMConduction::memory_usage() const
