@@ -9,6 +9,8 @@
 
 #include "heat_testing.h"
 
+#include <map>
+
 using namespace MPM_TEST;
 
 namespace {
@@ -254,6 +256,26 @@ SERIAL_TEST(Radiation, SteadyState)
   EXPECT_NEAR(measured("face", face), 927.0040, 0.05);
   const double *power = run.fix_vector("heat", 7);
   EXPECT_NEAR(power[0] / power[1], -1.0, 1e-4);
+}
+
+// the same constant in all units with kelvins: a plate of 1000 K radiates 5.67e4 W/m^2
+PARAMETER_TEST(Radiation, InUnits, const char *,
+               Values("si", "cgs", "micro", "nano", "metal", "real", "electron"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  // energy/(time length^2) in SI units
+  const std::map<std::string, double> flux = {
+      {"si", 1.0},
+      {"cgs", 1e-3},
+      {"micro", 1e-15 / 1e-6 / 1e-12},
+      {"nano", 1e-21 / 1e-9 / 1e-18},
+      {"metal", 1.602176634e-19 / 1e-12 / 1e-20},
+      {"real", 6.9476954571e-21 / 1e-15 / 1e-20},
+      {"electron", 4.3597447222e-18 / 1e-15 / 2.80028520539e-21}};
+  Scene run(plane(GetParam(), "f p", "0 8 0 4", 1, 0.1) +
+            body("box", "density 1.0 eos linear 1e-6 thermal conducting 1e6 1000 1.0", "1.0") +
+            "fix heat all mpm/heat xhi radiation 1.0 0.0\ntimestep 1e-6\nrun 1\n");
+  EXPECT_NEAR(run.fix_vector("heat", 7)[1] * flux.at(GetParam()) / 4.0 / -5.670374419e4, 1.0, 1e-6);
 }
 
 // NAFEMS T3: T = 100 sin(pi t/40) at one end, 0 at the other one: 36.603 at 0.02 from the first one, after 32 s
@@ -530,6 +552,8 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"fix heat all mpm/heat xlo temperature v_none", "does not exist"},
                   {"fix heat all mpm/heat source 1.0", "must be a variable"},
                   {"fix heat all mpm/heat source v_none", "does not exist"},
+                  {"variable H equal -1.0\nfix heat all mpm/heat xlo convection v_H 0.0",
+                   "xlo: variable H = -1, but it must not be negative"},
                   {"fix heat all mpm/heat stages 0", "stages"},
                   {"fix heat all mpm/heat transfer flip", "must be one of relax pic affine"},
                   {"group a type 1\nfix heat a mpm/heat", "use group all"},

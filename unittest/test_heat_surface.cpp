@@ -388,6 +388,10 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"fix heat all mpm/heat region wall convection -1.0 0.0", "not negative"},
                   {"fix heat all mpm/heat surface radiation 0.5 300", "use units si"},
                   {"fix heat all mpm/heat surface flux v_none", "does not exist"},
+                  {"variable H equal -1.0\nfix heat all mpm/heat surface convection v_H 0.0",
+                   "surface: variable H = -1, but it must not be negative"},
+                  {"variable H equal -1.0\nfix heat all mpm/heat region wall convection v_H 0.0",
+                   "region wall: variable H = -1, but it must not be negative"},
                   {"fix heat all mpm/heat surface flux 1.0 surface flux 2.0", "surface"},
                   {"fix heat all mpm/heat region wall flux 1 region wall flux 2", "given twice"},
                   {"region open block 1 2 INF INF INF INF open 1\n"

@@ -1110,7 +1110,7 @@ double FixMPMContact::heat_of(const Pair &pair, bool owned)
         (a.held >> d & 1 ? a.velocity[d] : pair.ra[4 + d]);
   }
   const double heat = heating->made(J, old, now, dim);
-  heating->between(pair.a, pair.ra, pair.b, pair.rb, heat, owned);
+  heating->between(pair.a, pair.ra, pair.b, pair.rb, pair.n, heat, owned);
   return heat;
 }
 

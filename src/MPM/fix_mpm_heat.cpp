@@ -206,7 +206,8 @@ double FixMPMHeat::sigma() const
                      {"micro", 1.0e-15, 1.0e-6, 1.0e-6},
                      {"nano", 1.0e-21, 1.0e-9, 1.0e-9},
                      {"metal", 1.602176634e-19, 1.0e-12, 1.0e-10},
-                     {"real", 4184.0 / 6.02214076e23, 1.0e-15, 1.0e-10}};
+                     {"real", 4184.0 / 6.02214076e23, 1.0e-15, 1.0e-10},
+                     {"electron", 4.3597447222071e-18, 1.0e-15, 0.529177210903e-10}};
   for (const auto &u : units)
     if (!strcmp(update->unit_style, u.name))
       return 5.670374419e-8 * u.time * u.length * u.length / u.energy;
@@ -266,7 +267,7 @@ void FixMPMHeat::check(MPMHeatCondition &c, const std::string &name)
   if (c.kind == MPMHeatCondition::RADIATION && sigma() == 0.0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/heat {} radiation needs temperatures in kelvins, which units {} do not "
-               "have: use units si, cgs, micro, nano, metal, or real",
+               "have: use units si, cgs, micro, nano, metal, real, or electron",
                name, update->unit_style);
   for (int k = 0; k < c.nvalue(); k++) find_variable(lmp, c.value[k], "fix mpm/heat " + name);
 }
@@ -411,6 +412,14 @@ void FixMPMHeat::topology_changed(MPMField &field)
   for (auto &contact : contacts) contact->topology_changed();
 }
 
+/** Conduction alone takes from nodes what points reach; lines through surfaces have other nodes, too. */
+bool FixMPMHeat::looks_beyond_points() const
+{
+  return !bodies.empty() || std::any_of(fields.begin(), fields.end(), [](const auto &field) {
+    return field->conducts() && field->faces.any();
+  });
+}
+
 MPMConduction &FixMPMHeat::of(const MPMField &field) const
 {
   for (const auto &mine : fields)
@@ -429,6 +438,31 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 /* ---------------------------------------------------------------------- */
 
+/** What the input may not have as a number, variables may not have either. */
+void FixMPMHeat::check_values() const
+{
+  const auto refuse = [&](bool wrong, const std::string &where, const MPM_NS::NumberOrVariable &v,
+                          double now, const char *needed) {
+    if (wrong)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/heat {}: {} = {:.6g}, but it must {}", where,
+                 v.variable.empty() ? "the value" : "variable " + v.variable, now, needed);
+  };
+  const auto check = [&](const MPMHeatCondition &c, const std::string &where) {
+    if (c.kind < MPMHeatCondition::CONVECTION) return;
+    refuse(!(c.now[0] >= 0.0), where, c.value[0], c.now[0], "not be negative");
+    if (c.kind != MPMHeatCondition::RADIATION) return;
+    refuse(c.now[0] > 1.0, where, c.value[0], c.now[0], "not be above 1");
+    refuse(!(c.now[1] >= 0.0), where, c.value[1], c.now[1],
+           "be an absolute temperature, not below 0");
+  };
+  for (int face = 0; face < MPMHeatFaces::NFACE; face++) check(conditions[face], FACE_NAME[face]);
+  for (const auto &[region, c] : surfaces)
+    check(c, region.empty() ? "surface" : "region " + region);
+  for (const auto &p : pairs)
+    refuse(!(p.now >= 0.0), fmt::format("contact {} {}", p.field[0], p.field[1]), p.conductance,
+           p.now, "not be negative");
+}
+
 void FixMPMHeat::evaluate_variables()
 {
   bool any = !source.empty();
@@ -443,6 +477,7 @@ void FixMPMHeat::evaluate_variables()
     for (auto &[region, c] : surfaces)
       for (int k = 0; k < c.nvalue(); k++) c.now[k] = evaluate(lmp, c.value[k]);
     for (auto &p : pairs) p.now = evaluate(lmp, p.conductance);
+    check_values();
     if (source.empty()) return;
     source_values.resize(atom->nmax);
     if (input->variable->atomstyle(source_index))

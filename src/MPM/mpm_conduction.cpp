@@ -166,6 +166,19 @@ static void rotation(const double *F, double R[3][3])
   }
 }
 
+void LAMMPS_NS::principal_conductivities(const Conduction &c, const double *F, double k[3],
+                                         double n[3][3])
+{
+  k[0] = c.conductivity;
+  for (int a = 1; a < 3; a++) k[a] = c.orthotropic ? c.across[a - 1] : c.conductivity;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) n[a][b] = a == b;
+  if (!c.orthotropic) return;
+  double R[3][3];
+  rotation(F, R);
+  MathExtra::times3_transpose(c.axis, R, n);
+}
+
 /* ----------------------------------------------------------------------
    conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
 ------------------------------------------------------------------------- */
@@ -177,13 +190,12 @@ void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) k[a][b] = a == b ? c.conductivity : 0.0;
   if (c.orthotropic) {
-    double R[3][3], n[3][3];
-    rotation(field.points->F[i], R);
-    MathExtra::times3_transpose(c.axis, R, n);    // axes in rows
+    double along[3], n[3][3];
+    principal_conductivities(c, field.points->F[i], along, n);
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++)
-        k[a][b] = c.conductivity * n[0][a] * n[0][b] + c.across[0] * n[1][a] * n[1][b] +
-            c.across[1] * n[2][a] * n[2][b];
+        k[a][b] = along[0] * n[0][a] * n[0][b] + along[1] * n[1][a] * n[1][b] +
+            along[2] * n[2][a] * n[2][b];
   }
   if (!total) return;
   double F[3][3], inverse[3][3], half[3][3];

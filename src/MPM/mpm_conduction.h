@@ -107,5 +107,10 @@ class MPMConduction : protected Pointers {
   double row_bound(double usual);
 };
 
+/** Conductivities of a material along the axes of a point with the deformation gradient F, which are the rows of n, unit
+ *  vectors in space; all the same if the material is isotropic. */
+void principal_conductivities(const MPM_NS::Conduction &, const double *F, double k[3],
+                              double n[3][3]);
+
 }    // namespace LAMMPS_NS
 #endif

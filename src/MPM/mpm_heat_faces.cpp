@@ -122,9 +122,8 @@ double MPMHeatFaces::expected_rate(double cap, double capacity) const
     const auto &H = condition.value[0];
     const bool known =
         condition.kind == MPMHeatCondition::CONVECTION && H.variable.empty() && capacity > 0.0;
-    const double rate = known
-        ? std::max(last[face.axis], MOST * H.value / (capacity * field.lattice.h))
-        : cap;
+    const double rate =
+        known ? std::max(last[face.axis], MOST * H.value / (capacity * field.lattice.h)) : cap;
     rates[face.axis] = std::max(rates[face.axis], std::min(cap, rate));
   }
   return rates[0] + rates[1] + rates[2];

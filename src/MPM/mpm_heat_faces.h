@@ -105,8 +105,8 @@ class MPMHeatFaces : protected Pointers {
   double sigma = 0.0;
   std::vector<Face> faces;
   bool crossing = false;    // prescribed temperatures at faces normal to several axes
-  double fastest = 0.0;         // limit of the rates
-  double last[3] = {};          // rates of the last step
+  double fastest = 0.0;     // limit of the rates
+  double last[3] = {};      // rates of the last step
 
   void prepare(const Face &, Line &, const std::vector<double> &capacity,
                const std::vector<double> &volume, const MPMHeatBody *) const;
