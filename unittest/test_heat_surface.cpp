@@ -360,6 +360,27 @@ TEST(Ranks, AgreeWhileBalanced)
   }
 }
 
+// the area of a disk is the same wherever it crosses periodic faces, on any number of ranks
+TEST(Ranks, AgreeAcrossPeriodicFaces)
+{
+  double first = 0.0;
+  for (const double x : {0.0, 4.0, 4.5, 5.25, 5.5}) {
+    OnRanks run(
+        plane("lj", "p p", "0 8 0 8", 1, 0.1) +
+            "region disk sphere 4 4 0 1.5\ncreate_points 1 region disk spacing 0.125\n" +
+            strprintf("displace_atoms all move %g 5.5 0\n", x) +
+            "fix grid all mpm 0.25\n"
+            "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+            "fix heat all mpm/heat surface flux 1.0\ntimestep 0.001\n",
+        "run 1\n");
+    const double one = run.serial.fix_vector("heat", 10)[9];
+    EXPECT_NEAR(run.parallel.fix_vector("heat", 10)[9] / one, 1.0, 1e-12) << x;
+    EXPECT_NEAR(measured("area", one / (3.0 * PI)), 1.0, 0.02) << x;
+    if (first == 0.0) first = one;
+    EXPECT_NEAR(one / first, 1.0, 1e-10) << x;
+  }
+}
+
 // a region that moves through a periodic block in 3d, with lines beyond the last nodes that points reach
 TEST(Ranks, AgreeOnMovingRegions)
 {
