@@ -597,6 +597,34 @@ TEST(Slump, IsTheSameAcrossPeriodicFaces)
   EXPECT_NEAR(inside.fix("mix")->compute_scalar(), across.fix("mix")->compute_scalar(), 1.0e-9);
 }
 
+// While soil and water are apart, nodes are those of fields without a mixture; a block falls until it is in the water. The
+// ledger has long records all the time
+TEST(Apart, CostsNothingAndChangesNothing)
+{
+  const std::string fields = "fix s soil mpm 1.0\nfix w water mpm 1.0\n";
+  const std::string scene = box(2, "lj", "p f p", "0 8 0 24", 2, 0.3) +
+      "group soil empty\ngroup water empty\n" + fields +
+      "region heap block 2 5 18 20 INF INF\nregion pool block INF INF 0 2 INF INF\n"
+      "create_points 1 region heap ppc 2 fix s group soil\n"
+      "create_points 2 region pool ppc 2 fix w group water\nvelocity soil set 0 -5 0\n";
+  const std::string rest = replaced(stuff, "compute e all mpm/energy\n", "");
+  Twins late(scene + rest, 60, fields + rest, 120, 1.0e-9);
+  Twins early(scene + rest, 150, fields + rest, 30, 1.0e-9);
+  EXPECT_GT(fabs(late.whole.fix_vector("mix", 6)[4]), 1.0e-3);    // they have met
+  EXPECT_LT(difference(late.whole.gather(), early.whole.gather()), 1.0e-9);
+
+  OnRanks ledger(scene + stuff, "run 180\n");
+  EXPECT_LT(measured("difference", difference(ledger.parallel.gather(), late.whole.gather())),
+            1.0e-9);
+
+  Scene apart(scene + rest + "run 60\n");
+  EXPECT_EQ(apart.grid("s").nreal, 4);
+  EXPECT_EQ(apart.grid("w").nreal, 4);
+  apart.commands("run 120\n");
+  EXPECT_EQ(apart.grid("s").nreal, 8);
+  EXPECT_EQ(apart.grid("w").nreal, 8);
+}
+
 // Without a floor, momentum is that of gravity alone
 SERIAL_TEST(Slump, KeepsMomentum)
 {

@@ -230,7 +230,6 @@ void FixMPMMixture::init_action()
           "these strain the water before the soil has moved: use usl or musl"},
          {o.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
           "use apic, aflip, or flip"}});
-    field->keep_old = true;
   }
   refuse_field(lmp, *this, *water.field,
                {{ow.averages_strain(), "locking fbar and both",
@@ -315,10 +314,18 @@ void FixMPMMixture::couple_topology()
   if (stale()) soil.field->map->valid = water.field->map->valid = false;
 }
 
+/** Forces and old velocities of nodes are needed where soil and water may meet: while they are apart, nodes are as they
+ *  would be without this fix. */
 void FixMPMMixture::blocks_found()
 {
   if (!stale()) return;
   for (auto *phase : {&soil, &water}) phase->reach.find(phase->field->grid, world);
+  boxes_meet = soil.reach.may_meet(water.reach);
+  for (auto *phase : {&soil, &water}) {
+    if (phase->field->keep_old_now == boxes_meet) continue;
+    phase->field->keep_old_now = boxes_meet;
+    phase->field->choose_kernels();
+  }
 }
 
 void FixMPMMixture::extend_topology(MPMField &field)
@@ -339,6 +346,9 @@ void FixMPMMixture::topology_changed(MPMField &field)
 void FixMPMMixture::list_blocks()
 {
   common.clear();
+  lists_valid = true;
+  may_meet = boxes_meet;
+  if (!boxes_meet) return;
   std::vector<std::array<int, 3>> keys;
   const Grid &grid = soil.field->grid;
   for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
@@ -353,7 +363,6 @@ void FixMPMMixture::list_blocks()
   int any = !common.empty(), all;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
   may_meet = all;
-  lists_valid = true;
 }
 
 void FixMPMMixture::find_near(Phase &phase, const std::vector<std::array<int, 3>> &keys) const

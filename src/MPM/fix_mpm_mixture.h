@@ -134,8 +134,9 @@ class FixMPMMixture :
   std::vector<double> flux, lead;    // [node][8] U at those of soil, U - u at those of water
   std::vector<double> rates;         // [n] div U at points of soil
   bool lists_valid = false;
-  bool may_meet = false;    // on any rank
-  bool meets = false;       // in this step
+  bool boxes_meet = false;    // boxes around both overlap
+  bool may_meet = false;      // on any rank
+  bool meets = false;         // in this step
   double dt_last = 0.0;
   double dissipated = 0.0;    // by drag so far, this rank's share
 
