@@ -388,17 +388,19 @@ SERIAL_TEST(Consolidation, FollowsTerzaghi)
 // Water flows up through a bed of soil that lies on a sieve, driven by a force in a loop (a periodic column): Darcy's
 // flow, gradient of the pressure, effective stress, and the gradient at which the bed is lifted. The force is uniform
 // in the water, and the soil weighs so much less that the difference is that of its weight under water.
-// A body elsewhere, in contact with the soil if it were here, changes nothing.
+// A body elsewhere, in contact with the soil if it were here, changes nothing, nor do walls at the sides, which hold soil
+// and water.
 struct Flow {
   double gradient;
-  std::string options;
-  bool with_third = false;
+  std::string options, with = "";
 };
 
 PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
                Values(Flow{0.5, "transfer apic smooth 0.9"}, Flow{0.9, "transfer apic smooth 0.9"},
                       Flow{0.9, "transfer apic"}, Flow{0.9, "transfer aflip 1.0 smooth 0.9"},
-                      Flow{0.9, "transfer apic smooth 0.9", true},
+                      Flow{0.9, "transfer apic smooth 0.9", "third"},
+                      Flow{0.9, "transfer apic smooth 0.9", "sides"},
+                      Flow{0.9, "transfer apic smooth 0.9", "sides of regions"},
                       Flow{0.96, "transfer apic smooth 0.9"},
                       Flow{1.02, "transfer apic smooth 0.9"}))
 {
@@ -415,10 +417,16 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
   c.options = GetParam().options;
   const double k = 0.005, gravity = WATER * G;
   c.drag = strprintf("darcy %.17g", k * 1.0e-3 / gravity);
-  Scene run(replaced(c.periodic(), "create_box 2", "create_box 3") +
+  const std::string with = GetParam().with;
+  const std::string base = replaced(c.periodic(), "create_box 2", "create_box 3");
+  Scene run((with == "sides" ? replaced(base, "boundary p p", "boundary f p") : base) +
             "fix step all mpm/dt 0.4\nregion sieve block INF INF 0 0.3 INF INF\n"
             "fix sieve all mpm/boundary region sieve separate field s\n");
-  if (GetParam().with_third)
+  if (with == "sides") run.commands("fix sides all mpm/boundary xlo xhi slip\n");
+  if (with == "sides of regions")
+    run.commands("region sides block -1 0.005 INF INF INF INF\n"
+                 "fix sides all mpm/boundary region sides slip\n");
+  if (with == "third")
     run.commands(strprintf("group third empty\nfix t third mpm %g %s\n", c.h, c.options.c_str()) +
                  "region far block INF INF 1.2 1.3 INF INF\n"
                  "create_points 3 region far ppc 2 fix t group third overlap yes\n"
