@@ -63,7 +63,10 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   void setup_points() override;
-  void extend_topology(MPMField &field) override { of(field).surface.extend_topology(); }
+  void extend_topology(MPMField &field) override
+  {
+    if (of(field).has_water()) of(field).surface.extend_topology();
+  }
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
   {
@@ -91,6 +94,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   bool gradients_known = true;    // not yet where pressures were given
   bool has_state = false;         // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
+  std::vector<MPMPore *> wet;                // those that have soil with water
   MPMSuperStep steps;                        // of the pressures of all fields together
   double gravity[3];                         // force per mass
   std::vector<const class Fix *> weights;    // fixes gravity
@@ -102,6 +106,10 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   double dt_last = 0.0;
   bool flows_known = true;
 
+  // greatest rates of the last step on all ranks [1/time], so that a run in two parts takes the steps of one
+  double conducted = 0.0, exchanged = 0.0;
+  bool rates_known = false;
+
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
   void warn_of_contact() const;
@@ -109,6 +117,8 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void find_gravity();
   void evaluate_variables();
   void begin_step();
+  void find_greatest_rates();
+  void know_rates();
   void flow();
 };
 

@@ -72,10 +72,18 @@ MPMPore::MPMPore(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
 void MPMPore::init(const std::vector<MPMPoreSoil> &all)
 {
   soils.clear();
+  std::vector<signed char> mine(field.materials.size(), 0), here(field.materials.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto *const material = field.is_point(i) ? field.material_of(i) : nullptr;
+    for (std::size_t k = 0; k < mine.size() && material; k++)
+      if (field.materials[k] == material) mine[k] = 1;
+  }
+  MPI_Allreduce(mine.data(), here.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
   slowest = waves = least_storage = std::numeric_limits<double>::max();
-  for (const auto *fix : field.materials)
-    for (const auto &one : all)
-      if (one.material == fix->id) {
+  for (std::size_t k = 0; k < here.size(); k++)
+    for (const auto &one : all) {
+      const auto *const fix = field.materials[k];
+      if (here[k] && one.material == fix->id) {
         const double storage = one.storage_at(1.0, water);
         const double unit = force->mvv2e * force->nktv2p;
         soils.push_back({fix, one});
@@ -83,6 +91,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
         slowest = std::min(slowest, one.permeability / (water.resistance * storage));
         waves = std::min(waves, one.biot / sqrt(storage * fix->material->density() * unit));
       }
+    }
   nodes.init(true, surface.any());
   if (surface.any()) surface.init();
 
@@ -299,25 +308,26 @@ void MPMPore::end_step(const MPMRows &state)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMPore::greatest_rate() const
+double MPMPore::conduction_rate() const
 {
-  return fastest * steepest / (field.lattice.h * field.lattice.h) + exchange;
+  return fastest * steepest / (field.lattice.h * field.lattice.h);
 }
 
-double MPMPore::greatest_rate(tagint &tag) const
+double MPMPore::conduction_rate(tagint &tag) const
 {
-  double most = fastest;    // formulas are evaluated in steps
-  for (int i = 0; i < atom->nlocal; i++) {
+  double most = -1.0;
+  for (int i = 0; i < atom->nlocal && has_water(); i++) {
     if (!field.is_point(i)) continue;
     const Soil *const s = soil(field.material_of(i));
-    if (!s || s->of.law == MPMPoreSoil::FORMULA) continue;
+    if (!s) continue;
     const double J = field.points->jacobian(i);
-    const double here = mobility(*s, i, J, nullptr) / s->of.storage_at(J, water);
+    const double k = s->of.law == MPMPoreSoil::FORMULA ? 0.0 : mobility(*s, i, J, nullptr);
+    const double here = k / s->of.storage_at(J, water);
     if (here <= most) continue;
     most = here;
     tag = atom->tag[i];
   }
-  return most * steepest / (field.lattice.h * field.lattice.h) + exchange;
+  return most < 0.0 ? most : most * steepest / (field.lattice.h * field.lattice.h);
 }
 
 double MPMPore::wave_speed(int i, double c) const

@@ -34,7 +34,7 @@ class MPMPore : protected Pointers {
   MPMPore(class LAMMPS *, MPMField &, const MPMPoreWater &, const MPMPoreSurface::Conditions &,
           const double *gravity, double relax);
 
-  /** Start of a run: the soils of this field. */
+  /** Start of a run: the soils that points of this field have. Collective. */
   void init(const std::vector<MPMPoreSoil> &);
   bool has_water() const { return !soils.empty(); }
 
@@ -44,7 +44,7 @@ class MPMPore : protected Pointers {
    *  points, or null. */
   void begin_step(const MPMRows &state, const double *formula);
   /** [n] J times the pressure in internal forces. */
-  const double *pressure_in_forces() const { return in_forces.data(); }
+  const double *pressure_in_forces() const { return has_water() ? in_forces.data() : nullptr; }
   /** See MPMPhysics::surface_force(). */
   void find_surface_force(const MPMRows &state, const std::vector<char> &near,
                           std::vector<double> &force) const;
@@ -56,10 +56,13 @@ class MPMPore : protected Pointers {
   /** Pressures of points at the end of the step, and the mass of the water that they got. */
   void end_step(const MPMRows &state);
 
-  /** Bound of the eigenvalues of minus the rates [1/time] for this rank's points, in this step and at present;
-   *  tag: of the point that limits it. */
-  double greatest_rate() const;
-  double greatest_rate(tagint &tag) const;
+  /** Bounds of the eigenvalues of minus the rates [1/time] on this rank: by flow between points, and through the
+   *  surface, in this step. */
+  double conduction_rate() const;
+  double exchange_rate() const { return exchange; }
+  /** By flow between points at present; -1 without any that have water. Those with a formula, which is evaluated in
+   *  steps, count as 0. tag: of the point that limits it. */
+  double conduction_rate(tagint &tag) const;
   /** Wave speed of a point where water cannot flow, c: of the soil alone. */
   double wave_speed(int i, double c) const;
   const MPMPoreSoil *soil_of(int i) const;
