@@ -130,7 +130,7 @@ SERIAL_TEST(Consolidation, Terzaghi)
   }
   for (const double offset : {0.0, 0.3, 0.5}) {
     const auto result = consolidate(20, "free pressure 0", 1.2, offset, 2.2e9);
-    EXPECT_LT(measured(strprintf("free, offset %g, rms", offset), result.rms), 0.01);
+    EXPECT_LT(measured(strprintf("free, offset %g, rms", offset), result.rms), 0.002);
     EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
   }
 }
@@ -255,7 +255,8 @@ TEST(Water, IsKept)
 }
 
 // Consolidation by half of the modulus, Kirchhoff stress logarithmic in the stretch, permeability with its square,
-// T = 0.2: table of the benchmark (hencky, J2); the points cross up to 4 cells
+// T = 0.2: table of the benchmark, the row of the logarithmic law (hencky) for a linear relation of stress and
+// logarithmic strain; the points cross up to 4 cells
 SERIAL_TEST(LargeStrain, Consolidation)
 {
   const int n = 20;
@@ -379,7 +380,7 @@ SERIAL_TEST(Walls, ThatSeparate)
             "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nrun 400\n");
   double fastest = 0.0;
   for (int i = 0; i < run.n(); i++) fastest = std::max(fastest, std::fabs(run.v()[i][1]));
-  EXPECT_LT(measured("fastest", fastest), 0.02);
+  EXPECT_LT(measured("fastest", fastest), 0.002);
 }
 
 namespace {
@@ -408,7 +409,8 @@ double mean_velocity(Scene &run, int d)
 
 }    // namespace
 
-// friction of walls is that of grains: a saturated column slides on its floor as one of its submerged weight
+// friction of walls is that of grains: a saturated column slides on its floor as one of its submerged
+// weight
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
 {
   const double slower = 0.3 * 9.81 * 990.0 / 1990.0;
@@ -433,7 +435,8 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
   }
 }
 
-// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the critical gradient
+// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the critical
+// gradient
 // is (G_s - 1)(1 - n) = 0.99
 SERIAL_TEST(Walls, HeaveAtTheCriticalGradient)
 {
@@ -547,7 +550,7 @@ SERIAL_TEST(Consolidation, InThreeDimensions)
       const double d = p[i] - p0 * terzaghi(1.0 - run.x()[i][2], 0.2);
       sum += d * d / run.n();
     }
-    EXPECT_LT(measured(strprintf("%s, rms", shape), std::sqrt(sum) / LOAD), 0.01);
+    EXPECT_LT(measured(strprintf("%s, rms", shape), std::sqrt(sum) / LOAD), 0.004);
   }
 }
 
@@ -651,7 +654,8 @@ TEST(Restart, BeforeTheFirstRun)
   }
 }
 
-// the time step knows from the first one on what flows through the surface and by a formula, and in later runs what it was
+// the time step knows from the first one on what flows through the surface and by a formula, and in later runs
+// what it was
 TEST(TimeStep, KnowsTheFlowAtOnce)
 {
   const auto scene = [](const std::string &law, const std::string &more, const char *fraction) {

@@ -100,8 +100,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   std::vector<const class Fix *> weights;    // fixes gravity
   std::vector<double> formula_values;        // [n] permeability by variables
 
-  // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this rank's share: that has come in so far; that came in the last step, and comes in a stage of
-  // it for each time; the last step of all ranks for each time
+  // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this
+  // rank's share: that has come in so far; that came in the last step, and comes in a stage of it for each time;
+  // the last step of all ranks for each time
   std::vector<double> came, in_step, present, flows;
   double dt_last = 0.0;
   bool flows_known = true;
