@@ -527,6 +527,24 @@ SERIAL_TEST(Units, Metal)
               0.0, 1e-9);
 }
 
+// friction by the effective stress in these units and three dimensions, with a floor in a plane of nodes or not
+SERIAL_TEST(Units, FrictionInMetal)
+{
+  for (const double origin : {0.0, 1.5}) {
+    Scene run(space("metal", "p f p", "0 20 0 100 0 15", 1, 1.5) +
+              "create_points 1 box spacing 2.5\n" +
+              strprintf("fix grid all mpm 5.0 origin 0 %g 0\n", origin) +
+              "fix m all mpm/material density 1.0 linear 2e7 0.0\n"
+              "fix floor all mpm/boundary ylo separate friction 0.3\n"
+              "fix g all gravity 0.002 vector 0 -1 0\n"
+              "fix water all mpm/pore 2e5 0.5 1.0 soil m 0.4 constant 1e-9 yhi pressure 0 "
+              "geostatic 0.5 100\nvelocity all set 5 0 0\n");
+    run_to(run, 1.0);
+    const double slower = 0.3 * 0.5 * 0.002 / 1.0364269e-4;
+    EXPECT_NEAR(measured("deceleration", (5.0 - mean_velocity(run, 0)) / slower), 1.0, 0.01);
+  }
+}
+
 // the same in three dimensions, where the surface is anywhere in a cell, with either shape
 SERIAL_TEST(Consolidation, InThreeDimensions)
 {
