@@ -9,6 +9,8 @@
 
 #include "pore_testing.h"
 
+#include "mpm_physics.h"
+
 using namespace MPM_TEST;
 
 // Terzaghi's column at T = 0.2, drained at a face of the box or at a free surface
@@ -25,7 +27,7 @@ SERIAL_TEST(Consolidation, Terzaghi)
   }
   for (const double offset : {0.0, 0.3, 0.5}) {
     const auto result = consolidate(20, "free pressure 0", 1.2, offset, 2.2e9);
-    EXPECT_LT(measured(strprintf("free, offset %g, rms", offset), result.rms), 0.01);
+    EXPECT_LT(measured(strprintf("free, offset %g, rms", offset), result.rms), 0.002);
     EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
   }
 }
@@ -150,7 +152,8 @@ TEST(Water, IsKept)
 }
 
 // Consolidation by half of the modulus, Kirchhoff stress logarithmic in the stretch, permeability with its square,
-// T = 0.2: table of the benchmark (hencky, J2); the points cross up to 4 cells
+// T = 0.2: table of the benchmark, the row of the logarithmic law (hencky) for a linear relation of stress and
+// logarithmic strain; the points cross up to 4 cells
 SERIAL_TEST(LargeStrain, Consolidation)
 {
   const int n = 20;
@@ -274,7 +277,7 @@ SERIAL_TEST(Walls, ThatSeparate)
             "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nrun 400\n");
   double fastest = 0.0;
   for (int i = 0; i < run.n(); i++) fastest = std::max(fastest, std::fabs(run.v()[i][1]));
-  EXPECT_LT(measured("fastest", fastest), 0.02);
+  EXPECT_LT(measured("fastest", fastest), 0.002);
 }
 
 namespace {
@@ -303,7 +306,8 @@ double mean_velocity(Scene &run, int d)
 
 }    // namespace
 
-// friction of walls is that of grains: a saturated column slides on its floor as one of its submerged weight
+// friction of walls is that of grains: a saturated column slides on its floor as one of its submerged
+// weight
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
 {
   const double slower = 0.3 * 9.81 * 990.0 / 1990.0;
@@ -328,7 +332,8 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
   }
 }
 
-// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the critical gradient
+// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the critical
+// gradient
 // is (G_s - 1)(1 - n) = 0.99
 SERIAL_TEST(Walls, HeaveAtTheCriticalGradient)
 {
@@ -419,6 +424,24 @@ SERIAL_TEST(Units, Metal)
               0.0, 1e-9);
 }
 
+// friction by the effective stress in these units and three dimensions, with a floor in a plane of nodes or not
+SERIAL_TEST(Units, FrictionInMetal)
+{
+  for (const double origin : {0.0, 1.5}) {
+    Scene run(space("metal", "p f p", "0 20 0 100 0 15", 1, 1.5) +
+              "create_points 1 box spacing 2.5\n" +
+              strprintf("fix grid all mpm 5.0 origin 0 %g 0\n", origin) +
+              "fix m all mpm/material density 1.0 linear 2e7 0.0\n"
+              "fix floor all mpm/boundary ylo separate friction 0.3\n"
+              "fix g all gravity 0.002 vector 0 -1 0\n"
+              "fix water all mpm/pore 2e5 0.5 1.0 soil m 0.4 constant 1e-9 yhi pressure 0 "
+              "geostatic 0.5 100\nvelocity all set 5 0 0\n");
+    run_to(run, 1.0);
+    const double slower = 0.3 * 0.5 * 0.002 / 1.0364269e-4;
+    EXPECT_NEAR(measured("deceleration", (5.0 - mean_velocity(run, 0)) / slower), 1.0, 0.01);
+  }
+}
+
 // the same in three dimensions, where the surface is anywhere in a cell, with either shape
 SERIAL_TEST(Consolidation, InThreeDimensions)
 {
@@ -442,7 +465,7 @@ SERIAL_TEST(Consolidation, InThreeDimensions)
       const double d = p[i] - p0 * terzaghi(1.0 - run.x()[i][2], 0.2);
       sum += d * d / run.n();
     }
-    EXPECT_LT(measured(strprintf("%s, rms", shape), std::sqrt(sum) / LOAD), 0.01);
+    EXPECT_LT(measured(strprintf("%s, rms", shape), std::sqrt(sum) / LOAD), 0.004);
   }
 }
 
@@ -483,6 +506,86 @@ TEST(Restart, Continues)
   ASSERT_EQ(one.size(), two.size());
   EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
   EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+}
+
+// a restart file from before the first run: points have not got yet what they have at first
+TEST(Restart, BeforeTheFirstRun)
+{
+  for (const char *at_first : {"geostatic 0.5 1", "initial v_p"}) {
+    const std::string water = std::string("2.2e8 1000 9810 soil m 0.4 constant 1e-3 ") + at_first;
+    const std::string fixes =
+        "neighbor 0.03 bin\nfix grid all mpm 0.1 origin 0 0.03\nfix m all mpm/material " +
+        std::string(SOIL) +
+        "\nfix floor all mpm/boundary ylo slip\nfix g all gravity 9.81 vector 0 -1 0\n"
+        "variable p atom 9810*(1-y)\nfix water all mpm/pore " +
+        water + "\n";
+    const std::string scene = plane("si", "p f", "0 0.4 0 1.2", 1) +
+        "region soil block 0 0.4 0 1 INF INF\ncreate_points 1 region soil spacing 0.05\n" + fixes;
+    const std::string last = "timestep 1e-5\nrun 20\n";
+    const ScratchFile file("restart");
+    Scene whole(scene + "write_restart " + file.name + "\n" + last);
+    Scene again("read_restart " + file.name + "\n" + fixes + last);
+    EXPECT_TRUE(identical(whole.gather(), again.gather())) << at_first;
+    double fastest = 0.0;
+    for (int i = 0; i < again.n(); i++) fastest = std::max(fastest, std::fabs(again.v()[i][1]));
+    fastest = over_ranks(fastest, MPI_MAX);
+    if (at_first[0] == 'g') EXPECT_LT(measured("at rest", fastest / (9.81 * 2e-4)), 1e-10);
+  }
+}
+
+// the time step knows from the first one on what flows through the surface and by a formula, and in later runs
+// what it was
+TEST(TimeStep, KnowsTheFlowAtOnce)
+{
+  const auto scene = [](const std::string &law, const std::string &more, const char *fraction) {
+    return plane("si", "p f", "0 0.4 0 1.2", 1, 0.03) +
+        "region soil block 0 0.4 0 1 INF INF\ncreate_points 1 region soil spacing 0.05\n"
+        "fix grid all mpm 0.1\nfix m all mpm/material density 2002 linear 1e7 0.3\n"
+        "fix floor all mpm/boundary ylo slip\nfix g all gravity 9.81 vector 0 -1 0\n"
+        "variable k atom 0.05\nfix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 " +
+        law + " free pressure 0 " + more + "\nfix dt all mpm/dt " + fraction + "\n";
+  };
+  Scene one(scene("kozeny 0.05", "stages 1", "0.9") + "run 1\n");
+  Scene formula(replaced(scene("formula v_k", "", "0.5"), "atom 0.05", "atom 50") + "run 1\n");
+  for (const char *law : {"kozeny 0.05", "formula v_k"}) {
+    const auto plain = scene(law, "stages 3", "0.5");
+    Scene whole(plain + "run 60\n"), parts(plain + "run 40\nrun 20\n");
+    EXPECT_TRUE(identical(whole.gather(), parts.gather())) << law;
+    EXPECT_EQ(whole.lmp->update->dt, parts.lmp->update->dt);
+    const auto fixes = "neighbor 0.03 bin\n" + plain.substr(plain.find("fix grid"));
+    Continued run(plain, 40, fixes, 20);
+    EXPECT_TRUE(identical(run.whole.gather(), run.again.gather())) << law;
+    EXPECT_EQ(run.whole.lmp->update->dt, run.again.lmp->update->dt);
+  }
+  OnRanks ranks(scene("kozeny 0.05", "stages 3", "0.5"), "run 60\n");
+  EXPECT_LT(ranks.difference(), 1e-11);
+}
+
+// a body without water has no part in it, and the point that limits the time step is one of the soil
+SERIAL_TEST(DryField, PaysNothing)
+{
+  Scene run(
+      plane("si", "p f", "0 0.4 0 2", 2, 0.03) +
+      "region soil block 0 0.4 0 1 INF INF\nregion dry block 0 0.4 1.2 1.6 INF INF\n"
+      "create_points 2 region dry spacing 0.05\ncreate_points 1 region soil spacing 0.05\n"
+      "group soil type 1\ngroup dry type 2\nfix one soil mpm 0.1\n"
+      "fix two dry mpm 0.1 shape linear\n"
+      "fix m soil mpm/material density 2002 linear 1e7 0.3\n"
+      "fix n dry mpm/material density 2002 linear 1e7 0.3\n"
+      "fix floor all mpm/boundary ylo slip\n"
+      "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 0.01 free pressure 0 stages 1\n"
+      "timestep 1e-5\nrun 1\n");
+  const auto *const water = dynamic_cast<MPMPhysics *>(run.fix("water"));
+  const auto all = MPMField::all(run.lmp);
+  EXPECT_NE(water->pressure_in_forces(*all[0]), nullptr);
+  EXPECT_EQ(water->pressure_in_forces(*all[1]), nullptr);
+  tagint tag = 0;
+  EXPECT_LT(water->stable_dt(*all[0], tag), 1e-3);
+  const auto *const atom = run.lmp->atom;
+  const auto *const found = std::find(atom->tag, atom->tag + atom->nlocal, tag);
+  ASSERT_LT(found, atom->tag + atom->nlocal);
+  EXPECT_EQ(atom->type[found - atom->tag], 1);
+  EXPECT_GT(water->stable_dt(*all[1], tag), 1e300);
 }
 
 namespace {

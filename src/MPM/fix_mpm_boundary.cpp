@@ -1203,7 +1203,8 @@ void FixMPMBoundary::act(double dt, Stage stage)
 
 /* ----------------------------------------------------------------------
    what the wall does to nodes on which it pushes with an impulse along the normal, of which water bears a part,
-   when another one would be needed for the material to stick. Returns the share of the latter that friction gives
+   when another one would be needed for the material to stick. Returns the share of the latter that friction
+   gives
 ------------------------------------------------------------------------- */
 
 double FixMPMBoundary::slide_share(Contact &contact, double push, double of_water,
@@ -1223,9 +1224,9 @@ double FixMPMBoundary::slide_share(Contact &contact, double push, double of_wate
 }
 
 /* ----------------------------------------------------------------------
-   Water in pores presses on walls, too, and bears a part of what the wall pushes with. Only the rest is between grains and
-   wall: friction is proportional to it, and where it would be negative grains leave a wall that separates, pushed by the
-   water. Water pulls at no wall that separates.
+   Water in pores presses on walls, too, and bears a part of what the wall pushes with. Only the rest is between
+   grains and wall: friction is proportional to it, and where it would be negative grains leave a wall that
+   separates, pushed by the water. Water pulls at no wall that separates.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::find_water(const FieldNodes &list, double dt)
@@ -1255,7 +1256,8 @@ double FixMPMBoundary::water_on(const int64_t *node, int n, const double *normal
   return sum;
 }
 
-/** The same on the body, at a node that the wall has let go: water works on what it lifts, as a wall that moves with it. */
+/** The same on the body, at a node that the wall has let go: water works on what it lifts, as a wall that moves
+ *  with it. */
 void FixMPMBoundary::push_by_water(Grid &grid, int64_t node, const double *normal)
 {
   if (node < 0) return;

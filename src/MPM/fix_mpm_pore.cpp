@@ -382,10 +382,7 @@ void FixMPMPore::init()
 
 void FixMPMPore::warn_of_contact() const
 {
-  const bool any = std::any_of(fields.begin(), fields.end(), [](const auto &field) {
-    return field->has_water();
-  });
-  if (comm->me || !any) return;
+  if (comm->me || wet.empty()) return;
   for (const char *style : {"mpm/contact", "mpm/rigid"})
     for (const auto *fix : modify->get_fix_by_style(std::string("^") + style + "$"))
       error->warning(FLERR,
@@ -397,6 +394,7 @@ void FixMPMPore::warn_of_contact() const
 void FixMPMPore::init_physics(MPMPlan &plan)
 {
   fields.clear();
+  wet.clear();
   steps.clear();
   steps.add(in_step, present);
   for (auto *field : plan.fields) {
@@ -404,6 +402,8 @@ void FixMPMPore::init_physics(MPMPlan &plan)
                                                formulation == U_V_P));
     auto &mine = *fields.back();
     mine.init(soils, content);
+    if (!mine.has_water()) continue;
+    wet.push_back(&mine);
     if (formulation == U_V_P) init_motion(*field);
     const auto &o = field->options;
     refuse_field(
@@ -460,8 +460,6 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
       flow();
     });
 }
-
-/* ---------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
    pores of soils without retention are full of water, also above its table, where it hangs on the air
@@ -537,7 +535,8 @@ void FixMPMPore::evaluate_variables()
       const int index = input->variable->find(soil.formula.c_str() + 2);
       input->variable->compute_atom(index, igroup, values.data(), 1, 0);
       for (int i = 0; i < atom->nlocal; i++) {
-        if (soil_of(i) == nullptr || soil_of(i)->material != soil.material) continue;
+        const auto *const of_point = soil_of(i);
+        if (!of_point || of_point->material != soil.material) continue;
         if (!(values[i] >= 0.0) || !std::isfinite(values[i]))
           error->one(FLERR, "Variable {} for fix mpm/pore soil {} is {} at point {}",
                      soil.formula.substr(2), soil.material, values[i], atom->tag[i]);
@@ -551,9 +550,8 @@ void FixMPMPore::begin_step()
 {
   evaluate_variables();
   const double *const formula = formula_values.empty() ? nullptr : formula_values.data();
-  for (auto &field : fields) {
+  for (auto *field : wet) {
     if (field->motion) field->motion->begin_step(inertia);
-    if (!field->has_water()) continue;
     if (!gradients_known) field->find_gradients(pressure, formula);
     field->begin_step(pressure, inertia, formula);
   }
@@ -562,21 +560,43 @@ void FixMPMPore::begin_step()
 
 void FixMPMPore::take_off()
 {
-  for (auto &field : fields) field->take_off();
+  for (auto *field : wet) field->take_off();
+}
+
+void FixMPMPore::find_greatest_rates()
+{
+  double mine[2] = {0.0, 0.0}, all[2];
+  for (const auto *field : wet) {
+    mine[0] = std::max(mine[0], field->conduction_rate());
+    mine[1] = std::max(mine[1], field->exchange_rate());
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  conducted = all[0];
+  exchanged = all[1];
+  rates_known = true;
+}
+
+/** Those of the first step of all, before it begins. */
+void FixMPMPore::know_rates()
+{
+  if (rates_known) return;
+  auto *const plan = fields[0]->field.plan;
+  plan->find_blocks_now();
+  begin_step();
+  find_greatest_rates();
+  for (auto *field : plan->fields) field->map->valid = false;    // the step finds its own
 }
 
 void FixMPMPore::flow()
 {
-  double mine = 0.0, greatest;
-  for (auto &field : fields) {
-    if (!field->has_water()) continue;
+  for (auto *field : wet) {
     field->take_motion();
     field->move_water();
-    // waves limit the step of water with inertia, which is one of theirs
-    if (formulation == U_P) mine = std::max(mine, field->greatest_rate());
   }
-  MPI_Allreduce(&mine, &greatest, 1, MPI_DOUBLE, MPI_MAX, world);
-  const double dt = fields[0]->field.step_dt(), limit = MPMSuperStep::explicit_limit(greatest);
+  // waves limit the step of water with inertia, which is one of theirs
+  if (formulation == U_P) find_greatest_rates();
+  const double dt = fields[0]->field.step_dt(),
+               limit = MPMSuperStep::explicit_limit(conducted + exchanged);
   const int stages = dt <= 0.5 * limit ? 1
                                        : std::max(3, MPMSuperStep::count(dt, limit, most_stages));
   if (stages > most_stages)
@@ -588,11 +608,9 @@ void FixMPMPore::flow()
   std::fill(in_step.begin(), in_step.end(), 0.0);
   steps.advance(stages, dt, [this]() {
     std::fill(present.begin(), present.end(), 0.0);
-    for (auto &field : fields)
-      if (field->has_water()) field->find_rates(present);
+    for (auto *field : wet) field->find_rates(present);
   });
-  for (auto &field : fields)
-    if (field->has_water()) field->end_step(pressure);
+  for (auto *field : wet) field->end_step(pressure);
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
   dt_last = dt;
   flows_known = false;
@@ -609,7 +627,10 @@ bool FixMPMPore::surface_force(MPMField &field, const std::vector<char> &near,
 double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
 {
   if (formulation == U_V_P) return std::numeric_limits<double>::max();
-  const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(pressure, tag));
+  const_cast<FixMPMPore *>(this)->know_rates();
+  const double rate = of(field).conduction_rate(pressure, tag);
+  if (rate < 0.0) return std::numeric_limits<double>::max();
+  const double limit = MPMSuperStep::explicit_limit(std::max(rate, conducted) + exchanged);
   return most_stages < 3 ? 0.5 * limit : MPMSuperStep::reach(most_stages) * limit;
 }
 
@@ -660,29 +681,28 @@ void FixMPMPore::account(double *values) const
 
 void FixMPMPore::write_restart(FILE *fp)
 {
-  keep_totals(world, came.data(), (int) came.size());
-  if (comm->me) return;
-  const int size = (int) (came.size() * sizeof(double));
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(came.data(), sizeof(double), came.size(), fp);
+  write_totals(fp, world, came,
+               {gradients_known ? 1.0 : 0.0, has_state ? 1.0 : 0.0, rates_known ? 1.0 : 0.0,
+                conducted, exchanged});
 }
 
 void FixMPMPore::restart(char *buf)
 {
-  gradients_known = has_state = true;
-  if (comm->me == 0) std::copy_n((const double *) buf, came.size(), came.begin());
+  const auto *const list = (const double *) buf, *const same = list + came.size();
+  if (comm->me == 0) std::copy_n(list, came.size(), came.begin());
+  gradients_known = same[0] != 0.0;
+  has_state = same[1] != 0.0;
+  rates_known = same[2] != 0.0;
+  conducted = same[3];
+  exchanged = same[4];
 }
 
 /* ---------------------------------------------------------------------- */
 
 const MPMPoreSoil *FixMPMPore::soil_of(int i) const
 {
-  for (const auto *field : MPMField::all(lmp)) {
-    if (!field->is_point(i)) continue;
-    const auto *const material = field->material_of(i);
-    for (const auto &soil : soils)
-      if (material && soil.material == material->id) return &soil;
-  }
+  for (const auto *mine : wet)
+    if (mine->field.is_point(i)) return mine->soil_of(i);
   return nullptr;
 }
 

@@ -74,8 +74,14 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   void setup_points() override;
-  void extend_topology(MPMField &field) override { of(field).surface.extend_topology(); }
-  void topology_changed(MPMField &field) override { of(field).look_for_water(); }
+  void extend_topology(MPMField &field) override
+  {
+    if (of(field).has_water()) of(field).surface.extend_topology();
+  }
+  void topology_changed(MPMField &field) override
+  {
+    if (of(field).has_water()) field.jacobians.ask();
+  }
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
   {
@@ -113,16 +119,22 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   bool gradients_known = true;    // not yet where pressures were given
   bool has_state = false;         // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
-  MPMSuperStep steps;    // of the pressures of all fields together
-  double gravity[3];     // force per mass
+  std::vector<MPMPore *> wet;    // those that have soil with water
+  MPMSuperStep steps;            // of the pressures of all fields together
+  double gravity[3];             // force per mass
   MPMGravity weight;
   std::vector<double> formula_values;    // [n] permeability by variables
 
-  // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this rank's share: that has come in so far; that came in the last step, and comes in a stage of
-  // it for each time; the last step of all ranks for each time
+  // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this
+  // rank's share: that has come in so far; that came in the last step, and comes in a stage of it for each time;
+  // the last step of all ranks for each time
   std::vector<double> came, in_step, present, flows;
   double dt_last = 0.0;
   bool flows_known = true;
+
+  // greatest rates of the last step on all ranks [1/time], so that a run in two parts takes the steps of one
+  double conducted = 0.0, exchanged = 0.0;
+  bool rates_known = false;
 
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
@@ -134,6 +146,8 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void evaluate_variables();
   void begin_step();
   void take_off();
+  void find_greatest_rates();
+  void know_rates();
   void flow();
 };
 

@@ -11,18 +11,20 @@
 
      sum_p V_p s_p psi_k'(y_p) = - sum_p m_p g psi_k(y_p)
 
-   for all functions psi_k of the height that the velocity of nodes can have: those of planes of nodes, of which the
-   three lowest move in proportion to their distance from the floor, as walls want it (fix_mpm_boundary_cut.cpp). Psi' are what forces have as gradients. The stress rho g (y - top) is not
-   quite a solution: sums over points are not integrals where the functions are cut by the surface, and forces of 1/64 to 1/32 of the weight of a cell are
-   left over. With
+   for all functions psi_k of the height that the velocity of nodes can have: those of planes of nodes, of
+   which the three lowest move in proportion to their distance from the floor, as walls want it
+   (fix_mpm_boundary_cut.cpp). Psi' are what forces have as gradients. The stress rho g (y - top) is not quite
+   a solution: sums over points are not integrals where the functions are cut by the surface, and forces of
+   1/64 to 1/32 of the weight of a cell are left over. With
 
      s_p = rho g y_p + sum_k lambda_k psi_k'(y_p)
 
-   the equations have a matrix with a band, positive definite, whose solution is the least change of the stress, to round-off. It is that of layers with
-   several densities, too. In the ground below the first cells it is the weight above the point.
+   the equations have a matrix with a band, positive definite, whose solution is the least change of the
+   stress, to round-off. It is that of layers with several densities, too. In the ground below the first cells
+   it is the weight above the point.
 
-   Between planes of nodes the stress of the uppermost points follows from the equation of the uppermost nodes alone. It is smaller than
-   that of their depth, by up to 0.2 of the weight of a cell.
+   Between planes of nodes the stress of the uppermost points follows from the equation of the uppermost nodes
+   alone. It is smaller than that of their depth, by up to 0.204 of the weight of a cell.
 ------------------------------------------------------------------------- */
 
 #include "mpm_geostatic.h"
@@ -332,8 +334,8 @@ void MPMGeostatic::strain(const std::vector<int> &list, const FixMPMMaterial *ma
 }
 
 /* ----------------------------------------------------------------------
-   a step without motion must not change the stress. Where it is beyond yield by less than the weight of a cell, as it can be next to
-   the surface, points get what the law makes of it
+   a step without motion must not change the stress. Where it is beyond yield by less than the weight of a
+   cell, as it can be next to the surface, points get what the law makes of it
 ------------------------------------------------------------------------- */
 
 void MPMGeostatic::check_laws()

@@ -32,16 +32,16 @@ class MPMGeostatic : protected Pointers {
     double top;       ///< height of its surface [distance]
   };
 
-  /** gravity: force per mass, along an axis of the box; errors begin with the given words, and say what to do when there is no
-   *  level ground on a face of the box. Collective. */
+  /** gravity: force per mass, along an axis of the box; errors begin with the given words, and say what to do
+   *  when there is no level ground on a face of the box. Collective. */
   MPMGeostatic(class LAMMPS *, MPMField &, const double *gravity, const std::string &who);
 
   /** Height of a point, against gravity. */
   double height(int i) const;
 
-  /** Gives all points of the field their effective stress, horizontal stress K0 times the vertical one; the part of the
-   *  pressure in internal forces of point i is pressure(i) [pressure]. Laws must keep a stress that points have at first, or the elastic strain.
-   *  Collective. */
+  /** Gives all points of the field their effective stress, horizontal stress K0 times the vertical one; the
+   *  part of the pressure in internal forces of point i is pressure(i) [pressure]. Laws must keep a stress that
+   *  points have at first, or the elastic strain. Collective. */
   void set_stress(double K0, const std::function<double(int)> &pressure);
 
   const Ground &ground() const { return where; }

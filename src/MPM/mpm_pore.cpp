@@ -75,10 +75,18 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
   soils.clear();
   quadratic.clear();
   bool dries = false;
+  std::vector<signed char> mine(field.materials.size(), 0), here(field.materials.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto *const material = field.is_point(i) ? field.material_of(i) : nullptr;
+    for (std::size_t k = 0; k < mine.size() && material; k++)
+      if (field.materials[k] == material) mine[k] = 1;
+  }
+  MPI_Allreduce(mine.data(), here.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
   slowest = waves = least_storage = std::numeric_limits<double>::max();
-  for (const auto *fix : field.materials)
-    for (const auto &one : all)
-      if (one.material == fix->id) {
+  for (std::size_t k = 0; k < here.size(); k++)
+    for (const auto &one : all) {
+      const auto *const fix = field.materials[k];
+      if (here[k] && one.material == fix->id) {
         const double storage = one.storage_at(1.0, water);
         const double unit = force->mvv2e * force->nktv2p;
         soils.push_back({fix, one});
@@ -88,8 +96,8 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
         waves = std::min(waves, one.biot / sqrt(storage * fix->material->density() * unit));
         dries = dries || one.retention.can_dry();
       }
+    }
   nodes.init(true, surface.any());
-  wet = !soils.empty();
   if (surface.any()) surface.init(dries);
   suction.reset();
   if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
@@ -113,19 +121,6 @@ void MPMPore::weigh_points(const MPMRows &state) const
   for (int i = 0; i < atom->nlocal; i++)
     if (field.is_point(i))
       if (const auto *const s = soil_of(i)) suction->weigh(i, *s, state[i][0]);
-}
-
-void MPMPore::look_for_water()
-{
-  int any = 0, all;
-  for (const auto &run : field.map->runs) any |= soil(run.material) != nullptr;
-  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
-  wet = all;
-  if (any) field.jacobians.ask();
-  if (wet) return;
-  fastest = exchange = 0.0;
-  nodes.value.clear();
-  nodes.rate.clear();
 }
 
 const MPMPore::Soil *MPMPore::soil(const FixMPMMaterial *fix) const
@@ -312,7 +307,8 @@ void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &
       [&](int i, double *tau, double *f) {
         const MPMPoreSoil *const s = soil_of(i);
         for (int c = 0; c < 6; c++) tau[c] = c < 3 ? -in_forces[i] : 0.0;
-        const double volume = s ? s->biot * field.points->jacobian(i) * atom->vfrac[i] : 0.0;
+        double volume = s ? s->biot * field.points->jacobian(i) * atom->vfrac[i] : 0.0;
+        if (s) volume *= s->retention.borne(state[i][0]);
         for (int d = 0; d < 3; d++) f[d] = d < dim ? volume * state[i][1 + d] : 0.0;
       },
       force);
@@ -436,35 +432,35 @@ void MPMPore::end_step(const MPMRows &state)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMPore::greatest_rate() const
+double MPMPore::conduction_rate() const
 {
-  return fastest * steepest / (field.lattice.h * field.lattice.h) + exchange;
+  return fastest * steepest / (field.lattice.h * field.lattice.h);
 }
 
-double MPMPore::greatest_rate(const MPMRows &state, tagint &tag) const
+double MPMPore::conduction_rate(const MPMRows &state, tagint &tag) const
 {
-  if (!wet) return 0.0;
-  double most = fastest;    // formulas are evaluated in steps
-  for (int i = 0; i < atom->nlocal; i++) {
+  double most = -1.0;
+  for (int i = 0; i < atom->nlocal && has_water(); i++) {
     if (!field.is_point(i)) continue;
     const Soil *const s = soil(field.material_of(i));
-    if (!s || s->of.law == MPMPoreSoil::FORMULA) continue;
+    if (!s) continue;
     const double J = field.points->jacobian(i);
-    double here = mobility(*s, i, J, nullptr) / s->of.storage_at(J, water);
+    const double k = s->of.law == MPMPoreSoil::FORMULA ? 0.0 : mobility(*s, i, J, nullptr);
+    double here = k / s->of.storage_at(J, water);
     if (s->of.retention.can_dry() && state[i][0] < 0.0) {
       const auto moisture = MPMPoreMoisture::at(s->of, J, state[i][0], water);
-      here = mobility(*s, i, J, nullptr) * moisture.relative / moisture.storage;
+      here = k * moisture.relative / moisture.storage;
     }
     if (here <= most) continue;
     most = here;
     tag = atom->tag[i];
   }
-  return most * steepest / (field.lattice.h * field.lattice.h) + exchange;
+  return most < 0.0 ? most : most * steepest / (field.lattice.h * field.lattice.h);
 }
 
 double MPMPore::wave_speed(int i, double p, double c) const
 {
-  const Soil *const s = wet ? soil(field.material_of(i)) : nullptr;
+  const Soil *const s = soil(field.material_of(i));
   if (!s) return c;
   const double J = field.points->jacobian(i), density = atom->rmass[i] / (J * atom->vfrac[i]);
   const double storage = s->of.storage_at(J, water);

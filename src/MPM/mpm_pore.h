@@ -39,11 +39,10 @@ class MPMPore : protected Pointers {
   MPMPore(class LAMMPS *, MPMField &, const MPMPoreWater &, const MPMPoreSurface::Conditions &,
           const double *gravity, double relax, bool moves);
 
-  /** Start of a run: the soils of this field. content: of points, if there is a soil that can dry (MPMPoreSuction). */
+  /** Start of a run: the soils that points of this field have. content: of points, if there is a soil that can dry (MPMPoreSuction).
+   *  Collective. */
   void init(const std::vector<MPMPoreSoil> &, double *const &content);
-  /** The points are known: have any of them water, on any rank? Collective. */
-  void look_for_water();
-  bool has_water() const { return wet; }
+  bool has_water() const { return !soils.empty(); }
 
   /** The water of points of soils that can dry, where it is not yet known. */
   void weigh_points(const MPMRows &state) const;
@@ -53,7 +52,7 @@ class MPMPore : protected Pointers {
    *  points, or null. */
   void begin_step(const MPMRows &state, const MPMRows &flow, const double *formula);
   /** [n] J times the pressure in internal forces; null: there is none. */
-  const double *pressure_in_forces() const { return wet ? in_forces.data() : nullptr; }
+  const double *pressure_in_forces() const { return has_water() ? in_forces.data() : nullptr; }
   /** See MPMPhysics::surface_force(). */
   void find_surface_force(const MPMRows &state, const std::vector<char> &near,
                           std::vector<double> &force) const;
@@ -69,10 +68,13 @@ class MPMPore : protected Pointers {
   /** Pressures of points at the end of the step, and the mass of the water that they got. */
   void end_step(const MPMRows &state);
 
-  /** Bound of the eigenvalues of minus the rates [1/time] for this rank's points, in this step and at present;
-   *  tag: of the point that limits it. */
-  double greatest_rate() const;
-  double greatest_rate(const MPMRows &state, tagint &tag) const;
+  /** Bounds of the eigenvalues of minus the rates [1/time] on this rank: by flow between points, and through the
+   *  surface, in this step. */
+  double conduction_rate() const;
+  double exchange_rate() const { return exchange; }
+  /** By flow between points at present; -1 without any that have water. Those with a formula, which is evaluated in
+   *  steps, count as 0. tag: of the point that limits it. */
+  double conduction_rate(const MPMRows &state, tagint &tag) const;
   /** Wave speed of a point where water cannot flow, c: of the soil alone; p: pressure of its water. */
   double wave_speed(int i, double p, double c) const;
   const MPMPoreSoil *soil_of(int i) const;
@@ -88,7 +90,6 @@ class MPMPore : protected Pointers {
   const double *const gravity;
   const double relax;    // of points, in the rate at which waves cross a cell
   std::vector<Soil> soils;
-  bool wet = false;    // there are points of these
   double steepest =
       0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
   double slowest = 0.0;    // smallest mobility over storage of a soil

@@ -290,9 +290,9 @@ void MPMPoreSurface::find_places()
 
 /** Makes the sum of weights one; enough: capacity of a node for its whole weight. Returns the sum before.
  *
- *  A point in the middle of a cell gives a node that is out of reach of all others next to no capacity. Conduction bounds what
- *  a node stores, C p^2, hence p there may be as large as 1/sqrt(C): such nodes must not be asked with their whole weight,
- *  neither for water nor for their pressure. */
+ *  A point in the middle of a cell gives a node that is out of reach of all others next to no capacity.
+ *  Conduction bounds what a node stores, C p^2, hence p there may be as large as 1/sqrt(C): such nodes must not
+ *  be asked with their whole weight, neither for water nor for their pressure. */
 double MPMPoreSurface::normalize(int first, int n, double enough,
                                  const std::vector<double> &capacity)
 {
@@ -312,10 +312,11 @@ double MPMPoreSurface::suction_outside(int part) const
   return c.kind == MPMPoreCondition::PRESSURE ? std::min(0.0, c.now) : 0.0;
 }
 
-/** With the lists a_k of weights where water comes in and b_k where the pressure is taken, the exchange is the matrix
- *  sum_k c_k a_k b_k^T, which is not symmetric: what counts is its norm, not its eigenvalues, as conduction is added to it.
- *  In the norm of the capacities it is at most that of sum_k c_k a_k a_k^T and of sum_k c_k b_k b_k^T in the
- *  geometric mean, and these are at most their greatest sum of a row, (sum_k c_k a_ki)/C_i, as weights have the sum one. */
+/** With the lists a_k of weights where water comes in and b_k where the pressure is taken, the exchange is the
+ *  matrix sum_k c_k a_k b_k^T, which is not symmetric: what counts is its norm, not its eigenvalues, as
+ *  conduction is added to it. In the norm of the capacities it is at most that of sum_k c_k a_k a_k^T and of
+ *  sum_k c_k b_k b_k^T in the geometric mean, and these are at most their greatest sum of a row,
+ *  (sum_k c_k a_ki)/C_i, as weights have the sum one. */
 double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage, const Wet *wet)
 {
   const double cell = field.lattice.cell_volume(), enough = ENOUGH * least_storage * cell;

@@ -168,3 +168,16 @@ void LAMMPS_NS::keep_totals(MPI_Comm world, double *values, int n)
   MPI_Reduce(values, total.data(), n, MPI_DOUBLE, MPI_SUM, 0, world);
   std::copy(total.begin(), total.end(), values);
 }
+
+void LAMMPS_NS::write_totals(FILE *fp, MPI_Comm world, std::vector<double> &totals,
+                             const std::vector<double> &same)
+{
+  keep_totals(world, totals.data(), (int) totals.size());
+  int me;
+  MPI_Comm_rank(world, &me);
+  if (me) return;
+  const int size = (int) ((totals.size() + same.size()) * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(totals.data(), sizeof(double), totals.size(), fp);
+  fwrite(same.data(), sizeof(double), same.size(), fp);
+}

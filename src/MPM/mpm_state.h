@@ -100,6 +100,9 @@ class FixMPMState : public Fix {
 /** The sums of n values over processes: process 0 goes on with them, the others with zero. This is what a restart file
  *  gets, and as the run that writes it goes on in the same way, both have the same digits. */
 void keep_totals(MPI_Comm, double *values, int n);
+/** Writes these sums for Fix::restart(), which sees them, and behind them what is the same on all processes. */
+void write_totals(FILE *, MPI_Comm, std::vector<double> &totals,
+                  const std::vector<double> &same = {});
 
 }    // namespace LAMMPS_NS
 #endif
