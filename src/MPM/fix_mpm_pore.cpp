@@ -563,6 +563,11 @@ void FixMPMPore::take_off()
   for (auto *field : wet) field->take_off();
 }
 
+void FixMPMPore::topology_changed(MPMField &field)
+{
+  if (of(field).has_water()) field.jacobians.ask();
+}
+
 void FixMPMPore::find_greatest_rates()
 {
   double mine[2] = {0.0, 0.0}, all[2];

@@ -78,10 +78,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   {
     if (of(field).has_water()) of(field).surface.extend_topology();
   }
-  void topology_changed(MPMField &field) override
-  {
-    if (of(field).has_water()) field.jacobians.ask();
-  }
+  void topology_changed(MPMField &) override;
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
   {
