@@ -212,6 +212,37 @@ SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
   }
 }
 
+// Sand without cohesion lifts as a plug above the critical gradient, 0.99, as fast as water comes in below it: by the head above the
+// critical one over half a node spacing, where the lowest soil is loose and as permeable as before
+SERIAL_TEST(Flow, LiftsAboveTheCriticalGradient)
+{
+  const auto rate = [](double i) {
+    Scene run(replaced(column(10,
+                              "2.2e7 1000 9810 soil m 0.4 constant 1e-3 geostatic 0.5 1 "
+                              "ylo pressure v_bottom free pressure 0",
+                              "density 1990 mohr/coulomb 1e7 0.3 35 0", 1.3),
+                       "fix water",
+                       "fix g all gravity 9.81 vector 0 -1 0\n" +
+                           strprintf("variable bottom equal "
+                                     "9810*(1+%g*((time<0.1)*time/0.1+(time>=0.1)))\n",
+                                     i) +
+                           "fix water"));
+    double place[2];
+    for (const bool late : {false, true}) {
+      run_to(run, late ? 0.6 : 0.4);
+      place[late] = 0.0;
+      for (int k = 0; k < run.n(); k++) place[late] += run.x()[k][1] / run.n();
+    }
+    return measured(strprintf("gradient %g, rate over permeability", i),
+                    (place[1] - place[0]) / 0.2 / 1e-3);
+  };
+  EXPECT_NEAR(rate(0.9), 0.0, 0.02);
+  const double low = rate(1.02), high = rate(1.05);
+  EXPECT_NEAR(low, (1.02 - 0.99) / 0.05, 0.2);
+  EXPECT_NEAR(high, (1.05 - 0.99) / 0.05, 0.2);
+  EXPECT_NEAR(measured("critical gradient", 1.02 - 0.03 * low / (high - low)) / 0.99, 1.0, 0.03);
+}
+
 // walls that let go make sums over points of their own between the stages of the flow
 SERIAL_TEST(Walls, ThatSeparate)
 {
