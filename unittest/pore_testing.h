@@ -87,19 +87,21 @@ inline double terzaghi(double z, double T)
 }
 
 /** Consolidation by the load: rms error of the pressures in parts of the load at a time factor, and the degree of
- *  consolidation. */
+ *  consolidation. density: of the soil, with half of it that of the water. */
 struct Consolidation {
   double rms, U;
 };
 inline Consolidation consolidate(int n, const std::string &options, double top, double offset,
-                                 double Kf)
+                                 double Kf, double q = LOAD, double density = 2002.0)
 {
   const double storage = 0.4 / Kf, c = 1e-3 / 9810.0 / (1.0 / MODULUS + storage), ramp = 0.01;
-  Scene run(column(n, strprintf("%g 1000 9810 soil m 0.4 constant 1e-3 %s", Kf, options.c_str()),
-                   SOIL, top, offset) +
-            load(n, LOAD, ramp));
+  Scene run(column(n,
+                   strprintf("%g %g 9810 soil m 0.4 constant 1e-3 %s", Kf, 0.5 * density,
+                             options.c_str()),
+                   strprintf("density %g linear 1e7 0.3", density), top, offset) +
+            load(n, q, ramp));
   Water water(run);
-  const double T = 0.2, p0 = LOAD / (1.0 + MODULUS * storage);
+  const double T = 0.2, p0 = q / (1.0 + MODULUS * storage);
   run_to(run, T / c + 0.5 * ramp);
   const double *const p = water.pressures();
   double sum = 0.0, all = 0.0;
@@ -108,7 +110,7 @@ inline Consolidation consolidate(int n, const std::string &options, double top, 
     sum += d * d / run.n();
     all += p[i] / run.n();
   }
-  return {std::sqrt(sum) / LOAD, 1.0 - all / p0};
+  return {std::sqrt(sum) / q, 1.0 - all / p0};
 }
 
 /** A block of two soils and one that is dry, which collide across ranks and periodic faces. */

@@ -281,7 +281,9 @@ void MPMPore::take_off()
 {
   if (surface.any()) {
     surface.find_push(nodes, of_flow);
-    motion->add_gradients(of_flow);
+    motion->add_gradients(of_flow, [this](int slot) {
+      return surface.is_near(slot);
+    });
   }
   for (const auto &run : field.map->runs) {
     const Soil *const s = soil(run.material);

@@ -116,7 +116,7 @@ double MPMPoreMotion::response(int i, const Pores &pores) const
 }
 
 /** Vectors of nodes, the first reals of each, to field.work.vectors of points. */
-void MPMPoreMotion::to_points(std::vector<double> &of_nodes)
+void MPMPoreMotion::to_points(std::vector<double> &of_nodes, const Wanted &wanted)
 {
   field.nodes.complete(of_nodes.data(), WIDTH, field.lattice.dim);
   auto &values = field.work.vectors, &weights = field.work.weights;
@@ -125,6 +125,7 @@ void MPMPoreMotion::to_points(std::vector<double> &of_nodes)
   const PointRows rows = field.rows_at_rest(values.data(), weights.data());
   const TransferStep step = field.step_data(0.0);
   for (const auto &a : field.map->active) {
+    if (wanted && !wanted(a.slot)) continue;
     int base[3];
     field.map->tile_base(a, base);
     field.pic.load(field.map->tile_load, of_nodes.data(), field.grid.blocks[a.slot].slot, a.box);
@@ -135,12 +136,14 @@ void MPMPoreMotion::to_points(std::vector<double> &of_nodes)
   }
 }
 
-void MPMPoreMotion::add_gradients(std::vector<double> &of_nodes)
+void MPMPoreMotion::add_gradients(std::vector<double> &of_nodes, const Wanted &wanted)
 {
-  to_points(of_nodes);
-  for (const auto &run : field.map->runs)
+  to_points(of_nodes, wanted);
+  for (const auto &run : field.map->runs) {
+    if (!wanted(run.slot)) continue;
     for (std::size_t k = 3 * (std::size_t) run.first; k < 3 * (std::size_t) run.last; k++)
       lead[k] += field.work.vectors[k];
+  }
 }
 
 void MPMPoreMotion::begin_point(int i, const Pores &pores)
@@ -174,8 +177,7 @@ void MPMPoreMotion::begin_point(int i, const Pores &pores)
 ------------------------------------------------------------------------- */
 
 template <class Weigh>
-void MPMPoreMotion::sum(std::vector<double> &to, const std::function<bool(int)> &wanted,
-                        const Weigh &weigh)
+void MPMPoreMotion::sum(std::vector<double> &to, const Wanted &wanted, const Weigh &weigh)
 {
   auto &values = field.work.vectors, &weights = field.work.weights;
   values.resize(3 * (std::size_t) atom->nmax);
@@ -237,7 +239,7 @@ void MPMPoreMotion::move()
   field.ledger.internal -= work * force->mvv2e;
   field.ledger.transfer -= kinetic * force->mvv2e;
 
-  to_points(change);
+  to_points(change, nullptr);
   const auto &values = field.work.vectors;
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++) {
@@ -254,8 +256,7 @@ void MPMPoreMotion::discharge(int i, double *q) const
   for (int d = 0; d < field.lattice.dim; d++) q[d] = atom->vfrac[i] * flow[i][d];
 }
 
-void MPMPoreMotion::flow_at_nodes(const std::function<bool(int)> &wanted,
-                                  std::vector<double> &of_nodes)
+void MPMPoreMotion::flow_at_nodes(const Wanted &wanted, std::vector<double> &of_nodes)
 {
   sum(of_nodes, wanted, [&](int i, double &weight, double *vector) {
     weight = atom->vfrac[i];

@@ -26,6 +26,9 @@ class MPMField;
  *  the initial volume of the point times this row, is the momentum of its soil and water together. */
 class MPMPoreMotion : protected Pointers {
  public:
+  /** Is a block looked at? Null: all are. */
+  using Wanted = std::function<bool(int slot)>;
+
   /** What the pores of a point are like. */
   struct Pores {
     double volume, J;    ///< of the point now, and over the initial one
@@ -43,7 +46,7 @@ class MPMPoreMotion : protected Pointers {
   /** Gradient of the pressure in a point. */
   void set_gradient(int i, const double *gradient);
   /** Nodes have mass. [node][8] gradients of pressure that drive the water to the surface, 0. Before begin_point(). */
-  void add_gradients(std::vector<double> &of_nodes);
+  void add_gradients(std::vector<double> &of_nodes, const Wanted &);
   void begin_point(int i, const Pores &);
   /** Flow per gradient of pressure that a step makes in point i from rest: the mobility, or less where there is no time
    *  to speed up. */
@@ -54,8 +57,8 @@ class MPMPoreMotion : protected Pointers {
   void move();
   /** Volume times flow of a point [volume*velocity]. */
   void discharge(int i, double *q) const;
-  /** [node][8] sums of volume times flow, 0, and of the volume. wanted: is the block looked at? */
-  void flow_at_nodes(const std::function<bool(int slot)> &wanted, std::vector<double> &of_nodes);
+  /** [node][8] sums of volume times flow, 0, and of the volume. */
+  void flow_at_nodes(const Wanted &, std::vector<double> &of_nodes);
 
   /** Speed of the fastest wave in a material whose own wave speed is c: both phases move, without drag. biot, storage [1/pressure]:
    *  of the soil; of_both: density of soil and water. */
@@ -79,9 +82,8 @@ class MPMPoreMotion : protected Pointers {
 
   double acceleration() const;
   double fading(const Pores &, double resistance) const;
-  void to_points(std::vector<double> &of_nodes);
-  template <class Weigh>
-  void sum(std::vector<double> &to, const std::function<bool(int)> &wanted, const Weigh &);
+  void to_points(std::vector<double> &of_nodes, const Wanted &);
+  template <class Weigh> void sum(std::vector<double> &to, const Wanted &, const Weigh &);
 };
 
 }    // namespace LAMMPS_NS

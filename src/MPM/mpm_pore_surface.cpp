@@ -129,6 +129,14 @@ void MPMPoreSurface::find_blocks_near()
   }
 }
 
+bool MPMPoreSurface::is_near(int slot) const
+{
+  const int *const around = field.grid.blocks[slot].slot;
+  return std::any_of(around, around + 27, [&](int other) {
+    return other >= 0 && near[other];
+  });
+}
+
 /** Volumes of nodes, and what is minus the force of the stress -I, with the gradients of the functions: those that moving
  *  least squares take in their place see a surface elsewhere. */
 void MPMPoreSurface::map_volume()
@@ -144,12 +152,8 @@ void MPMPoreSurface::map_volume()
   TransferStep step = field.step_data(1.0);
   step.force_scale = 0.0;
   step.stress_scale = 1.0;
-  const auto &blocks = field.grid.blocks;
   points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
-    if (std::none_of(blocks[run.slot].slot, blocks[run.slot].slot + 27, [&](int slot) {
-          return slot >= 0 && near[slot];
-        }))
-      return;
+    if (!is_near(run.slot)) return;
     for (int i = run.first; i < run.last; i++) {
       const double J = field.points->jacobian(i);
       work.weights[i] = J * field.atom->vfrac[i];

@@ -74,7 +74,8 @@ class MPMPoreSurface : protected Pointers {
   void find_push(const MPMNodeScalar &, std::vector<double> &of_nodes) const;
   /** What then flows out, [node][8]: sums of volume times flow, instead of what pressures drive. */
   void take_flow(const std::vector<double> &of_nodes);
-  bool is_near(int slot) const { return near[slot]; }
+  /** Can points of a block have to do with the surface? */
+  bool is_near(int slot) const;
   /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in for each
    *  time, with the energy that this brings. */
   void add_rates(MPMNodeScalar &, std::vector<double> &inflow) const;
