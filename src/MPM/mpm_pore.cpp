@@ -249,16 +249,15 @@ void MPMPore::take_motion()
 
 void MPMPore::find_rates(std::vector<double> &inflow)
 {
-  const double dt = field.step_dt();
+  const double dt = field.step_dt(), cell_in_step = field.lattice.h / dt;
   double weight[3];    // of the water, in pressure per length
   for (int d = 0; d < 3; d++) weight[d] = water.density * gravity[d] * force->nktv2p;
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
     double power[3] = {0.0, 0.0, 0.0};
     for (int p = 0; p < n; p++) {
-      for (int d = 0; d < 3; d++) {
-        q[p][d] = -conductance[first + p] * (q[p][d] - weight[d]);
-        power[d] += q[p][d] * weight[d];
-      }
+      for (int d = 0; d < 3; d++) q[p][d] = -conductance[first + p] * (q[p][d] - weight[d]);
+      if (suction) suction->limit_flow(first + p, cell_in_step, q[p]);
+      for (int d = 0; d < 3; d++) power[d] += q[p][d] * weight[d];
       q[p][3] = squeezed[first + p];
       if (suction) q[p][3] += suction->regained(first + p, capacity[first + p], dt);
     }

@@ -182,7 +182,7 @@ void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, const
 {
   const auto &condition = conditions[part];
   constexpr double ANY = std::numeric_limits<double>::max();
-  Place place = {part, area, pressure_outside(condition, at), 0.0, ANY, 0, 0, 0, 0};
+  Place place = {part, area, pressure_outside(condition, at), 0.0, 0.0, ANY, 0, 0, 0, 0};
   if (condition.kind == MPMPoreCondition::RAIN) place.most = condition.now;
   const bool air = condition.kind == MPMPoreCondition::HEAD && dries && place.outside == 0.0;
   if (condition.kind == MPMPoreCondition::SEEPAGE || air) place.most = 0.0;
@@ -316,18 +316,21 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
     place.area *= has_water ? std::min(1.0, at / MOSTLY) : 0.0;
     const std::vector<double> *outer = nullptr;
     if (wet) outer = &wet->conductance[suction_outside(place.part) < 0.0 ? 1 + place.part : 0];
-    double K = 0.0, C = 0.0, response = 0.0;
+    double K = 0.0, K_in = 0.0, C = 0.0, response = 0.0;
     for (int k = place.first; k < place.first + place.n && has_water; k++) {
       const double inner = scalar.volume[node[k]];
-      K += weight[k] * (outer ? 0.5 * (inner + (*outer)[node[k]]) : inner);
+      K += weight[k] * inner;
+      K_in += weight[k] * (outer ? 0.5 * (inner + (*outer)[node[k]]) : inner);
       C += weight[k] * capacity[node[k]];
       for (int j = place.first_at; j < place.first_at + place.n_at; j++)
         if (node[j] == node[k] && weight[j] > 0.0)
           response += weight[j] * weight[k] / scalar.capacity[node[k]];
     }
-    place.conductance = C > 0.0 ? place.area * storage * K / (C * INSET * field.lattice.h) : 0.0;
+    const double factor = C > 0.0 ? place.area * storage / (C * INSET * field.lattice.h) : 0.0;
+    place.out = factor * K;
+    place.in = factor * K_in;
     if (conditions[place.part].kind != MPMPoreCondition::FLUX)
-      fastest = std::max(fastest, response * place.conductance);
+      fastest = std::max(fastest, response * std::max(place.in, place.out));
   }
   // places of nodes next to each other share nodes
   constexpr double TOGETHER = 3.0;
@@ -343,7 +346,8 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
       double inside = 0.0;
       for (int k = place.first; k < place.first + place.n; k++)
         inside += weight[k] * scalar.value[node[k]];
-      Q = std::min(place.conductance * (place.outside - inside), place.area * place.most);
+      const double drop = place.outside - inside;
+      Q = std::min((drop > 0.0 ? place.in : place.out) * drop, place.area * place.most);
     }
     double p = 0.0;
     for (int k = place.first_at; k < place.first_at + place.n_at; k++) {

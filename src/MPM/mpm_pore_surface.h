@@ -77,7 +77,7 @@ class MPMPoreSurface : protected Pointers {
   struct Place {
     int part;
     double area, outside;    // pressure at which nothing flows
-    double conductance;      // volume of water for a difference in pressure, and time
+    double in, out;          // conductances: volume of water for a difference in pressure, and time
     double most;             // volume of water that can come in for each area and time
     int first, n;            // nodes of the place where the pressure is taken
     int first_at, n_at;      // nodes of the surface next to it, where water comes in
