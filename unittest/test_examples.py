@@ -55,7 +55,9 @@ PROCESSES_TOLERANCE = 1.0e-6   # the largest is 2e-8; collisions amplify round-o
 LOG_TOLERANCE = 1.0e-6         # another machine, compiler or version: what sums over two processes do
 
 # columns that amplify round-off: of the range, and why
-CHAOTIC = {}
+FILLING = "pores that are just full, or not, change their storage a thousandfold: which step it is hangs on round-off"
+CHAOTIC = {"levee": {"v_in": (0.05, FILLING), "v_out": (0.05, FILLING), "v_toe": (0.05, FILLING), "v_crest": (0.05, FILLING),
+                     "v_river": (1.0e-5, "it follows the time, and steps differ with the waves")}}
 
 STEPS = r"^run\s+(?!\s|0\b).*"    # a command that takes steps
 

@@ -358,7 +358,7 @@ void MPMPore::move_water()
 
 void MPMPore::find_rates(std::vector<double> &inflow)
 {
-  const double dt = field.step_dt();
+  const double dt = field.step_dt(), cell_in_step = field.lattice.h / dt;
   const int dim = field.lattice.dim;
   const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
@@ -377,6 +377,7 @@ void MPMPore::find_rates(std::vector<double> &inflow)
         }
         for (int d = 0; d < 3; d++) q[p][d] *= K;
       }
+      if (suction) suction->limit_flow(i, cell_in_step, q[p]);
       for (int d = 0; d < dim; d++) power[d] += q[p][d] * along[d];
       q[p][3] = squeezed[first + p];
       if (suction) q[p][3] += suction->regained(first + p, capacity[first + p], dt);

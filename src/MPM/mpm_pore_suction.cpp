@@ -29,8 +29,13 @@
    not zero, and water would be lost. Hence nodes get the rate C_p (e - e_p) (p_p - ...)/dt, with the greatest factor e: with the
    weights N_ip, of which the sum is one, what all points and nodes have together is kept, and in full pores nothing changes.
 
-   Surface. Through half a cell next to the surface, water flows with the mean of the permeabilities at the
-   pressure outside and inside: rain on dry soil would otherwise not get in.
+   Full pores next to very dry soil. The conductance is that at the start of a step, while the capacity of full pores is next to
+   nothing: in one step more water would leave them than they have. Hence a flow of more than a fifth of the water of a point through a cell in a step
+   is held at that; where pores are full on both sides, flow is never so fast but in steps much too long for the scene.
+
+   Surface. Through half a cell next to the surface, water comes in with the mean of the permeabilities at the
+   pressure outside and inside: rain on dry soil would otherwise not get in. It leaves with that inside: what leaves the nodes at the surface must
+   be able to come to them, or their pressure would fall without bound.
 ------------------------------------------------------------------------- */
 
 #include "mpm_pore_suction.h"
@@ -47,7 +52,11 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double NOTHING = 1.0e-6;    // effective saturation of soil that is dry
+static constexpr double DRIEST = 100.0;    // suction times alpha, beyond which soil gets no drier
+static constexpr double MOST_LAG =
+    0.1;    // of the water of a point that leaves by its lag in a step
+static constexpr double UNDERSHOOT =
+    0.05;    // water that a point may have too little, in its pores
 
 /* ---------------------------------------------------------------------- */
 
@@ -65,26 +74,22 @@ MPMPoreMoisture MPMPoreMoisture::at(const MPMPoreSoil &soil, double J, double p,
 }
 
 /** Newton's method within bounds. */
-double MPMPoreMoisture::pressure(const MPMPoreSoil &soil, double filling, double guess,
-                                 const MPMPoreWater &water)
+double MPMPoreMoisture::pressure(const MPMPoreSoil &soil, double filling, double before,
+                                 double guess, const MPMPoreWater &water)
 {
   const auto &r = soil.retention;
   if (filling >= r.most) return (filling / r.most - 1.0) * water.bulk;
   constexpr int TURNS = 200;
-  constexpr double CLOSE = 4.0e-16, FIRST = 1.0e-3;
+  constexpr double CLOSE = 4.0e-16;
   const auto error = [&](double p, double *slope = nullptr) {
     const auto state = r.at(p);
     const double dense = exp(p / water.bulk);
     if (slope) *slope = dense * (state.slope + state.saturation / water.bulk);
     return state.saturation * dense - filling;
   };
-  double low = std::min(guess, -FIRST / r.alpha), high = 0.0;
-  while (error(low) > 0.0) {
-    if (r.at(low).effective < NOTHING) return low;
-    high = low;
-    low *= 2.0;
-  }
-  double p = guess < high && guess > low ? guess : low;
+  double low = std::min(before, -DRIEST / r.alpha), high = 0.0;
+  if (error(low) >= 0.0) return low;
+  double p = guess < high && guess > low ? guess : std::max(low, -1.0 / r.alpha);
   for (int turn = 0; turn < TURNS; turn++) {
     double slope;
     const double e = error(p, &slope);
@@ -168,6 +173,7 @@ void MPMPoreSuction::begin_point(int i, const MPMPoreSoil &soil, double J, doubl
       point.keep = conductance / (capacity * h * h) + waves * point.most / capacity;
     }
   }
+  point.capacity = capacity;
   slowest = std::min(slowest, point.keep);
 }
 
@@ -206,6 +212,9 @@ double MPMPoreSuction::take_motion(int i, double more, double dt)
   Point &point = of[i];
   point.full += more;
   point.keep = exp(-point.keep * dt);
+  // a wet point in dry soil: its capacity is not that of the way to the pressure there
+  const double lag = fabs(point.lag) * point.capacity, most = MOST_LAG * point.filling * point.full;
+  if ((1.0 - point.keep) * lag > most) point.keep = 1.0 - most / lag;
   return point.filling;
 }
 
@@ -221,12 +230,12 @@ double MPMPoreSuction::take_water(int i, const MPMPoreSoil &soil, double before,
   if (!soil.retention.can_dry()) return guess;
   content[i] += more;
   if (before >= 0.0 && guess >= 0.0) return guess;
-  if (!(content[i] >= 0.0))
+  if (!(content[i] >= -UNDERSHOOT * of[i].full))
     error->one(FLERR, Error::NOLASTLINE,
                "More water flows out of point {} of soil {} than it has: a flux takes water from "
                "soil that is dry; give its suction by pressure in place of flux",
                atom->tag[i], soil.material);
-  return MPMPoreMoisture::pressure(soil, content[i] / of[i].full, guess, water);
+  return MPMPoreMoisture::pressure(soil, content[i] / of[i].full, before, guess, water);
 }
 
 double MPMPoreSuction::memory_usage() const

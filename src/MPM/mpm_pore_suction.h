@@ -15,6 +15,7 @@
 #include "mpm_rows.h"
 #include "pointers.h"
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -33,9 +34,10 @@ struct MPMPoreMoisture {
   double bishop;      ///< share of the pressure in the effective stress
 
   static MPMPoreMoisture at(const MPMPoreSoil &, double J, double p, const MPMPoreWater &);
-  /** The pressure of water that fills the pores so far; guess: near it. Below the residual saturation the pressure is that where
-   *  a millionth of what can flow is left. */
-  static double pressure(const MPMPoreSoil &, double filling, double guess, const MPMPoreWater &);
+  /** The pressure of water that fills the pores so far. before: the last one; guess: near it. Soil that has less water than
+   *  at 100/alpha has that suction, or what it had before. */
+  static double pressure(const MPMPoreSoil &, double filling, double before, double guess,
+                         const MPMPoreWater &);
   /** What a volume of soil stores: the integral of p times its storage, from zero [pressure]. */
   static double energy(const MPMPoreSoil &, double J, double p, const MPMPoreWater &);
 };
@@ -73,6 +75,15 @@ class MPMPoreSuction : protected Pointers {
   {
     return capacity * (longest - of[i].keep) * of[i].lag / dt;
   }
+  /** Not more flows than a share of the water of the point through a cell in a step. flow: of the point, volume times
+   *  velocity; speed: of a cell in a step. */
+  void limit_flow(int i, double speed, double *flow) const
+  {
+    const double most = MOST_FLOW * of[i].filling * of[i].full * speed;
+    const double square = flow[0] * flow[0] + flow[1] * flow[1] + flow[2] * flow[2];
+    if (square <= most * most) return;
+    for (int d = 0; d < 3; d++) flow[d] *= most / sqrt(square);
+  }
   double kept_lag(int i) const { return of[i].keep * of[i].lag; }
   /** Point i has got a volume of water. guess: its pressure if its capacity had not changed. Returns its pressure. */
   double take_water(int i, const MPMPoreSoil &, double before, double guess, double more);
@@ -84,8 +95,10 @@ class MPMPoreSuction : protected Pointers {
     double filling, full;    // volume of water over that of pores; volume of pores
     double keep;             // rate, and then factor of the lag in this step
     double lag;
+    double capacity;
     double most, conductance;    // capacity and conductance of full pores
   };
+  static constexpr double MOST_FLOW = 0.2;
   MPMField &field;
   const MPMPoreWater &water;
   double *const &content;

@@ -339,18 +339,21 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
     place.area *= has_water ? std::min(1.0, std::min(inside, at) / MOSTLY) : 0.0;
     const std::vector<double> *outer = nullptr;
     if (wet) outer = &wet->conductance[suction_outside(place.part) < 0.0 ? 1 + place.part : 0];
-    double K = 0.0, C = 0.0;
+    double K = 0.0, K_in = 0.0, C = 0.0;
     for (int k = place.first; k < place.first + place.n && has_water; k++) {
       const double inner = scalar.volume[node[k]];
-      K += weight[k] * (outer ? 0.5 * (inner + (*outer)[node[k]]) : inner);
+      K += weight[k] * inner;
+      K_in += weight[k] * (outer ? 0.5 * (inner + (*outer)[node[k]]) : inner);
       C += weight[k] * capacity[node[k]];
     }
-    place.conductance = C > 0.0 ? place.area * storage * K / (C * INSET * field.lattice.h) : 0.0;
+    const double factor = C > 0.0 ? place.area * storage / (C * INSET * field.lattice.h) : 0.0;
+    place.out = factor * K;
+    place.in = factor * K_in;
     if (conditions[place.part].kind == MPMPoreCondition::FLUX) continue;
-    for (int k = place.first; k < place.first + place.n; k++)
-      rows[2 * node[k]] += place.conductance * weight[k];
+    const double most = std::max(place.in, place.out);
+    for (int k = place.first; k < place.first + place.n; k++) rows[2 * node[k]] += most * weight[k];
     for (int k = place.first_at; k < place.first_at + place.n_at; k++)
-      rows[2 * node[k] + 1] += place.conductance * weight[k];
+      rows[2 * node[k] + 1] += most * weight[k];
   }
   field.nodes.sum(rows.data(), 2, 0, 2);
   double taken = 0.0, given = 0.0;
@@ -464,9 +467,10 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
       double inside = 0.0;
       for (int k = place.first; k < place.first + place.n; k++)
         inside += weight[k] * scalar.value[node[k]];
+      const double drop = place.outside - inside;
       Q = flow_is_given
-          ? place.inflow + LEAK * place.conductance * (place.outside_at - p)
-          : std::min(place.conductance * (place.outside - inside), place.area * place.most);
+          ? place.inflow + LEAK * place.out * (place.outside_at - p)
+          : std::min((drop > 0.0 ? place.in : place.out) * drop, place.area * place.most);
     }
     for (int k = place.first_at; k < place.first_at + place.n_at; k++)
       scalar.rate[node[k]] += weight[k] * Q;

@@ -85,10 +85,10 @@ class MPMPoreSurface : protected Pointers {
  private:
   struct Place {
     int part;
-    double area, outside;       // pressure at which nothing flows
-    double conductance;         // volume of water for a difference in pressure, and time
-    int first, n;               // nodes of the place where the pressure is taken
-    int first_at, n_at;         // nodes of the surface next to it, where water comes in
+    double area, outside;    // pressure at which nothing flows
+    double in, out;          // conductances: volume of water for a difference in pressure, and time
+    int first, n;            // nodes of the place where the pressure is taken
+    int first_at, n_at;      // nodes of the surface next to it, where water comes in
     double at[3], normal[3];    // on the surface, out of the soil
     double touch;               // part of the surface there that is of this place
     double outside_at;          // pressure outside at the surface itself
