@@ -27,7 +27,9 @@
    not see of the temperatures of points goes, by conduction, in about the time h^2 rho c/k in which heat crosses a
    cell: with relax a share 1 - e of it, e = exp(-R dt k/(rho c h^2)), goes in a step, so that what this smoothes does
    not depend on the time step and is of second order. e is that of the material that conducts least: only if it is the
-   same for all points is heat kept.
+   same for all points is heat kept. Nodes next to an interface have the temperature of points with much capacity, to
+   which others would be pulled, at a rate that is not that of their conduction: with 100 times the capacity on one side 30 % more heat
+   went through a layer of 3 cells. R is made smaller by the ratio of the capacities.
 
    Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, that of capacities of
    C_p diag(N); the greatest eigenvalue of the sum is not above the greatest of the parts,
@@ -94,6 +96,7 @@ void MPMConduction::init(double sigma)
 {
   thermals.clear();
   slowest = std::numeric_limits<double>::max();
+  double least_capacity = slowest, greatest_capacity = 0.0;
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
@@ -104,8 +107,12 @@ void MPMConduction::init(double sigma)
     const double least = all.orthotropic
         ? std::min(all.conductivity, std::min(all.across[0], all.across[1]))
         : all.conductivity;
-    slowest = std::min(slowest, least / (material.density() * all.capacity));
+    const double capacity = material.density() * all.capacity;
+    slowest = std::min(slowest, least / capacity);
+    least_capacity = std::min(least_capacity, capacity);
+    greatest_capacity = std::max(greatest_capacity, capacity);
   }
+  if (greatest_capacity > 0.0) slowest *= least_capacity / greatest_capacity;
   total = field.frame->is_total();
   steepest = 0.0;
   if (field.options.shape == QUADRATIC || field.options.shape == CUBIC) {

@@ -89,7 +89,7 @@ class MPMConduction : protected Pointers {
 
   const MPMHeatTransfer &transfer;
   std::vector<Thermal> thermals;
-  double slowest = 0.0;    // smallest diffusivity of a material
+  double slowest = 0.0;    // smallest diffusivity of a material, by the ratio of capacities
   double steepest =
       0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
   double conducted = 0.0, exchanged = 0.0;    // limits of the last step
