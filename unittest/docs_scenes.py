@@ -191,6 +191,11 @@ def scene_for(lines):
                     "fix mw water mpm/material density 1000 eos linear 1.0e6\n")
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
     points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
+    if "mpm_geostatic" in text:
+        before += "fix weight all gravity 9.81 vector 0 0 -1\n"
+        points = points.replace("$(0.2*lx) $(0.5*lx)", "INF INF")
+        points = points.replace("INF INF\n", "0 $(0.3*lz)\n")
+        material = "fix default all mpm/material density 1600 linear 1.0e7 0.3\n"
     if re.search("mpm/immersed|lists grains", text):
         before += "group grains type 3\n"
     if "mpm/elements" in text:

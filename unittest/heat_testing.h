@@ -72,15 +72,7 @@ struct Warm {
 /** Lines of the log of a scene that say that a body is too thin for heat through its surface. */
 inline int said_thin(const std::string &scene)
 {
-  Scene run;
-  const ScratchFile log("thin.log");
-  run.commands("log " + log.name + "\n" + scene + "log none\n");
-  MPI_Barrier(MPI_COMM_WORLD);
-  int lines = 0;
-  std::ifstream file(log.name);
-  for (std::string line; std::getline(file, line);)
-    lines += line.find("is thinner than 3") != std::string::npos;
-  return lines;
+  return (int) lines_that_say(scene, "is thinner than 3").size();
 }
 
 /** A bar of the length 1 along x with capacity and conductivity 1, whose ends are the faces of the box, with n
@@ -133,6 +125,17 @@ inline std::vector<Named> temperatures(Scene &run)
       if (warm.has(i)) mine.push_back({(double) run.lmp->atom->tag[i], warm.T(i)});
   }
   return all_by_tag(mine, run.lmp->world);
+}
+
+/** Largest difference of the temperatures of the same points of two scenes; huge where there are others. */
+inline double temperature_difference(Scene &a, Scene &b)
+{
+  const auto one = temperatures(a), other = temperatures(b);
+  if (one.empty() || one.size() != other.size()) return 1.0e300;
+  double most = 0.0;
+  for (std::size_t k = 0; k < one.size(); k++)
+    most = std::max(most, std::fabs(one[k].T - other[k].T));
+  return most;
 }
 
 }    // namespace MPM_TEST

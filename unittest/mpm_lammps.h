@@ -731,6 +731,21 @@ struct Twins {
   }
 };
 
+/** Lines of the log of these commands that have these words. */
+inline std::vector<std::string> lines_that_say(const std::string &commands,
+                                               const std::string &words)
+{
+  Scene run;
+  const ScratchFile log("said.log");
+  run.commands("log " + log.name + "\n" + commands + "log none\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  std::vector<std::string> lines;
+  std::ifstream file(log.name);
+  for (std::string line; std::getline(file, line);)
+    if (line.find(words) != std::string::npos) lines.push_back(line);
+  return lines;
+}
+
 /** The message of the error that an input gives, or nothing. */
 inline std::string error_of(const std::string &input)
 {

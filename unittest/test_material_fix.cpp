@@ -204,16 +204,8 @@ TEST(MaterialFix, LeavingARangeWarnsOnce)
     return "";
   };
   const auto warnings = [&](const std::string &ranges) {
-    Scene run;
-    const ScratchFile log("ranges.log");
-    run.commands("log " + log.name + "\n" + start + ranges + "\nrun 20 post no\nrun 20 post no\n" +
-                 "log none\n");
-    MPI_Barrier(MPI_COMM_WORLD);
-    std::vector<std::string> lines;
-    std::ifstream file(log.name);
-    for (std::string line; std::getline(file, line);)
-      if (contains(line, "out of the range")) lines.push_back(line);
-    return lines;
+    return lines_that_say(start + ranges + "\nrun 20 post no\nrun 20 post no\n",
+                          "out of the range");
   };
 
   // limits that are reached in the middle of the run
@@ -266,6 +258,18 @@ TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 }
 
 /* ---------------------------------------------------------------------- history */
+
+// points whose pores have water in them have another mass, for as long as there is a fix mpm/pore
+TEST(MaterialFix, MassFollowsTheWaterOfAFixPoreOnly)
+{
+  Scene run(plane("si", "f p", "0 4 0 4", 1, 0.1) +
+            "fix grid all mpm 1.0\ncreate_points 1 box ppc 2\n"
+            "fix m all mpm/material density 2000.0 linear 1e7 0.3\ntimestep 1e-4\n"
+            "fix water all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-5\nrun 1\n");
+  EXPECT_TRUE(run.material()->mass_varies);
+  run.commands("unfix water\nrun 1\n");
+  EXPECT_FALSE(run.material()->mass_varies);
+}
 
 TEST(MaterialFix, NewPointsStartWithInitialHistory)
 {

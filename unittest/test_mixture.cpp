@@ -7,7 +7,7 @@
 
 // Fix mpm/mixture: soil and water as two fields.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 #include <complex>
 
@@ -25,6 +25,17 @@ struct Column {
   double E = 1.0e7, nu = 0.3, K = 2.2e8;
   std::string drag = "darcy 1.0e-10", options = "transfer apic";
   int dim = 2;
+
+  /** 4 cells high, full of soil and water. */
+  static Column full(double E, double K, const std::string &drag)
+  {
+    Column c = {0.1, 0.4};
+    c.soil[1] = c.water[1] = c.height;
+    c.E = E;
+    c.K = K;
+    c.drag = drag;
+    return c;
+  }
 
   double modulus() const { return E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)); }
 
@@ -59,6 +70,9 @@ struct Column {
     s += strprintf("fix mix all mpm/mixture s w %.17g 1.0e-3 drag %s\n", GRAINS, drag.c_str());
     return s;
   }
+
+  /** The same with all faces periodic. */
+  std::string periodic() const { return replaced(text(), "boundary p f", "boundary p p"); }
 };
 
 /** Volume ratio of water with a pressure, by eos linear. */
@@ -126,23 +140,23 @@ PARAMETER_TEST(Relaxation, IsExact, std::string,
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   for (const int dim : {2, 3}) {
-    Column c;
-    c.h = 0.1;
-    c.height = 0.4;
-    c.soil[1] = c.water[1] = 0.4;
-    c.K = 1.0e3;
-    c.E = 1.0e3;
-    c.drag = "darcy 1.0e-9";
+    Column c = Column::full(1.0e3, 1.0e3, "darcy 1.0e-9");
     c.options = GetParam();
     c.dim = dim;
-    Scene run(replaced(replaced(c.text(), "boundary p f", "boundary p p"), "0.2 -0.5", "0.4 -0.5") +
-              "timestep 1.0e-4\n");
+    Scene run(c.periodic() + "timestep 1.0e-4\n");
     for (int i = 0; i < run.n(); i++)
       for (int d = 0; d < dim; d++)
         run.v()[i][d] = run.lmp->atom->type[i] == 1 ? 0.3 * (d + 1) : -1.0 + d;
     const auto before = run.sums();
-    run.commands("run 5\n");
-    const auto after = run.sums();
+    run.commands("run 4\n");
+    const auto last = run.sums(1);
+    run.commands("run 1\n");
+    const auto after = run.sums(), soil_after = run.sums(1);
+    for (int d = 0; d < dim; d++) {
+      const double given = soil_after.p[d] - last.p[d];
+      EXPECT_GT(fabs(given), 1.0e-6 * after.mass);
+      EXPECT_NEAR(run.fix_vector("mix", 6)[d] * 1.0e-4 / given, 1.0, 1e-9) << dim << d;
+    }
     const double rate =
         POROSITY * POROSITY * 1.0e-3 / 1.0e-9 * (1.0 / DRY + 1.0 / (POROSITY * WATER));
     for (int d = 0; d < dim; d++) {
@@ -216,24 +230,6 @@ struct Mode {
   double K, k;    ///< bulk modulus of water, hydraulic conductivity
   std::string options;
 };
-
-/** Angular frequency and decay of a signal, from its first and last zeros and peaks. */
-static std::array<double, 2> frequency_and_decay(const std::vector<double> &t,
-                                                 const std::vector<double> &y)
-{
-  std::vector<double> zeros, when, peaks;
-  for (std::size_t k = 1; k + 1 < y.size(); k++) {
-    if (y[k] * y[k + 1] < 0.0) zeros.push_back(t[k] + (t[k + 1] - t[k]) * y[k] / (y[k] - y[k + 1]));
-    const double a = fabs(y[k - 1]), b = fabs(y[k]), c = fabs(y[k + 1]);
-    if (b > a && b >= c && k > 3) {
-      const double u = 0.5 * (a - c) / (a - 2.0 * b + c);
-      peaks.push_back(b - 0.25 * (a - c) * u);
-      when.push_back(t[k] + u * (t[k + 1] - t[k]));
-    }
-  }
-  return {PI * (zeros.size() - 1.0) / (zeros.back() - zeros.front()),
-          log(peaks.front() / peaks.back()) / (when.back() - when.front())};
-}
 
 PARAMETER_TEST(StandingWave, HasTheRootsOfBothVelocities, Mode,
                Values(Mode{2.2e8, 1.0e-3, "transfer aflip 1.0"},
@@ -374,14 +370,17 @@ SERIAL_TEST(Consolidation, FollowsTerzaghi)
 // Water flows up through a bed of soil that lies on a sieve, driven by a force in a loop (a periodic column): Darcy's
 // flow, gradient of the pressure, effective stress, and the gradient at which the bed is lifted. The force is uniform
 // in the water, and the soil weighs so much less that the difference is that of its weight under water.
+// A body elsewhere, in contact with the soil if it were here, changes nothing.
 struct Flow {
   double gradient;
   std::string options;
+  bool with_third = false;
 };
 
 PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
                Values(Flow{0.5, "transfer apic smooth 0.9"}, Flow{0.9, "transfer apic smooth 0.9"},
                       Flow{0.9, "transfer apic"}, Flow{0.9, "transfer aflip 1.0 smooth 0.9"},
+                      Flow{0.9, "transfer apic smooth 0.9", true},
                       Flow{0.96, "transfer apic smooth 0.9"},
                       Flow{1.02, "transfer apic smooth 0.9"}))
 {
@@ -398,19 +397,31 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
   c.options = GetParam().options;
   const double k = 0.005, gravity = WATER * G;
   c.drag = strprintf("darcy %.17g", k * 1.0e-3 / gravity);
-  Scene run(replaced(c.text(), "boundary p f", "boundary p p") +
+  Scene run(replaced(c.periodic(), "create_box 2", "create_box 3") +
             "fix step all mpm/dt 0.4\nregion sieve block INF INF 0 0.3 INF INF\n"
             "fix sieve all mpm/boundary region sieve separate field s\n");
+  if (GetParam().with_third)
+    run.commands(strprintf("group third empty\nfix t third mpm %g %s\n", c.h, c.options.c_str()) +
+                 "region far block INF INF 1.2 1.3 INF INF\n"
+                 "create_points 3 region far ppc 2 fix t group third overlap yes\n"
+                 "fix mt third mpm/material density 1000 neohookean 1.0e5 0.3\n"
+                 "fix touch all mpm/contact s t\n");
   const double buoyant = (1.0 - POROSITY) * (GRAINS - WATER) * G;
   for (int j = 0; j < run.n(); j++)
     if (run.lmp->atom->type[j] == 1) set_stress(run, j, -buoyant * (0.3 + H - run.x()[j][1]), c.nu);
   const double drive = i * G * H / L;
+  double weight = 0.0;    // of the soil, in the last step
   run.each_step([&](double **f) {
     const double t = run.time(), now = drive * (t < 0.5 ? 0.5 - 0.5 * cos(2.0 * PI * t) : 1.0);
-    for (int j = 0; j < run.n(); j++)
-      f[j][1] = run.lmp->atom->type[j] == 2
-          ? run.mass()[j] * now
-          : -run.mass()[j] / DRY * (buoyant - (1.0 - POROSITY) * WATER * now);
+    weight = 0.0;
+    for (int j = 0; j < run.n(); j++) {
+      const int type = run.lmp->atom->type[j];
+      if (type == 1)
+        f[j][1] = -run.mass()[j] / DRY * (buoyant - (1.0 - POROSITY) * WATER * now);
+      else if (type == 2)
+        f[j][1] = run.mass()[j] * now;
+      if (type == 1) weight -= f[j][1];
+    }
   });
   const auto bed = [&] {
     double sum = 0.0, number = 0.0;
@@ -426,12 +437,15 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
                "unfix end\n");
 
   // means over time: of the flux in all of the column, as what flows through it is the same everywhere; of the gradient
-  // of the pressure and of the vertical stress of the soil inside of the bed
+  // of the pressure and of the vertical stress of the soil inside of the bed; of all forces on the soil
 
-  double flux = 0.0, slope = 0.0, stress = 0.0;
+  double flux = 0.0, slope = 0.0, stress = 0.0, forces = 0.0;
   const int times = 25;
   for (int step = 0; step < times; step++) {
     run.commands("run 50\n");
+    const double *const mix = run.fix_vector("mix", 6);
+    forces += (mix[1] + mix[4] - weight) / times;
+    forces -= run.fix_vector("sieve", 3)[1] / times;
     double n = 0.0, x = 0.0, xx = 0.0, p = 0.0, xp = 0.0;
     for (const auto &s : run.gather()) {
       if (s.type != 2) continue;
@@ -458,6 +472,7 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
               0.01);
   EXPECT_NEAR(measured("effective stress, error", (stress - (buoyant - i * gravity)) / buoyant),
               0.0, 0.02);
+  EXPECT_NEAR(measured("all forces on the soil", forces / weight), 0.0, 1.0e-3);
 }
 
 // Forces of drag by laws for spheres: what is left of a difference of velocities after a long time, in a periodic box
@@ -474,16 +489,7 @@ SERIAL_TEST(Drag, OfSpheresIsThatOfTheLaw)
       if (law == "difelice")
         needed = 0.75 * (1.0 - n) * WATER * q * q / d * pow(0.63 + 4.8 / sqrt(Re), 2.0) *
             pow(n, -(3.7 - 0.65 * exp(-0.5 * pow(1.5 - log10(Re), 2.0))) - 1.0);
-      Column c;
-      c.h = 0.1;
-      c.height = 0.4;
-      c.soil[1] = c.water[1] = 0.4;
-      c.K = 1.0e4;
-      c.E = 1.0e4;
-      c.drag = law + " 0.01";
-      Scene run(
-          replaced(replaced(c.text(), "boundary p f", "boundary p p"), "0.2 -0.5", "0.4 -0.5") +
-          "timestep 5.0e-3\n");
+      Scene run(Column::full(1.0e4, 1.0e4, law + " 0.01").periodic() + "timestep 5.0e-3\n");
       run.each_step([&](double **f) {
         for (int i = 0; i < run.n(); i++)
           f[i][0] = run.lmp->atom->type[i] == 2 ? needed / WATER * run.mass()[i]
@@ -499,15 +505,8 @@ SERIAL_TEST(Drag, OfSpheresIsThatOfTheLaw)
 // Soil with another porosity than that of the permeability; and the limit of the time step, by the formula of the page
 SERIAL_TEST(Drag, OfDarcyDependsOnPorosity)
 {
-  Column c;
-  c.h = 0.1;
-  c.height = 0.4;
-  c.soil[1] = c.water[1] = 0.4;
-  c.K = 1.0e6;
-  c.E = 1.0e5;
-  c.drag = "darcy 1.0e-9 0.5";
-  Scene run(replaced(replaced(c.text(), "boundary p f", "boundary p p"), "0.2 -0.5", "0.4 -0.5") +
-            "timestep 1.0e-4\nvelocity water set 1.0 0 0\nrun 5\n");
+  const Column c = Column::full(1.0e5, 1.0e6, "darcy 1.0e-9 0.5");
+  Scene run(c.periodic() + "timestep 1.0e-4\nvelocity water set 1.0 0 0\nrun 5\n");
   const auto kozeny = [](double n) {
     return n * n * n / ((1.0 - n) * (1.0 - n));
   };
@@ -621,6 +620,90 @@ SERIAL_TEST(Units, OfTheViscosityAreThoseOfPressure)
   double v[2];
   for (int i = 0; i < run.n(); i++) v[run.lmp->atom->type[i] - 1] = run.v()[i][0];
   EXPECT_NEAR((v[1] - v[0]) / exp(-rate * 0.1), 1.0, 1e-6);
+
+  const double before = run.sums(1).p[0];
+  run.commands("run 1\n");
+  const double given = (run.sums(1).p[0] - before) / (0.01 * run.lmp->force->ftm2v);
+  EXPECT_NEAR(run.fix_vector("mix", 6)[0] / given, 1.0, 1e-9);
+}
+
+// Soil in half of a periodic box full of water, whose pressure is not uniform: the soil gets the share of the volume of its
+// grains of the difference between its ends, and energy is kept, where mass velocity^2 is no energy and pressure times
+// volume neither.
+SERIAL_TEST(Units, OfForcesAndEnergy)
+{
+  for (const std::string drag : {"none", "darcy 2.0"}) {
+    Scene run(plane("metal", "p p", "0 16 0 4", 2, 0.3) +
+              "group soil empty\ngroup water empty\nfix s soil mpm 0.5\nfix w water mpm 0.5\n"
+              "region half block 4 12 INF INF INF INF\n"
+              "region rest block 4 12 INF INF INF INF side out\n"
+              "create_points 1 region half ppc 2 fix s group soil\n"
+              "create_points 2 region half ppc 2 fix w group water share 0.4\n"
+              "create_points 2 region rest ppc 2 fix w group water\n"
+              "fix ms soil mpm/material density 1.2 linear 1.0e4 0.3\n"
+              "fix mw water mpm/material density 0.6 eos linear 1.0e4\n"
+              "fix mix all mpm/mixture s w 2.0 10.0 drag " +
+              drag + "\ncompute e all mpm/energy\ntimestep 0.001\nrun 0\n");
+    const double P = 20.0, k = 2.0 * PI / 16.0;
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->type[i] == 2)
+        set_pressure(run, i, P * sin(k * (run.x()[i][0] - 8.0)), 1.0e4);
+    run.commands("run 1\n");
+    const auto before = run.sums(1);
+    run.commands("run 1\n");
+    const double *const mix = run.fix_vector("mix", 6);
+    const double given = (run.sums(1).p[0] - before.p[0]) / (0.001 * run.lmp->force->ftm2v);
+    EXPECT_NEAR((mix[0] + mix[3]) / given, 1.0, 1e-9) << drag;
+    EXPECT_NEAR(measured("pressure", mix[3] / (-0.6 * 2.0 * P * 4.0 / run.lmp->force->nktv2p)), 1.0,
+                0.03)
+        << drag;
+    run.commands("run 200\n");
+    const auto all = run.sums();
+    const double *const e = run.compute_vector();
+    EXPECT_GT(all.kinetic, 0.0);
+    EXPECT_LT(fabs(measured("momentum", all.p[0] / sqrt(all.mass * all.kinetic))), 1e-12);
+    EXPECT_LT(fabs(measured("residual", e[10] / (all.kinetic * run.lmp->force->mvv2e))), 1e-11);
+  }
+}
+
+// What limits the time step is named: the fastest of all points, here one of water that is compressed.
+TEST(TimeStep, IsThatOfTheFastestPoint)
+{
+  for (const int fastest : {70, 84, 120}) {
+    Scene run(slump(2) + replaced(stuff, "timestep 0.02", "timestep 1.0e-6") + "run 1\n");
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->tag[i] == fastest)
+        for (int k = 0; k < 9; k += 4) run.points().F[i][k] = 0.97;
+    run.commands("fix step all mpm/dt 0.3\nrun 0\n");
+    EXPECT_EQ(run.fix_vector("step", 1)[0], fastest);
+  }
+}
+
+// Soil and what is in its pores are at the same place; two of the same kind are a mistake.
+SERIAL_TEST(Share, IsNoOverlapWithTheSoilAlone)
+{
+  const std::string fields = box(2, "lj", "p f p", "0 10 0 8", 2, 0.3) +
+      "group soil empty\ngroup water empty\nfix s soil mpm 1.0\nfix w water mpm 1.0\n"
+      "region heap block 2 5 0 5 INF INF\n";
+  const std::string soil = "create_points 1 region heap ppc 2 fix s group soil\n",
+                    water = "create_points 2 region heap ppc 2 fix w group water share 0.5\n";
+  Scene fine(fields + soil + water);
+  EXPECT_EQ(fine.n(), 120);
+  expect_error(fields + soil + water + water, "refuses overlapping bodies: 60 existing");
+  expect_error(fields + soil + water + soil, "refuses overlapping bodies: 120 existing");
+  expect_error(fields + water + soil, "make the soil first");
+  expect_error(fields + soil + soil, "refuses overlapping bodies: 60 existing");
+  Scene allowed(fields + soil + water + replaced(water, "\n", " overlap yes\n"));
+  EXPECT_EQ(allowed.n(), 180);
+
+  // in no field yet: by type
+  const std::string free_soil = replaced(soil, " group soil", ""),
+                    free_water = replaced(water, " group water", "");
+  Scene later(fields + free_soil + free_water);
+  EXPECT_EQ(later.n(), 120);
+  expect_error(fields + free_soil + free_water + free_water, "refuses overlapping bodies: 60");
+  expect_error(fields + free_soil + replaced(free_water, "create_points 2", "create_points 1"),
+               "refuses overlapping bodies: 60");
 }
 
 SERIAL_TEST(Mixture, RefusesBadInput)
@@ -640,6 +723,8 @@ SERIAL_TEST(Mixture, RefusesBadInput)
                   {fix + "w s 2.5 0.01", "are no fluid"},
                   {fix + "s w 2.5 0.01\nfix two all mpm/mixture s w 2.5 0.01", "in common"},
                   {fix + "s w 2.5 0.01\nfix c all mpm/contact s w", "keeps the water out"},
+                  {fix + "s w 2.5 0.01\nfix p all mpm/pore 200 1 10 soil ms 0.5 constant 1.0",
+                   "fix mpm/pore p has water in the pores of ms already"},
                   {fix + "s w 1.0 0.01", "that of dry soil"}},
                  "run 1\n");
   for (const Mistake &mistake : {Mistake{"shape linear", "shape quadratic or cubic"},

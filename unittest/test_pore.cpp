@@ -60,6 +60,78 @@ SERIAL_TEST(Undrained, PressureIsEven)
     }
 }
 
+namespace {
+
+/** A block of stiff soil of 1 m, a cell of 0.1 m from the sides of its box or between them, that loses water through
+ *  faces; pressures at first are anything up to 1e4. */
+std::string leaking(const std::string &box, double spacing, double origin, const std::string &faces,
+                    double k)
+{
+  return plane("si", "f f", box, 1, 0.03) + "region soil block 0 1 0 1 INF INF\n" +
+      strprintf("create_points 1 region soil spacing %g\n", spacing) +
+      strprintf("fix grid all mpm 0.1 origin %g 0\n", origin) +
+      "fix m all mpm/material density 2002 linear 1e10 0.3\nvariable p atom 1e4*random(0,1,482)\n" +
+      strprintf("fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant %g initial v_p %s\n", k,
+                faces.c_str()) +
+      "fix dt all mpm/dt 0.5\n";
+}
+/** Greatest pressure of points in these runs of some steps. */
+double greatest_pressure(Scene &run, Water &water, int runs, int steps)
+{
+  double most = 0.0;
+  for (int k = 0; k < runs; k++) {
+    run.commands(strprintf("run %d\n", steps));
+    const double *const p = water.pressures();
+    for (int i = 0; i < run.n(); i++)
+      most = std::max(most, std::isfinite(p[i]) ? std::fabs(p[i]) : 1e300);
+  }
+  return most;
+}
+// what the motion of so stiff a soil can add: twice K_f/(n M)
+const double NEVER_ABOVE = 1e4 * (1.0 + 2.0 * 2.2e7 / 0.4 / (1e3 * MODULUS));
+
+}    // namespace
+
+// Nodes beside a body have next to nothing of it where points are in the middle of cells: a side that moves through
+// cells, or is there by the place of nodes or with one point for each cell
+SERIAL_TEST(Surface, NextToASide)
+{
+  for (const double k : {1e-3, 1e-2, 1e-1}) {
+    Scene run(leaking("-1 3 0 1.5", 0.05, 0.0, "ylo pressure 0", k) +
+              "fix floor all mpm/boundary ylo slip\nvelocity all set 100 0 0\n");
+    Water water(run);
+    EXPECT_LT(measured(strprintf("moving, k %g", k), greatest_pressure(run, water, 20, 10)),
+              NEVER_ABOVE);
+  }
+  for (const auto &[spacing, origin] :
+       {std::pair{0.05, 0.075}, std::pair{0.05, 0.0751}, std::pair{0.1, 0.0}})
+    for (const double k : {1e-3, 1e-2, 1e-1}) {
+      Scene run(leaking("0 1 0 1.5", spacing, origin, "ylo pressure 0 free pressure 0", k) +
+                "fix walls all mpm/boundary xlo xhi ylo slip\n");
+      Water water(run);
+      EXPECT_LT(measured(strprintf("spacing %g, origin %g, k %g", spacing, origin, k),
+                         greatest_pressure(run, water, 10, 5)),
+                NEVER_ABOVE);
+    }
+  for (const auto &[faces, k] : {std::pair{"xlo pressure 0", 1e-2},
+                                 std::pair{"xlo pressure 0 ylo pressure 0 zhi pressure 0", 1e-2},
+                                 std::pair{"xlo pressure 0 xhi pressure 0 ylo pressure 0 yhi "
+                                           "pressure 0 zlo pressure 0 zhi pressure 0",
+                                           1.0}}) {
+    Scene run(
+        space("si", "f f f", "0 0.5 0 0.5 0 0.5", 1, 0.03) +
+        "create_points 1 box spacing 0.1\nfix grid all mpm 0.1\n"
+        "fix m all mpm/material density 2002 linear 1e10 0.3\n"
+        "fix w all mpm/boundary xlo xhi ylo yhi zlo zhi slip\n"
+        "variable p atom 1e4*random(0,1,482)\n" +
+        strprintf("fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant %g initial v_p %s\n",
+                  k, faces) +
+        "fix dt all mpm/dt 0.5\n");
+    Water water(run);
+    EXPECT_LT(measured(faces, greatest_pressure(run, water, 10, 5)), NEVER_ABOVE);
+  }
+}
+
 // what comes to points is what comes through the surface, as volume of water and as mass
 TEST(Water, IsKept)
 {
@@ -205,6 +277,77 @@ SERIAL_TEST(Walls, ThatSeparate)
   EXPECT_LT(measured("fastest", fastest), 0.02);
 }
 
+namespace {
+
+/** A column of 1 m with 10 cells above a floor, which a wall of this kind holds, under its weight; water has the
+ *  pressure of rest and this gradient more, and leaves at the top. offset: of the floor from nodes, in cells. */
+std::string above_floor(const std::string &wall, double gradient, double offset,
+                        const std::string &material, const std::string &axes)
+{
+  return plane("si", "p f", axes, 1, 0.03) +
+      "region soil block 0 0.4 0 1 INF INF\nregion ground block INF INF -1 0 INF INF\n"
+      "create_points 1 region soil spacing 0.05\n" +
+      strprintf("fix grid all mpm 0.1 origin 0 %g\n", 0.1 * offset) + "fix m all mpm/material " +
+      material + "\nfix floor all mpm/boundary " + wall +
+      "\nfix g all gravity 9.81 vector 0 -1 0\n" +
+      strprintf("variable p atom 9810*(1-y)*(1+%g)\n", gradient) +
+      "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 1e-2 yhi pressure 0 initial "
+      "v_p ";
+}
+double mean_velocity(Scene &run, int d)
+{
+  double sum = 0.0;
+  for (int i = 0; i < run.n(); i++) sum += run.v()[i][d] / run.n();
+  return sum;
+}
+
+}    // namespace
+
+// friction of walls is that of grains: a saturated column slides on its floor as one of its submerged weight
+SERIAL_TEST(Walls, FrictionIsThatOfGrains)
+{
+  const double slower = 0.3 * 9.81 * 990.0 / 1990.0;
+  for (const auto &[wall, offset] :
+       {std::pair{"ylo slip friction 0.3", 0.0}, std::pair{"ylo slip friction 0.3", 0.3},
+        std::pair{"ylo separate friction 0.3", 0.0}, std::pair{"ylo separate friction 0.3", 0.4},
+        std::pair{"region ground separate friction 0.3", 0.0},
+        std::pair{"region ground separate friction 0.3", 0.3},
+        std::pair{"region ground slip friction 0.3", 0.2}}) {
+    const bool face = wall[0] == 'y';
+    Scene run(above_floor(wall, 0.0, offset, "density 1990 linear 1e7 0.3",
+                          face ? "0 0.4 0 1" : "0 0.4 -0.5 1") +
+              "\n");
+    run_to(run, 0.6);
+    run.set_velocity([](const double *, double *v) {
+      v[0] = 5.0;
+    });
+    run_to(run, 0.7);
+    EXPECT_NEAR(measured(strprintf("%s, offset %g", wall, offset),
+                         (5.0 - mean_velocity(run, 0)) / (0.1 * slower)),
+                1.0, 0.01);
+  }
+}
+
+// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the critical gradient
+// is (G_s - 1)(1 - n) = 0.99
+SERIAL_TEST(Walls, HeaveAtTheCriticalGradient)
+{
+  for (const double offset : {0.0, 0.3})
+    for (const double i : {0.9, 0.96, 1.02, 1.05}) {
+      if (offset > 0.0 && std::fabs(i - 0.99) > 0.05) continue;
+      Scene run(above_floor("ylo separate", i, offset, "density 1990 linear 1e8 0.3", "0 0.4 0 1") +
+                strprintf("ylo pressure %.17g\n", 9810 * (1.0 + i)));
+      run_to(run, 0.4);
+      double lowest = 1.0;
+      for (int k = 0; k < run.n(); k++) lowest = std::min(lowest, run.x()[k][1] - 0.025);
+      measured(strprintf("offset %g, gradient %g, gap", offset, i), lowest);
+      if (i < 0.99)
+        EXPECT_LT(lowest, 1e-4);
+      else
+        EXPECT_GT(lowest, 1e-3);
+    }
+}
+
 // flow by a difference of pressures, and water at rest under its weight
 SERIAL_TEST(Flow, Darcy)
 {
@@ -309,7 +452,8 @@ TEST(Ranks, Agree)
       replaced(blocks("initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01"),
                "boundary p p p", "boundary f f p") +
       "fix b all mpm/boundary xlo xhi ylo yhi slip\n";
-  for (const auto &scene : {blocks("initial v_p"), walls}) {
+  const auto rough = replaced(walls, "yhi slip", "yhi separate friction 0.3");
+  for (const auto &scene : {blocks("initial v_p"), walls, rough}) {
     OnRanks run(scene + PORE, "run 300\n");
     EXPECT_LT(run.difference(), 1e-11);
     const auto one = pressures(run.serial), all = pressures(run.parallel);

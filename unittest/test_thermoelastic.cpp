@@ -49,6 +49,14 @@ double stress_xx(Scene &run, int i)
   return s[0];
 }
 
+/** Runs up to this time, or just beyond it. */
+void run_until(Scene &run, double t)
+{
+  run.commands("variable time equal time\n" +
+               strprintf("fix until all halt 1 v_time >= %g error continue\n", t) +
+               "run 20000\nunfix until\n");
+}
+
 /** Mean temperature of a bar that is heated from one end, the other one held. */
 double mean_temperature(double t)
 {
@@ -67,6 +75,8 @@ PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
   const int n = 20;
   const double h = 1.0 / n, E = 1.0e4, alpha = 1.0e-4;
   const double length = clamped ? 1.0 : 1.0 + 4 * h;
+  EXPECT_NEAR(mean_temperature(0.01), 0.1128379, 1e-6);
+  EXPECT_NEAR(mean_temperature(0.3), 0.4790171, 1e-7);
   // Poisson's ratio is zero: the sides do not matter. The free end is held by no face of the box
   Scene run(
       plane("lj", "f p", strprintf("0 %.17g 0 %.17g", length, 4 * h), 1, 0.1 * h) +
@@ -82,11 +92,9 @@ PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
   for (int i = 0; i < run.n(); i++) X[run.lmp->atom->tag[i]] = run.x()[i][0];
   std::vector<double> all(X.size());
   MPI_Allreduce(X.data(), all.data(), (int) X.size(), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-  for (const double t : {0.05, 0.1, 0.3}) {
-    if (!clamped && t == 0.05) continue;    // it still swings
-    run.commands(strprintf("fix until all halt 1 v_time >= %g error continue\n", t)
-                     .insert(0, "variable time equal time\n"));
-    run.commands("run 20000\nunfix until\n");
+  for (const double t : {0.05, 0.1, 0.3, 1.0}) {    // the last one is the end: 0.5
+    if (!clamped && t == 0.05) continue;            // it still swings
+    run_until(run, t);
     const double now = run.time();
     if (clamped) {
       const double stress = mean_of(run, [&](int i) {
@@ -111,6 +119,27 @@ PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
   }
   const double *const e = run.compute_vector();
   EXPECT_NEAR(e[10], 0.0, 1e-12 * std::fabs(e[4]) + 1e-14);
+}
+
+// After 0.01 only a tenth of the bar is warm: stiffer, so that waves are faster than that, and twice as many cells, as
+// the conduction of heat has an error of 2.0 % with 20 of them and of 0.5 % with 40
+SERIAL_TEST(HeatedBar, AtItsStart)
+{
+  const int n = 40;
+  const double h = 1.0 / n, E = 1.0e6, alpha = 1.0e-4;
+  Scene run(plane("lj", "f p", strprintf("0 1 0 %.17g", 4 * h), 1, 0.1 * h) +
+            strprintf("create_points 1 box spacing %.17g\nfix grid all mpm %.17g\n", 0.5 * h, h) +
+            strprintf("fix m all mpm/material density 1.0 linear %g 0.0 viscosity newtonian 50 "
+                      "thermal conducting 1.0 0.0 1.0 expansion %g\n",
+                      E, alpha) +
+            "fix heat all mpm/heat xlo temperature 1.0 xhi temperature 0.0\n"
+            "fix b all mpm/boundary xlo xhi slip\nfix dt all mpm/dt 0.5\n");
+  run_until(run, 0.01);
+  const double stress = mean_of(run, [&](int i) {
+    return stress_xx(run, i);
+  });
+  EXPECT_NEAR(measured("stress, t 0.01", stress / (E * alpha)) / -mean_temperature(run.time()), 1.0,
+              0.01);
 }
 
 namespace {
@@ -184,40 +213,51 @@ PARAMETER_TEST(ThermoelasticMode, HasItsFrequencyAndDecay, Mode,
                    }) /
         amplitude;
   };
-  // kinetic, elastic (at the first temperature), and thermal energy of the linear theory; no energy of the
-  // ledger goes astray
+  // kinetic, elastic (at the first temperature), and thermal energy of the linear theory, one step before now; no
+  // energy of the ledger goes astray. Velocities belong to times half a step before those of places: the kinetic
+  // energy is that of the velocities then and now, one times the other, and does not swing with the step
+  std::vector<double> mine(X.size()), before(X.size());
   const auto energy = [&]() {
-    const double *const e = run.compute_vector();
-    EXPECT_NEAR(e[10], 0.0,
-                3e-13 * 4.0 * h);    // of the heat of the bar: sums of thousands of stages
+    std::fill(mine.begin(), mine.end(), 0.0);
     double sum = 0.0;
-    for (int i = 0; i < run.n(); i++)
+    for (int i = 0; i < run.n(); i++) {
+      mine[run.lmp->atom->tag[i]] = run.lmp->atom->v[i][0];
       sum += 0.5 * run.mass()[i] *
           (std::pow(material->history[i][T] - 1.0, 2) + std::pow(run.points().F[i][0] - 1.0, 2));
-    return e[0] + over_ranks(sum);
+    }
+    MPI_Allreduce(mine.data(), before.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM,
+                  MPI_COMM_WORLD);
+    run.commands("run 1\n");
+    EXPECT_NEAR(run.compute_vector()[10], 0.0,
+                3e-13 * 4.0 * h);    // of the heat of the bar: sums of thousands of stages
+    for (int i = 0; i < run.n(); i++)
+      sum += 0.5 * run.mass()[i] * run.lmp->atom->v[i][0] * before[run.lmp->atom->tag[i]];
+    return over_ranks(sum);
   };
   const double dt = 0.2 * h;
-  run.commands(strprintf("timestep %.17g\nrun 0\n", dt));
+  run.commands(strprintf("timestep %.17g\n", dt));
   const double start = energy();
   double last = start, most = 0.0;
-  for (int k = 1; k <= 6; k++) {
-    run.commands(strprintf("run %d\n", (int) std::lround(1.0 / dt)));
+  constexpr int OFTEN = 5;    // times in a unit of time
+  for (int k = 1; k <= 6 * OFTEN; k++) {
+    run.commands(strprintf("run %d\n", (int) std::lround(1.0 / (OFTEN * dt)) - (k == 1 ? 2 : 1)));
     const double now = energy();
     most = std::max(most, (now - last) / start);
     last = now;
-    if (k % 2 == 0)
-      EXPECT_NEAR(measured(strprintf("delta %g, K %.3g, U(%d)", m.delta, m.K, k), U()),
-                  mode(m.delta, m.K, k),
-                  0.01 * std::max(std::fabs(mode(m.delta, m.K, k)), 0.5521195));
+    const int t = k / OFTEN;
+    if (k % (2 * OFTEN) == 0)
+      EXPECT_NEAR(measured(strprintf("delta %g, K %.3g, U(%d)", m.delta, m.K, t), U()),
+                  mode(m.delta, m.K, t),
+                  0.01 * std::max(std::fabs(mode(m.delta, m.K, t)), 0.5521195));
   }
-  EXPECT_LT(measured("largest growth of the energy", most), 1e-3);
+  EXPECT_LE(measured("largest growth of the energy", most), 0.0);
 }
 
 namespace {
 
-/** A free strip of two layers. */
+/** A free strip of two layers in plane strain. */
 struct Strip {
-  double E1, E2, h1, alpha1, alpha2, length;
+  double E1, E2, h1, alpha1, alpha2, length, nu = 0.0;
 };
 std::string strip(const Strip &s, int cells, const std::string &grid)
 {
@@ -225,7 +265,7 @@ std::string strip(const Strip &s, int cells, const std::string &grid)
   const auto material = [&](const char *group, double E, double alpha) {
     return strprintf("fix %s %s mpm/material density 1.0 linear %g %g "
                      "thermal adiabatic 1e20 0.0 0 expansion %g\n",
-                     group, group, E, 0.0, alpha);
+                     group, group, E, s.nu, alpha);
   };
   return plane("lj", "f f", "-0.2 1.2 -0.5 0.5", 2, 0.1 * h) +
       strprintf("fix grid all mpm %.17g origin 0 0 %s\n", h, grid.c_str()) +
@@ -278,21 +318,48 @@ double curvature(Scene &run, const std::set<int> &tags)
 PARAMETER_TEST(Bimetal, Bends, const char *, Values("", "frame total"))
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
-  for (const double E2 : {100.0, 50.0}) {
-    const Strip s = {100.0, E2, 0.05, 0.0, 1e-3, 1.0};
-    Scene run(strip(s, 8, GetParam()) + "fix damp all viscous 2.5e-4\ntimestep 5e-4\n");
+  struct Case {
+    double E2, h1, nu;
+    int cells;
+    double expected;    // with an expansion of 0.05
+  };
+  for (const Case &c : {Case{100.0, 0.05, 0.0, 8, 0.75}, Case{50.0, 0.05, 0.0, 8, 0.727273},
+                        Case{25.0, 0.04, 0.0, 10, 0.734994}, Case{50.0, 0.05, 0.3, 8, 0.9454546}}) {
+    const Strip s = {100.0, c.E2, c.h1, 0.0, 1e-3, 1.0, c.nu};
+    const double h = 0.1 / c.cells;
+    Scene run(strip(s, c.cells, GetParam()) +
+              strprintf("fix damp all viscous %g\ntimestep %g\n", 2.5e-4 * h * h / 1.5625e-4,
+                        (c.nu > 0.0 ? 0.85 : 1.0) * 0.04 * h));
     const double dT = 5.0;    // for small strains; the benchmark has ten times as much
     set_temperature(run, [&](const double *) {
       return dT;
     });
-    const auto middle = row_above(run, 0.05, 0.0125);
-    run.commands("run 6000\n");
-    const double m = 1.0, n = s.E1 / s.E2;
-    const double kappa = 6 * s.alpha2 * dT * (1 + m) * (1 + m) /
+    const auto middle = row_above(run, 0.05, h);
+    run_until(run, 3.0);
+    const double m = c.h1 / (0.1 - c.h1), n = s.E1 / s.E2;
+    const double kappa = (1 + c.nu) * 6 * s.alpha2 * dT * (1 + m) * (1 + m) /
         (0.1 * (3 * (1 + m) * (1 + m) + (1 + m * n) * (m * m + 1 / (m * n))));
-    EXPECT_NEAR(10.0 * kappa, E2 == 100.0 ? 0.75 : 0.727273, 1e-6);
-    EXPECT_NEAR(measured("curvature", -curvature(run, middle)) / kappa, 1.0, 0.02);
+    EXPECT_NEAR(10.0 * kappa, c.expected, 1e-6);
+    EXPECT_NEAR(measured(strprintf("curvature, E %g, h1 %g, nu %g", c.E2, c.h1, c.nu),
+                         -curvature(run, middle)) /
+                    kappa,
+                1.0, 0.02);
   }
+}
+
+// The benchmark's own size: an expansion of 5 %, which bends a strip of length 1 by 43 degrees
+SERIAL_TEST(Bimetal, BendsFar)
+{
+  const Strip s = {100.0, 100.0, 0.05, 0.0, 1e-3, 1.0};
+  Scene run(strip(s, 8, "") + "fix damp all viscous 2.5e-4\ntimestep 4e-4\n");
+  const auto middle = row_above(run, 0.05, 0.0125);
+  for (int k = 1; k <= 10; k++) {
+    set_temperature(run, [&](const double *) {
+      return 5.0 * k;
+    });
+    run.commands(k < 10 ? "run 600\n" : "run 8000\n");
+  }
+  EXPECT_NEAR(measured("curvature", -curvature(run, middle)) / 0.75, 1.0, 0.02);
 }
 
 // A strip with a temperature that is linear through its depth bends without any stress
@@ -332,15 +399,27 @@ std::string collision(const std::string &heat)
 
 }    // namespace
 
-TEST(Ranks, Agree)
+/** The same with a body that melts and has an internal energy. */
+std::string energetic()
 {
-  OnRanks run(collision("fix heat all mpm/heat\n"), "run 90\n");
-  EXPECT_LT(run.difference(), 1e-12);
+  return replaced(collision("fix heat all mpm/heat\n"),
+                  "eos linear 20.0 strength j2 8.0 0.4 thermal conducting 1.5 1.0 0.4 expansion "
+                  "0.02 gruneisen consistent",
+                  "eos shock 4.5 1.3 1.5 strength j2 8.0 0.4 thermal conducting 1.5 1.0 0.4 melt "
+                  "1.01 0.2");
 }
 
-TEST(Restart, Continues)
+TEST(Ranks, Agree)
 {
-  const std::string scene = collision("fix heat all mpm/heat\n");
+  for (const auto &scene : {collision("fix heat all mpm/heat\n"), energetic()}) {
+    OnRanks run(scene, "run 90\n");
+    EXPECT_LT(run.difference(), 1e-12);
+  }
+}
+
+PARAMETER_TEST(Restart, Continues, bool, Values(false, true))
+{
+  const std::string scene = GetParam() ? energetic() : collision("fix heat all mpm/heat\n");
   const std::string tail = scene.substr(scene.find("fix m one"));
   std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n";
   for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
@@ -419,6 +498,47 @@ TEST(Ledger, Closes)
     EXPECT_LT(measured("thermoelastic", e[THERMOELASTIC]), -0.01);
     EXPECT_LT(std::fabs(measured("laws", e[13])), -0.01 * e[THERMOELASTIC]);
   }
+}
+
+// A closed box of gas whose wall becomes twice as warm has twice the pressure: conducted heat is in the internal energy
+PARAMETER_TEST(Gas, InAClosedBox, const char *, Values("si", "cgs"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const bool si = GetParam() == std::string("si");
+  const double m = si ? 1.0 : 100.0, density = si ? 1.2 : 1.2e-3, pressure = si ? 1e5 : 1e6;
+  const double cv = pressure / (0.4 * density * 300), h = 0.1 * m, k = 1e3 * density * cv;
+  Scene run(plane(GetParam(), "f p", strprintf("0 %g 0 %g", m, 4 * h), 1, 0.1 * h) +
+            strprintf("create_points 1 box spacing %.17g\nfix grid all mpm %.17g\n", 0.5 * h, h) +
+            strprintf("fix m all mpm/material density %g eos ideal/gas 1.4 pressure %g "
+                      "viscosity newtonian %g thermal conducting %.17g 300 %.17g\n",
+                      density, pressure, 10 * density * m * m, cv, k * m * m) +
+            "fix heat all mpm/heat xlo temperature 600 stages 64\n"
+            "fix b all mpm/boundary xlo xhi slip\nfix dt all mpm/dt 0.5\ncompute e all mpm/energy\n"
+            "run 1\n");
+  const auto *const material = run.material();
+  const int T = material->find_history("temperature");
+  // the internal energy is the pressure times the volume over 0.4
+  const auto pressure_over_T = [&]() {
+    const double p = mean_of(run, [&](int i) {
+      return -stress_xx(run, i) * run.points().jacobian(i);
+    });
+    const double warm = mean_of(run, [&](int i) {
+      return material->history[i][T];
+    });
+    measured("p/p0", p / pressure);
+    return p / pressure / (warm / 300);
+  };
+  for (const double t : {1e-4, 1e-3, 0.01}) {
+    run_until(run, t);
+    EXPECT_NEAR(pressure_over_T(), 1.0, 2e-3);
+  }
+  EXPECT_NEAR(mean_of(run,
+                      [&](int i) {
+                        return material->history[i][T];
+                      }) /
+                  300,
+              2.0, 1e-3);
+  EXPECT_NEAR(run.compute_vector()[10], 0.0, 1e-10 * pressure * 0.4 * m * m);
 }
 
 // units change nothing, nor do they change the coupling of heat and stress: a block that is compressed

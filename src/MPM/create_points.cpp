@@ -81,7 +81,7 @@ void CreatePoints::command(int narg, char **arg)
     parse(narg, arg);
     find_ranges();
     check_outside();
-    if (share == 1.0) check_overlap();    // else others are to be in the same place
+    check_overlap();
   }
 
   MPI_Barrier(world);
@@ -409,17 +409,34 @@ void CreatePoints::check_outside()
 /* ----------------------------------------------------------------------
    refuse, or report, new points close to material points that exist
    an existing point is closer than half a spacing along all axes to one site only,
-   that of the cell of the site lattice it is in: no need to look at other points
+   that of the cell of the site lattice it is in: no need to look at other points.
+   What has a share of the volume is meant to be in the same place as a body in another field
 ------------------------------------------------------------------------- */
+
+/** Is atom i of the body that the new points belong to: in a field that these are in, or, where they are in none yet, of
+ *  their type? */
+bool CreatePoints::same_body(int i) const
+{
+  const int bits = group_bits | 1;    // 1: all
+  bool in_field = false;
+  for (const auto *field : MPMField::all(lmp)) {
+    if (!(bits & field->fix.groupbit)) continue;
+    in_field = true;
+    if (atom->mask[i] & field->fix.groupbit) return true;
+  }
+  return !in_field && atom->type[i] == type;
+}
 
 void CreatePoints::check_overlap()
 {
   const int dim = domain->dimension;
   double **x = atom->x;
-  bigint mine[2] = {0, -MAXTAGINT}, all[2];
+  bigint mine[2] = {0, -MAXTAGINT}, all[2], apart = 0, all_apart;
 
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->vfrac[i] > 0.0)) continue;
+    const bool same = same_body(i);
+    if (share < 1.0 && !same) continue;
     bigint s[3] = {0, 0, 0};
     for (int d = 0; d < dim; d++) {
       s[d] = (bigint) floor((x[i][d] - origin[d]) / spacing[d]);
@@ -430,11 +447,13 @@ void CreatePoints::check_overlap()
     }
     if (!in_box(s) || !in_region(s)) continue;
     mine[0]++;
+    apart += !same;
     mine[1] = std::max(mine[1], -(bigint) atom->tag[i]);
   }
   MPI_Allreduce(&mine[0], &all[0], 1, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&mine[1], &all[1], 1, MPI_LMP_BIGINT, MPI_MAX, world);
   if (all[0] == 0) return;
+  MPI_Allreduce(&apart, &all_apart, 1, MPI_LMP_BIGINT, MPI_SUM, world);
 
   const auto message = fmt::format("{} existing material point{} (the first has ID {}) closer than "
                                    "half a spacing to new points",
@@ -442,8 +461,11 @@ void CreatePoints::check_overlap()
   if (!allow_overlap)
     error->all(FLERR, Error::NOLASTLINE,
                "Create_points refuses overlapping bodies: {}; change the "
-               "region, delete the old points first, or use create_points keyword overlap yes",
-               message);
+               "region, delete the old points first, or use create_points keyword overlap yes{}",
+               message,
+               all_apart ? "; of a soil and the water in its pores make the soil first, and the "
+                           "water with keyword share"
+                         : "");
   if (comm->me == 0) error->warning(FLERR, "Create_points makes overlapping bodies: {}", message);
 }
 

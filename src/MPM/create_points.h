@@ -111,6 +111,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void find_lattice();
   void find_ranges();
   void check_outside();
+  bool same_body(int i) const;
   void check_overlap();
   bigint make_points();
   bigint make_mesh_points();

@@ -64,6 +64,7 @@
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
+#include "mpm_physics.h"
 #include "mpm_state.h"
 #include "region.h"
 #include "update.h"
@@ -1160,6 +1161,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
     if (count && kind == SEPARATE) find_gaps(list, dt);
+    if (count && decides()) find_water(list, dt);
     now = {count,
            stage == MAPPED_BACK || stage == AGAIN,
            ledger.on ? &ledger : nullptr,
@@ -1200,22 +1202,70 @@ void FixMPMBoundary::act(double dt, Stage stage)
 }
 
 /* ----------------------------------------------------------------------
-   what the wall does to nodes on which it pushes with an impulse along the normal, when another one
-   would be needed for the material to stick. Returns the share of the latter that friction gives
+   what the wall does to nodes on which it pushes with an impulse along the normal, of which water bears a part,
+   when another one would be needed for the material to stick. Returns the share of the latter that friction gives
 ------------------------------------------------------------------------- */
 
-double FixMPMBoundary::slide_share(Contact &contact, double push, double needed) const
+double FixMPMBoundary::slide_share(Contact &contact, double push, double of_water,
+                                   double needed) const
 {
   if (!now.decided) {
     contact = SLIDING;
-    if (kind == SEPARATE && push <= 0.0) {
+    const double grains = push - of_water;
+    if (kind == SEPARATE && push <= std::max(of_water, 0.0)) {
       contact = FREE;
-    } else if (friction > 0.0 && push > 0.0) {
-      if (needed > friction * push) return friction * push / needed;
+    } else if (friction > 0.0 && grains > 0.0) {
+      if (needed > friction * grains) return friction * grains / needed;
       contact = STUCK;
     }
   }
   return contact == STUCK ? 1.0 : 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   Water in pores presses on walls, too, and bears a part of what the wall pushes with. Only the rest is between grains and
+   wall: friction is proportional to it, and where it would be negative grains leave a wall that separates, pushed by the
+   water. Water pulls at no wall that separates.
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::find_water(const FieldNodes &list, double dt)
+{
+  water.clear();
+  if (!pressure_of_physics(*list.field)) return;
+  std::vector<char> near(list.field->grid.blocks.size(), 0);
+  const auto mark = [&](int64_t node) {
+    if (node >= 0) near[node / NODES_PER_BLOCK] = 1;
+  };
+  for (const auto &line : list.lines)
+    for (int k = 0, n = list.faces[line.face].length(); k < n; k++) mark(line.node[k]);
+  for (const auto &crossing : list.crossings)
+    for (int k = 0; k < crossing.n; k++) mark(crossing.node[k]);
+  for (const auto &single : list.singles) mark(single.node);
+  if (surface_force_of_physics(*list.field, near, water))
+    for (double &w : water) w *= dt;
+}
+
+/** Impulse of the water on the wall at n nodes, -1: none; normal: from the wall to the body. */
+double FixMPMBoundary::water_on(const int64_t *node, int n, const double *normal) const
+{
+  double sum = 0.0;
+  if (now.decided || water.empty()) return sum;
+  for (int k = 0; k < n; k++)
+    for (int d = 0; d < 3 && node[k] >= 0; d++) sum -= water[3 * node[k] + d] * normal[d];
+  return sum;
+}
+
+/** The same on the body, at a node that the wall has let go: water works on what it lifts, as a wall that moves with it. */
+void FixMPMBoundary::push_by_water(Grid &grid, int64_t node, const double *normal)
+{
+  if (node < 0) return;
+  const double *const record = grid.record(node);
+  if (!(record[3] > 0.0)) return;
+  double v[3] = {0.0, 0.0, 0.0}, along = 0.0;
+  for (int d = 0; d < 3; d++) along += water[3 * node + d] * normal[d];
+  for (int d = 0; d < grid.lattice.dim; d++) v[d] = record[d] - along * normal[d] / record[3];
+  count_moment(grid, node, record, v);
+  set_velocity(grid, node, v, v, nullptr);
 }
 
 /* ----------------------------------------------------------------------
@@ -1378,9 +1428,16 @@ void FixMPMBoundary::act_on_column(const FieldNodes &list, Line &column)
   double needed = 0.0;
   for (int d = 0; d < dim; d++)
     if (d != a) needed += to_stick[d] * to_stick[d];
+  double inward[3] = {0.0, 0.0, 0.0};
+  inward[a] = face.inward;
   const double push = column.touched ? face.inward * to_stick[a] : 0.0;
-  const double slide = slide_share(column.contact, push, sqrt(needed));
-  if (column.contact == FREE) return;
+  const double of_water = column.touched ? water_on(column.node, face.length(), inward) : 0.0;
+  const double slide = slide_share(column.contact, push, of_water, sqrt(needed));
+  if (column.contact == FREE) {
+    for (int k = 0; k < face.length() && of_water > 0.0; k++)
+      push_by_water(grid, column.node[k], inward);
+    return;
+  }
   for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
   const double normal[3] = {(double) (a == 0), (double) (a == 1), (double) (a == 2)};
   heat_if_sliding(column.contact, normal);
@@ -1434,8 +1491,12 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
       length += slide[d] * slide[d];
     }
     const double push = single.touched ? -normal : 0.0;
-    const double keep = 1.0 - slide_share(single.contact, push, sqrt(length));
-    if (single.contact == FREE) return;
+    const double of_water = single.touched ? water_on(&single.node, 1, n) / r[3] : 0.0;
+    const double keep = 1.0 - slide_share(single.contact, push, of_water, sqrt(length));
+    if (single.contact == FREE) {
+      if (of_water > 0.0) push_by_water(grid, single.node, n);
+      return;
+    }
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
     heat_if_sliding(single.contact, n);
   }
@@ -1454,11 +1515,42 @@ void FixMPMBoundary::count_moment(const Grid &grid, int64_t node, const double *
                                   const double *v)
 {
   if (!now.counting || !grid.owns(node)) return;
-  double x[3], push[3] = {0.0, 0.0, 0.0}, moment[3];
-  grid.node_position(node, x);
+  double push[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < grid.lattice.dim; d++) push[d] = record[3] * (v[d] - record[d]);
+  add_moment(grid, node, push);
+}
+
+void FixMPMBoundary::add_moment(const Grid &grid, int64_t node, const double *push)
+{
+  double x[3], moment[3];
+  grid.node_position(node, x);
   MathExtra::cross3(x, push, moment);
   for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
+}
+
+/* ----------------------------------------------------------------------
+   counted like any other impulse, see set_velocity()
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::bear(MPMField &field, int64_t node, const double *push)
+{
+  Grid &grid = field.grid;
+  if (!grid.owns(node)) return;
+  const double *const record = grid.record(node);
+  double V[3], moved = 0.0, driven = 0.0, gained = 0.0;
+  wall.velocity(field, node, V);
+  for (int d = 0; d < grid.lattice.dim; d++) {
+    impulse[d] += push[d];
+    moved += push[d] * record[d];
+    driven += push[d] * V[d];
+    if (field.ledger.on) gained += 0.5 * push[d] * (record[d] + record[4 + d]);
+  }
+  add_moment(grid, node, push);
+  reaction_known = false;
+  past.work += moved;
+  field.ledger.boundary += moved * force->mvv2e;
+  field.ledger.driven += driven * force->mvv2e;
+  if (field.ledger.on) field.ledger.transfer += (gained - moved) * force->mvv2e;
 }
 
 /* ----------------------------------------------------------------------

@@ -97,6 +97,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
 
     void reset(int64_t nnodes);
   };
+  /** The wall bears another impulse of a node than what it has counted when it acted in this step: adds this one on
+   *  the body [mass velocity] to the reaction and its moment, and to the work, with the present velocities. */
+  void bear(MPMField &, int64_t node, const double *push);
+
   /** Components of nodes of a field to which this wall gives its velocity, for good: sets bit d of
    *  held[node], one entry for each node; where it mirrors a node outside, bit 3 + d. */
   void mark_held(const MPMField &, std::vector<char> &held) const;
@@ -119,6 +123,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     // range of nodes along the axis that are looked at together
     int begin() const { return cut ? first : plane - DEPTH; }
     int end() const { return cut ? first + nweight - 1 : plane + DEPTH; }
+    int length() const { return cut ? nweight : 1 + 2 * DEPTH; }    // of a line of nodes
     void cut_weights(const MPMField &, double x);
     MPMWallContact contact_of(const MPMField &, double x) const;
   };
@@ -262,6 +267,8 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     int place;               // of the field in the list
     const double *normal;    // of the wall on which nodes slide and become warm; null: they do not
   } now;
+  std::vector<double>
+      water;    // [node][3] impulse of water in pores on the surface of the body; empty: none
   std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
 
   bool region_moves() const;
@@ -291,13 +298,17 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   void find_region_gaps(FieldNodes &, double dt);
   std::function<double(const double *)> distance_from_region(const MPMField &, double dt) const;
   void check_speed(double dt);
-  double slide_share(Contact &, double push, double needed) const;
+  double slide_share(Contact &, double push, double water, double needed) const;
+  void find_water(const FieldNodes &, double dt);
+  double water_on(const int64_t *node, int n, const double *normal) const;
+  void push_by_water(MPM_NS::Grid &, int64_t node, const double *normal);
   void set_velocity(MPM_NS::Grid &, int64_t node, const double *V, const double *v,
                     const double *old, const double *whole = nullptr);
   void heat_if_sliding(Contact, const double *normal);
   double slip_work(MPM_NS::Grid &, int64_t node, const double *V, const double *change,
                    const double *v, const double *counted);
   void count_moment(const MPM_NS::Grid &, int64_t node, const double *record, const double *v);
+  void add_moment(const MPM_NS::Grid &, int64_t node, const double *push);
   static bool is_constrained(MPM_NS::Grid &, const Member *, int n, bool fixed);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);
   void act_on_column(const FieldNodes &, Line &);

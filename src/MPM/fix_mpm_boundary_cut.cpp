@@ -200,8 +200,14 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
     double needed = 0.0;
     for (int d = 0; d < dim; d++)
       if (d != a) needed += lambda[d] * lambda[d];
-    const double slide = slide_share(cut.contact, push, total * sqrt(needed));
-    if (cut.contact == FREE) return;
+    double inward[3] = {0.0, 0.0, 0.0};
+    inward[a] = face.inward;
+    const double of_water = cut.touched ? water_on(chain.node, m, inward) : 0.0;
+    const double slide = slide_share(cut.contact, push, of_water, total * sqrt(needed));
+    if (cut.contact == FREE) {
+      for (int k = 0; k < m && of_water > 0.0; k++) push_by_water(grid, chain.node[k], inward);
+      return;
+    }
     for (int d = 0; d < dim; d++) share[d] = d == a ? 1.0 : slide;
     heat_if_sliding(cut.contact, normal);
   }
@@ -251,8 +257,12 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
     needed += slide * slide;
   }
   const double push = crossing.touched ? chain.total * normal : 0.0;
-  const double share = slide_share(crossing.contact, push, chain.total * sqrt(needed));
-  if (crossing.contact == FREE) return;
+  const double of_water = crossing.touched ? water_on(chain.node, chain.m, n) : 0.0;
+  const double share = slide_share(crossing.contact, push, of_water, chain.total * sqrt(needed));
+  if (crossing.contact == FREE) {
+    for (int k = 0; k < chain.m && of_water > 0.0; k++) push_by_water(grid, chain.node[k], n);
+    return;
+  }
   heat_if_sliding(crossing.contact, n);
   for (int k = 0; k < chain.m; k++) {
     double v[3], along = 0.0;

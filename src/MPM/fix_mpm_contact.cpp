@@ -247,7 +247,7 @@ void FixMPMContact::init_action()
   FixMPMContact::init();
   std::vector<MPMField *> fields;
   for (const auto &body : bodies) fields.push_back(body.field);
-  heating->begin_run(*this, fields);
+  heating->begin_run(*this, fields, true);
   const auto musl = std::find_if(fields.begin(), fields.end(), [](const MPMField *field) {
     return field->options.scheme == MPMFieldOptions::MUSL;
   });

@@ -389,6 +389,7 @@ void FixMPMHeat::extend_topology(MPMField &field)
 void FixMPMHeat::topology_changed(MPMField &field)
 {
   of(field).faces.topology_changed();
+  of(field).find_points(bodies.empty());
   for (auto &body : bodies) body->topology_changed();
   for (auto &skin : skins) skin->topology_changed();
   for (auto &contact : contacts) contact->topology_changed();

@@ -61,6 +61,7 @@
 #include "fix_mpm_boundary.h"
 #include "fix_mpm_contact.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_pore.h"
 #include "force.h"
 #include "material/batch.h"
 #include "material/material.h"
@@ -276,14 +277,28 @@ void FixMPMMixture::init_action()
           "Fix mpm/mixture {}: fix mpm/contact {} keeps the water out of the soil: leave one "
           "of these fields out there",
           id, other->id);
+  for (auto *other : modify->get_fix_by_style("^mpm/pore$")) {
+    const auto *pore = dynamic_cast<FixMPMPore *>(other);
+    for (const auto *material : soil.field->materials)
+      if (pore->has(material->id) && shares_points(*material))
+        error->all(
+            FLERR, Error::NOLASTLINE,
+            "Fix mpm/mixture {}: fix mpm/pore {} has water in the pores of {} already: leave "
+            "this soil out there, or drop fix mpm/mixture",
+            id, other->id, material->id);
+  }
   lists_valid = false;
 }
 
-void FixMPMMixture::init_physics(MPMPlan &plan)
+/** Has a point of soil or water, on any rank, this material? */
+bool FixMPMMixture::shares_points(const FixMPMMaterial &material) const
 {
-  only_walls = std::all_of(plan.actions.begin(), plan.actions.end(), [this](auto *action) {
-    return action == this || dynamic_cast<FixMPMBoundary *>(action);
-  });
+  int mine = 0, any;
+  for (int i = 0; i < atom->nlocal && !mine; i++)
+    mine = (atom->mask[i] & material.groupbit) &&
+        (soil.field->is_point(i) || water.field->is_point(i));
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any;
 }
 
 /* ----------------------------------------------------------------------
@@ -338,11 +353,6 @@ void FixMPMMixture::list_blocks()
   int any = !common.empty(), all;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
   may_meet = all;
-  if (!only_walls) {
-    held.assign(grid.nnodes(), 0);
-    for (auto *wall : modify->get_fix_by_style("^mpm/boundary$"))
-      dynamic_cast<FixMPMBoundary *>(wall)->mark_held(*soil.field, held);
-  }
   lists_valid = true;
 }
 
@@ -593,6 +603,7 @@ void FixMPMMixture::act(double dt, Stage stage)
 {
   if (stage != STEP) return;
   dt_last = dt;
+  pushes.clear();
   if (drag == NO_DRAG) return;
   for (auto &node : nodes) {
     if (node.water < 0) continue;
@@ -635,9 +646,41 @@ void FixMPMMixture::act(double dt, Stage stage)
       const double left = fade * before[d] + share * gain[d];
       node.impulse[d] = reduced * (before[d] + gain[d] - left);
       node.free_water[d] = at_water[d];
-      node.after_soil[d] = at_soil[d] += node.impulse[d] / at_soil[3];
+      node.seen[d] = node.after_soil[d] = at_soil[d] += node.impulse[d] / at_soil[3];
       node.after_water[d] = at_water[d] -= node.impulse[d] / at_water[3];
     }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Contact and the like, which act before walls, are forces like others. What each wall does to the soil is kept
+------------------------------------------------------------------------- */
+
+void FixMPMMixture::has_acted(MPMNodeAction &other, Stage stage)
+{
+  if (stage != STEP || drag == NO_DRAG) return;
+  const bool is_wall = other.turn() == WALLS;
+  auto *const wall = dynamic_cast<FixMPMBoundary *>(&other);
+  for (auto &node : nodes) {
+    if (node.water < 0) continue;
+    const double *const at_soil = soil.field->grid.record(node.soil),
+                        *const at_water = water.field->grid.record(node.water);
+    if (!is_wall) {
+      for (int d = 0; d < 3; d++) {
+        node.free_water[d] += at_water[d] - node.after_water[d];
+        node.after_water[d] = at_water[d];
+        node.seen[d] = node.after_soil[d] = at_soil[d];
+      }
+      continue;
+    }
+    Push push = {(std::size_t)(&node - nodes.data()), wall, {}};
+    bool any = false;
+    for (int d = 0; d < 3; d++) {
+      push.change[d] = at_soil[d] - node.seen[d];
+      node.seen[d] = at_soil[d];
+      any = any || push.change[d] != 0.0;
+    }
+    if (any && wall) pushes.push_back(push);
   }
 }
 
@@ -654,7 +697,7 @@ void FixMPMMixture::correct_drag_at_walls()
   const double dt = dt_last;
   const int dim = soil.field->lattice.dim;
   for (auto &node : nodes) {
-    if (node.water < 0 || (!only_walls && !held[node.soil])) continue;
+    if (node.water < 0) continue;
     const double *const at_soil = soil.field->grid.record(node.soil);
     double *const at_water = water.field->grid.record(node.water);
     double normal[3] = {0.0, 0.0, 0.0};
@@ -672,13 +715,24 @@ void FixMPMMixture::correct_drag_at_walls()
     const double left = exp(-x) * before + mean_of_fading(x) * gain;
     const double change = dot(normal, at_soil) + left - dot(normal, at_water);
     for (int d = 0; d < dim; d++) {
-      const double impulse =
-          -at_water[3] * change * normal[d];    // on the soil, and from there on the wall
+      node.relief[d] = -at_water[3] * change * normal[d];
       at_water[d] += change * normal[d];
-      node.impulse[d] += impulse;
-      if (node.owned && soil.field->ledger.on)
-        soil.field->ledger.boundary -= impulse * 0.5 * (at_soil[d] + at_soil[4 + d]) * force->mvv2e;
+      node.impulse[d] += node.relief[d];
     }
+  }
+
+  // each wall by its part in the change of the velocity
+
+  for (const auto &push : pushes) {
+    const auto &node = nodes[push.node];
+    const double *const at_soil = soil.field->grid.record(node.soil);
+    double all[3], bears[3];
+    for (int d = 0; d < 3; d++) all[d] = at_soil[d] - node.after_soil[d];
+    const double square = dot(all, all);
+    if (!(square > 0.0)) continue;
+    const double part = dot(push.change, all) / square;
+    for (int d = 0; d < 3; d++) bears[d] = -part * node.relief[d];
+    push.wall->bear(*soil.field, node.soil, bears);
   }
 }
 
@@ -788,6 +842,7 @@ void FixMPMMixture::share_strain()
       for (int k = 0; k < 3 * dim; k++) F[k] *= stretch;
     }
   });
+  field.jacobians.forget();
 }
 
 /* ----------------------------------------------------------------------
@@ -795,11 +850,11 @@ void FixMPMMixture::share_strain()
    modulus K of the water and the modulus M of the soil; drag slows them down
 ------------------------------------------------------------------------- */
 
-double FixMPMMixture::fastest_wave(const Phase &phase, double &speed) const
+int FixMPMMixture::fastest_wave(const Phase &phase, double &most, double &speed) const
 {
   MPMField &field = *phase.field;
-  double c[BATCH], most = 0.0;
-  int list[BATCH], n = 0;
+  double c[BATCH];
+  int list[BATCH], n = 0, fastest = -1;
   const FixMPMMaterial *material = nullptr;
   const auto flush = [&]() {
     if (n == 0) return;
@@ -807,6 +862,7 @@ double FixMPMMixture::fastest_wave(const Phase &phase, double &speed) const
     material->material->wave_speed(*field.batch, c);
     for (int p = 0; p < n; p++) {
       const double *const v = atom->v[list[p]];
+      if (c[p] > most) fastest = list[p];
       most = std::max(most, c[p]);
       speed = std::max(speed, sqrt(dot(v, v)));
     }
@@ -820,11 +876,11 @@ double FixMPMMixture::fastest_wave(const Phase &phase, double &speed) const
     if (material) list[n++] = i;
   }
   flush();
-  return most;
+  return fastest;
 }
 
-/** Of all points of both, once they have met: the same on any number of ranks. Also before a step, where it is not
- *  known which blocks points are in. */
+/** Of all points of both, once they have met. It is that of the rank with the fastest of them, of the phase with the
+ *  larger part in it. Also before a step, where it is not known which blocks points are in. */
 double FixMPMMixture::stable_dt(const MPMField &field, tagint &tag) const
 {
   const double none = std::numeric_limits<double>::max();
@@ -832,17 +888,19 @@ double FixMPMMixture::stable_dt(const MPMField &field, tagint &tag) const
   double mine[5] = {}, most[5];
   for (int i = 0; i < atom->nlocal; i++) {
     if (soil.field->is_point(i)) mine[0] = std::max(mine[0], grains(i) / volume(soil, i));
-    if (!field.is_point(i)) continue;
-    mine[1] = std::max(mine[1], atom->rmass[i] / volume(water, i));
-    tag = atom->tag[i];
+    if (field.is_point(i)) mine[1] = std::max(mine[1], atom->rmass[i] / volume(water, i));
   }
-  mine[2] = fastest_wave(soil, mine[4]);
-  mine[3] = fastest_wave(water, mine[4]);
+  const int fastest[2] = {fastest_wave(soil, mine[2], mine[4]),
+                          fastest_wave(water, mine[3], mine[4])};
   MPI_Allreduce(mine, most, 5, MPI_DOUBLE, MPI_MAX, world);
   const double share = std::min(most[0], 1.0 - LEAST);
-  const double square = most[2] * most[2] +
-      most[3] * most[3] * (1.0 + share * most[1] / ((1.0 - share) * grain_density));
-  return field.lattice.h / (sqrt(square) + most[4]);
+  const double square[2] = {most[2] * most[2],
+                            most[3] * most[3] *
+                                (1.0 + share * most[1] / ((1.0 - share) * grain_density))};
+  const int larger = square[0] > square[1] ? 0 : 1;
+  if (fastest[larger] < 0 || mine[2 + larger] < most[2 + larger]) return none;
+  tag = atom->tag[fastest[larger]];
+  return field.lattice.h / (sqrt(square[0] + square[1]) + most[4]);
 }
 
 /* ---------------------------------------------------------------------- */

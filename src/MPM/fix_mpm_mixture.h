@@ -77,8 +77,9 @@ class FixMPMMixture :
   void couple_topology() override;
   void blocks_found() override;
   void act(double dt, Stage) override;
+  void has_acted(MPMNodeAction &other, Stage) override;
 
-  void init_physics(MPMPlan &) override;
+  void init_physics(MPMPlan &) override {}
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   double stable_dt(const MPMField &, tagint &tag) const override;
   std::vector<Account> accounts() const override;
@@ -112,21 +113,26 @@ class FixMPMMixture :
     double on_water[3];      // more than by its own volume
     double impulse[3];       // of drag on the soil
     double rate;             // coefficient of drag [mass/time]
-    double free_water[3];    // velocity before drag
-    double after_soil[3], after_water[3];    // and after it, before walls and others act
+    double free_water[3];    // velocity by all but drag and walls
+    double after_soil[3], after_water[3];    // velocities before walls act
+    double seen[3];                          // of the soil, before the next one of these does
+    double relief[3];                        // impulse on the soil that walls bear less
     bool owned;
+  };
+  struct Push {    // of a wall on the soil
+    std::size_t node;
+    class FixMPMBoundary *wall;
+    double change[3];    // of the velocity
   };
 
   Phase soil, water;
   std::vector<Common> common;
   std::vector<Node> nodes;
+  std::vector<Push> pushes;      // of this step
   std::vector<double> stress;    // [soil node][8] mean stress of the water in filled pores
   std::vector<double> by_grains, by_water;    // [node][8] forces of the pressure in these volumes
   std::vector<double> flux, lead;    // [node][8] U at those of soil, U - u at those of water
   std::vector<double> rates;         // [n] div U at points of soil
-  std::vector<char>
-      held;    // [soil node] bits of components, by walls; with other actions than these
-  bool only_walls = true;    // act on the nodes after this fix
   bool lists_valid = false;
   bool may_meet = false;    // on any rank
   bool meets = false;       // in this step
@@ -147,7 +153,9 @@ class FixMPMMixture :
   void correct_drag_at_walls();
   void share_strain();
   void account_for_work();
-  double fastest_wave(const Phase &, double &speed) const;
+  bool shares_points(const class FixMPMMaterial &) const;
+  /** Raises most and speed to those of points of this rank; returns the fastest one, -1: none is faster. */
+  int fastest_wave(const Phase &, double &most, double &speed) const;
 };
 
 }    // namespace LAMMPS_NS

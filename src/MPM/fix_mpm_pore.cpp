@@ -15,6 +15,7 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "input.h"
+#include "material/material.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_geostatic.h"
@@ -25,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 using namespace LAMMPS_NS;
@@ -81,6 +83,101 @@ Options MPMPoreOptions::declare(int dim)
         soils.back().grains = biot.second;
       })
       .standard("1, rigid grains");
+  const auto coefficient = [this](const std::string &name, const std::string &unit,
+                                  const std::string &meaning) {
+    return std::vector<OptionValue>{number(forchheimer_value, name, POSITIVE, unit, meaning)};
+  };
+  o.add("forchheimer",
+        {word(forchheimer,
+              {{"number", NUMBER, "",
+                coefficient("b", "pressure time^2/length^3",
+                            "gradient of the pressure per square of the flow")},
+               {"ergun", ERGUN, "",
+                coefficient(
+                    "d", "distance",
+                    "diameter of packed spheres, which have this coefficient by Ergun's law")}})},
+        "drag with the square of the flow, besides Darcy's law, in the soil before this keyword")
+      .then([this] {
+        forchheimer_alone = soils.empty();
+        if (forchheimer_alone) return;
+        soils.back().quadratic = forchheimer == NUMBER ? forchheimer_value : 0.0;
+        soils.back().diameter = forchheimer == ERGUN ? forchheimer_value : 0.0;
+      })
+      .standard("none");
+  o.add("formulation",
+        {word(formulation,
+              {{"u-p", U_P, "the water has no inertia relative to the soil: slow flow"},
+               {"u-v-p", U_V_P, "it has: fast loads, and soils of high permeability"}})});
+  const auto of_soil = [this](const char *keyword, bool of_retention) {
+    if (soils.empty())
+      without_soil = keyword;
+    else if (of_retention && !soils.back().retention.can_dry())
+      without_retention = keyword;
+    else
+      return true;
+    return false;
+  };
+  const auto per_pressure = [this]() {
+    return number(retention.alpha, "alpha", POSITIVE, "1/pressure",
+                  "rate at which suction empties the pores");
+  };
+  o.add("retention",
+        {word(
+            retention.law,
+            {{"vangenuchten",
+              MPMRetention::VAN_GENUCHTEN,
+              "(1 + (alpha s)^n)^(1/n - 1) at the suction s (van Genuchten)",
+              {per_pressure(), number(retention.n, "n", {1.0, UNBOUNDED, false}, "1", "exponent")}},
+             {"gardner", MPMRetention::GARDNER, "exp(-alpha s) (Gardner)", {per_pressure()}}})},
+        "effective saturation of the soil before this keyword, which can dry")
+      .then([this, of_soil] {
+        if (!of_soil("retention", false)) return;
+        auto &r = soils.back().retention;
+        r.law = retention.law;
+        r.alpha = retention.alpha;
+        r.n = retention.n;
+      })
+      .standard("none: pores are always full");
+  o.add("saturation",
+        {number(retention.least, "Sr", {0.0, 1.0, true, false}, "1", "residual saturation"),
+         number(retention.most, "Ss", {0.0, 1.0, false, true}, "1", "saturation without suction")},
+        "range of the saturation of the soil before this keyword")
+      .then([this, of_soil] {
+        if (!of_soil("saturation", true)) return;
+        soils.back().retention.least = retention.least;
+        soils.back().retention.most = retention.most;
+      })
+      .standard("0 1");
+  o.add("relative",
+        {word(retention.flow,
+              {{"mualem", MPMRetention::MUALEM, "by the model of Mualem for vangenuchten"},
+               {"power",
+                MPMRetention::POWER,
+                "",
+                {number(retention.power, "e", NOT_NEGATIVE, "1",
+                        "power of the effective saturation")}}})},
+        "relative permeability of the soil before this keyword")
+      .then([this, of_soil] {
+        if (!of_soil("relative", true)) return;
+        soils.back().retention.flow = retention.flow;
+        soils.back().retention.power = retention.power;
+      })
+      .standard("mualem for vangenuchten, power 1 for gardner");
+  o.add("bishop",
+        {word(
+            [this] {
+              return retention.bishop_effective ? 1 : 0;
+            },
+            [this](int value) {
+              retention.bishop_effective = value;
+            },
+            {{"saturation", 0, "the saturation"}, {"effective", 1, "the effective saturation"}})},
+        "share of the pressure of water in the effective stress of the soil before this keyword")
+      .then([this, of_soil] {
+        if (of_soil("bishop", true))
+          soils.back().retention.bishop_effective = retention.bishop_effective;
+      })
+      .standard("saturation");
   for (int part = 0; part < MPMPoreSurface::NPART; part++) {
     MPMPoreCondition &c = conditions[part];
     const bool free = part == MPMPoreSurface::FREE;
@@ -89,17 +186,22 @@ Options MPMPoreOptions::declare(int dim)
       return std::vector<OptionValue>{
           variables(&c.value, 1, name, unit, meaning + ", can be a variable")};
     };
-    o.add(PART_NAME[part],
-          {word(c.kind,
-                {{"closed", MPMPoreCondition::CLOSED,
-                  std::string("no water goes through ") +
-                      (free ? "free surfaces of the soil" : "this face of the box")},
-                 {"pressure", MPMPoreCondition::PRESSURE, "",
-                  of("p", "pressure", "pressure of the water outside")},
-                 {"head", MPMPoreCondition::HEAD, "",
-                  of("z", "distance", "height of the water table outside, against fix gravity")},
-                 {"flux", MPMPoreCondition::FLUX, "",
-                  of("q", "velocity", "volume of water that comes in for each area and time")}})});
+    o.add(
+        PART_NAME[part],
+        {word(c.kind,
+              {{"closed", MPMPoreCondition::CLOSED,
+                std::string("no water goes through ") +
+                    (free ? "free surfaces of the soil" : "this face of the box")},
+               {"pressure", MPMPoreCondition::PRESSURE, "water outside has a pressure",
+                of("p", "pressure", "pressure of the water outside")},
+               {"head", MPMPoreCondition::HEAD, "water outside stands at rest up to a height",
+                of("z", "distance", "height of the water table outside, against fix gravity")},
+               {"flux", MPMPoreCondition::FLUX, "water comes in",
+                of("q", "velocity", "volume of water that comes in for each area and time")},
+               {"rain", MPMPoreCondition::RAIN, "water falls; what the soil does not take runs off",
+                of("q", "velocity", "volume of water that falls for each area and time")},
+               {"seepage", MPMPoreCondition::SEEPAGE,
+                "water leaves where its pressure is above that of the air, and none comes in"}})});
   }
   o.add(
       "initial",
@@ -115,6 +217,10 @@ Options MPMPoreOptions::declare(int dim)
         geostatic = true;
       })
       .standard("none");
+  o.add("suction",
+        {number(most_suction, "s", NOT_NEGATIVE, "pressure",
+                "greatest suction of points above the water table of geostatic")})
+      .standard("that of water at rest");
   o.add("relax",
         {number(relax, "R", NOT_NEGATIVE, "1",
                 "rate at which points take the pressure of the nodes, in the rate at which waves "
@@ -122,14 +228,37 @@ Options MPMPoreOptions::declare(int dim)
   o.add("stages", {integer(most_stages, "N", POSITIVE, "most stages of the flow in a time step")});
   o.refuse([=] {
     OptionRules rules = {{biot_alone, "biot", "needs a soil before it"},
+                         {forchheimer_alone, "forchheimer", "needs a soil before it"},
+                         {formulation == U_V_P, "stages",
+                          "is for formulation u-p: with u-v-p waves alone limit the time step"},
                          {geostatic && initial != "0.0", "geostatic",
-                          "gives points their pressure: leave out initial"}};
+                          "gives points their pressure: leave out initial"},
+                         {most_suction >= 0.0 && !geostatic, "suction", "needs geostatic"},
+                         {!without_soil.empty(), without_soil, "needs a soil before it"},
+                         {!without_retention.empty(), without_retention,
+                          "needs the retention of the soil before it"}};
+    for (int part = 0; part < MPMPoreSurface::NPART; part++)
+      rules.push_back({formulation == U_V_P &&
+                           (conditions[part].kind == MPMPoreCondition::RAIN ||
+                            conditions[part].kind == MPMPoreCondition::SEEPAGE),
+                       PART_NAME[part],
+                       "rain and seepage are for formulation u-p: use flux or pressure"});
     for (int face = 4; face < 6; face++)
       rules.push_back({dim == 2 && conditions[face].kind != MPMPoreCondition::CLOSED,
                        PART_NAME[face], "does not exist in 2d"});
     for (const auto &soil : soils) {
       rules.push_back({soil.biot < soil.porosity, "biot",
                        "must not be below the porosity of the soil: {biot}"});
+      const auto &r = soil.retention;
+      rules.push_back({r.can_dry() && (soil.biot < 1.0 || soil.grains > 0.0), "retention",
+                       "needs rigid grains: leave out biot for this soil"});
+      rules.push_back({r.can_dry() && formulation == U_V_P, "retention",
+                       "is for formulation u-p: with u-v-p pores are always full"});
+      rules.push_back({r.can_dry() && !soil.is_linear(), "retention",
+                       "does not go with forchheimer: leave one of them out for this soil"});
+      rules.push_back({r.least >= r.most, "saturation", "must have Sr below Ss"});
+      rules.push_back({r.law == MPMRetention::GARDNER && r.flow == MPMRetention::MUALEM, "relative",
+                       "mualem is for retention vangenuchten: use power with gardner"});
       rules.push_back({soil.law == MPMPoreSoil::FORMULA && soil.formula.compare(0, 2, "v_") != 0,
                        "soil", "needs a variable, v_name, for its formula"});
     }
@@ -160,6 +289,11 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   state.declare(pressure, "mpm/pore:pressure", 1 + domain->dimension, [this](int, double *row) {
     row[0] = initial_value;
   });
+  if (formulation == U_V_P) state.declare(inertia, "mpm/pore:flow", domain->dimension);
+  if (can_dry())
+    state.declare(content, "mpm/pore:water", [](int, double *row) {
+      row[0] = -1.0;
+    });
   keep_arrays();
   scalar_flag = vector_flag = 1;
   size_vector = MPMPoreSurface::NPART;
@@ -172,6 +306,13 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   for (const auto &soil : soils)
     if (auto *fix = dynamic_cast<FixMPMMaterial *>(modify->get_fix_by_id(soil.material)))
       fix->mass_varies = true;
+}
+
+FixMPMPore::~FixMPMPore()
+{
+  for (const auto &soil : soils)
+    if (auto *fix = dynamic_cast<FixMPMMaterial *>(modify->get_fix_by_id(soil.material)))
+      fix->mass_varies = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -210,6 +351,12 @@ void FixMPMPore::init()
     if (!known.insert(soil.material).second)
       error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore has soil {} twice", soil.material);
     fix->mass_varies = true;
+    const double grains = fix->material->density() - soil.porosity * water.density;
+    if (soil.retention.can_dry() && !(grains > 0.0))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "The density of fix mpm/material {} is below that of the water in its pores: fix "
+                 "mpm/pore takes it for that of the soil with full pores",
+                 soil.material);
     if (soil.law != MPMPoreSoil::FORMULA) continue;
     const int index = input->variable->find(soil.formula.c_str() + 2);
     if (index < 0 || !input->variable->atomstyle(index))
@@ -217,15 +364,7 @@ void FixMPMPore::init()
                  soil.formula.substr(2), soil.material,
                  index < 0 ? "does not exist" : "is not atom-style");
   }
-  weights.clear();
-  for (auto *fix : modify->get_fix_by_style("^gravity")) {
-    if (fix->igroup != 0)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/pore takes the weight of the water from fix gravity {}, which must be of "
-                 "group all",
-                 fix->id);
-    weights.push_back(fix);
-  }
+  weight = MPMGravity(lmp, "Fix mpm/pore");
   for (int part = 0; part < MPMPoreSurface::NPART; part++) {
     auto &c = conditions[part];
     if (c.kind == MPMPoreCondition::CLOSED) continue;
@@ -233,12 +372,26 @@ void FixMPMPore::init()
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/pore face {} belongs to a periodic axis: use boundary f there",
                  PART_NAME[part]);
-    if (c.kind == MPMPoreCondition::HEAD && weights.empty())
+    if (c.kind == MPMPoreCondition::HEAD && weight.empty())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/pore {} head needs a fix gravity of group all, which tells where up is",
                  PART_NAME[part]);
     find_variable(lmp, c.value, std::string("fix mpm/pore ") + PART_NAME[part]);
   }
+}
+
+void FixMPMPore::warn_of_contact() const
+{
+  const bool any = std::any_of(fields.begin(), fields.end(), [](const auto &field) {
+    return field->has_water();
+  });
+  if (comm->me || !any) return;
+  for (const char *style : {"mpm/contact", "mpm/rigid"})
+    for (const auto *fix : modify->get_fix_by_style(std::string("^") + style + "$"))
+      error->warning(FLERR,
+                     "Fix {} {} takes the pressure of pore water for one between grains: friction "
+                     "and separation of soils of fix mpm/pore {} are those of the total stress",
+                     style, fix->id, id);
 }
 
 void FixMPMPore::init_physics(MPMPlan &plan)
@@ -247,9 +400,11 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   steps.clear();
   steps.add(in_step, present);
   for (auto *field : plan.fields) {
-    fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax));
+    fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax,
+                                               formulation == U_V_P));
     auto &mine = *fields.back();
-    mine.init(soils);
+    mine.init(soils, content);
+    if (formulation == U_V_P) init_motion(*field);
     const auto &o = field->options;
     refuse_field(
         lmp, *this, *field,
@@ -262,6 +417,24 @@ void FixMPMPore::init_physics(MPMPlan &plan)
           "the pressure of the water is an average already: use locking none"}});
     steps.add(mine.nodes.value, mine.nodes.rate);
   }
+  warn_of_contact();
+}
+
+/** The mass that moves by itself must be less than all, and nodes have their accelerations. */
+void FixMPMPore::init_motion(MPMField &field)
+{
+  field.keep_old = true;
+  refuse_field(
+      lmp, *this, field,
+      {{field.options.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
+        "formulation u-v-p takes a part off the mass of nodes: use apic, aflip, or flip"}});
+  for (const auto *fix : field.materials)
+    for (const auto &soil : soils)
+      if (soil.material == fix->id && fix->material->density() <= soil.porosity * water.density)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/pore formulation u-v-p: soil {} has the density {}, which is not more "
+                   "than that of the water in its pores, {}: it must be that of saturated soil",
+                   soil.material, fix->material->density(), soil.porosity * water.density);
 }
 
 MPMPore &FixMPMPore::of(const MPMField &field) const
@@ -278,6 +451,10 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("pore pressure", [this]() {
       begin_step();
     });
+  if (place == MPMPlan::BEFORE_SOLVE && formulation == U_V_P)
+    plan.together("inertia of pore water", [this]() {
+      take_off();
+    });
   if (place == MPMPlan::AFTER_SOLVE)
     plan.together("flow of pore water", [this]() {
       flow();
@@ -287,17 +464,21 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 /* ---------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   pores are full of water, also above its table, where it hangs on the air
+   pores of soils without retention are full of water, also above its table, where it hangs on the air
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::setup_points()
 {
-  if (!geostatic || has_state) return;
+  const bool at_rest = geostatic && !has_state;
   has_state = true;
+  if (!at_rest) {
+    weigh_points();
+    return;
+  }
   if (fields.size() != 1)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore geostatic needs one fix mpm, not {}",
                fields.size());
-  find_gravity();
+  weight.find(gravity);
   MPMGeostatic ground(lmp, fields[0]->field, gravity, "Fix mpm/pore geostatic");
   const auto &where = ground.ground();
   if (table > where.top + 0.01 * fields[0]->field.lattice.h)
@@ -306,39 +487,48 @@ void FixMPMPore::setup_points()
         "Fix mpm/pore geostatic: the water table {} is above the surface of the soil, {:.6g}: "
         "water on the soil changes no effective stress, use the height of the surface",
         table, where.top);
-  const double weight = water.density * where.weight * force->nktv2p;
+  const double slope = water.density * where.weight * force->nktv2p;
   for (int i = 0; i < atom->nlocal; i++) {
     std::fill_n(pressure[i], 1 + domain->dimension, 0.0);
-    if (!soil_of(i)) continue;
-    pressure[i][0] = weight * (table - ground.height(i));
-    pressure[i][1 + where.axis] = -weight * where.up;
+    const MPMPoreSoil *const soil = soil_of(i);
+    if (!soil) continue;
+    pressure[i][0] = slope * (table - ground.height(i));
+    pressure[i][1 + where.axis] = -slope * where.up;
+    if (most_suction < 0.0 || pressure[i][0] >= -most_suction || !soil->retention.can_dry())
+      continue;
+    pressure[i][0] = -most_suction;
+    pressure[i][1 + where.axis] = 0.0;
   }
+  weigh_points();
   ground.set_stress(K0, [&](int i) {
     const auto *const soil = soil_of(i);
-    return soil ? soil->biot * pressure[i][0] : 0.0;
+    if (!soil) return 0.0;
+    return soil->biot * soil->retention.at(pressure[i][0]).bishop * pressure[i][0];
   });
 }
 
-void FixMPMPore::find_gravity()
+/** The water of points that are new follows from their pressure. */
+void FixMPMPore::weigh_points()
 {
-  std::fill_n(gravity, 3, 0.0);
-  for (auto *fix : weights) {
-    int dim;
-    const auto *const g = (const double *) const_cast<Fix *>(fix)->extract("gvec", dim);
-    for (int d = 0; d < 3; d++) gravity[d] += g[d];
-  }
+  if (!can_dry()) return;
+  for (const auto &mine : fields) mine->weigh_points(pressure);
 }
 
 void FixMPMPore::evaluate_variables()
 {
-  find_gravity();
+  weight.find(gravity);
   const bool formulas = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
     return soil.law == MPMPoreSoil::FORMULA;
   });
   bool any = formulas;
   for (const auto &c : conditions) any = any || !c.value.variable.empty();
   evaluate_in_step(lmp, any, [&] {
-    for (auto &c : conditions) c.now = evaluate(lmp, c.value);
+    for (auto &c : conditions) {
+      c.now = evaluate(lmp, c.value);
+      if (c.kind == MPMPoreCondition::RAIN && c.now < 0.0)
+        error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore {} rain is {}: it must not be negative",
+                   PART_NAME[&c - conditions.data()], c.now);
+    }
     if (!formulas) return;
     formula_values.assign(atom->nmax, 0.0);
     std::vector<double> values(atom->nmax);
@@ -362,18 +552,28 @@ void FixMPMPore::begin_step()
   evaluate_variables();
   const double *const formula = formula_values.empty() ? nullptr : formula_values.data();
   for (auto &field : fields) {
+    if (field->motion) field->motion->begin_step(inertia);
+    if (!field->has_water()) continue;
     if (!gradients_known) field->find_gradients(pressure, formula);
-    field->begin_step(pressure, formula);
+    field->begin_step(pressure, inertia, formula);
   }
   gradients_known = true;
+}
+
+void FixMPMPore::take_off()
+{
+  for (auto &field : fields) field->take_off();
 }
 
 void FixMPMPore::flow()
 {
   double mine = 0.0, greatest;
   for (auto &field : fields) {
+    if (!field->has_water()) continue;
     field->take_motion();
-    mine = std::max(mine, field->greatest_rate());
+    field->move_water();
+    // waves limit the step of water with inertia, which is one of theirs
+    if (formulation == U_P) mine = std::max(mine, field->greatest_rate());
   }
   MPI_Allreduce(&mine, &greatest, 1, MPI_DOUBLE, MPI_MAX, world);
   const double dt = fields[0]->field.step_dt(), limit = MPMSuperStep::explicit_limit(greatest);
@@ -388,17 +588,28 @@ void FixMPMPore::flow()
   std::fill(in_step.begin(), in_step.end(), 0.0);
   steps.advance(stages, dt, [this]() {
     std::fill(present.begin(), present.end(), 0.0);
-    for (auto &field : fields) field->find_rates(present);
+    for (auto &field : fields)
+      if (field->has_water()) field->find_rates(present);
   });
-  for (auto &field : fields) field->end_step(pressure);
+  for (auto &field : fields)
+    if (field->has_water()) field->end_step(pressure);
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
   dt_last = dt;
   flows_known = false;
 }
 
+bool FixMPMPore::surface_force(MPMField &field, const std::vector<char> &near,
+                               std::vector<double> &force) const
+{
+  const MPMPore &mine = of(field);
+  if (mine.has_water()) mine.find_surface_force(pressure, near, force);
+  return mine.has_water();
+}
+
 double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
 {
-  const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(tag));
+  if (formulation == U_V_P) return std::numeric_limits<double>::max();
+  const double limit = MPMSuperStep::explicit_limit(of(field).greatest_rate(pressure, tag));
   return most_stages < 3 ? 0.5 * limit : MPMSuperStep::reach(most_stages) * limit;
 }
 
@@ -425,21 +636,25 @@ double FixMPMPore::compute_vector(int i)
 }
 
 /* ----------------------------------------------------------------------
-   what the water stores, for compute mpm/energy and the energy watch
+   what the water stores, and its kinetic energy, as far as mass and velocity of points do not have it, for compute mpm/energy and the energy watch
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::account(double *values) const
 {
-  double sum = 0.0;
+  double sum = 0.0, moving = 0.0;
   const auto *const points = MPMPoints::get(atom);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->vfrac[i] > 0.0)) continue;
     const MPMPoreSoil *const soil = soil_of(i);
     if (!soil) continue;
     const double J = points->jacobian(i), p = pressure[i][0];
-    sum += 0.5 * J * atom->vfrac[i] * soil->storage_at(J, water) * p * p;
+    sum += J * atom->vfrac[i] * MPMPoreMoisture::energy(*soil, J, p, water);
+    if (!inertia) continue;
+    const double pores = J * soil->pores_at(J);
+    for (int d = 0; d < domain->dimension; d++)
+      moving += atom->vfrac[i] * inertia[i][d] * (atom->v[i][d] + 0.5 * inertia[i][d] / pores);
   }
-  values[0] += sum / force->nktv2p;
+  values[0] += sum / force->nktv2p + water.density * moving * force->mvv2e;
   values[1] += came[MPMPoreSurface::ENERGY] / force->nktv2p;
 }
 
@@ -471,16 +686,29 @@ const MPMPoreSoil *FixMPMPore::soil_of(int i) const
   return nullptr;
 }
 
+bool FixMPMPore::can_dry() const
+{
+  return std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
+    return soil.retention.can_dry();
+  });
+}
+
 std::vector<std::string> FixMPMPore::quantities() const
 {
-  return {"pore", "porosity"};
+  std::vector<std::string> names = {"pore", "porosity", "saturation"};
+  for (int d = 0; formulation == U_V_P && d < domain->dimension; d++)
+    names.push_back(std::string("flow_") + (char) ('x' + d));
+  return names;
 }
 
 double FixMPMPore::quantity(int k, int i) const
 {
   const MPMPoreSoil *const soil = soil_of(i);
   if (!soil) return 0.0;
-  return k == 0 ? pressure[i][0] : soil->porosity_at(MPMPoints::get(atom)->jacobian(i));
+  if (k == 0) return pressure[i][0];
+  if (k == 2) return soil->retention.at(pressure[i][0]).saturation;
+  const double J = MPMPoints::get(atom)->jacobian(i);
+  return k == 1 ? soil->porosity_at(J) : inertia[i][k - 3] / J;
 }
 
 double FixMPMPore::memory_usage()

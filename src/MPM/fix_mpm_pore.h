@@ -16,11 +16,13 @@ FixStyle(mpm/pore,FixMPMPore);
 #define LMP_FIX_MPM_PORE_H
 
 #include "declare/option.h"
+#include "mpm_gravity.h"
 #include "mpm_physics.h"
 #include "mpm_pore.h"
 #include "mpm_state.h"
 #include "mpm_super_step.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -29,12 +31,16 @@ FixStyle(mpm/pore,FixMPMPore);
 namespace LAMMPS_NS {
 
 struct MPMPoreOptions {
+  enum Formulation { U_P, U_V_P };
+
+  Formulation formulation = U_P;
   MPMPoreWater water;
   std::vector<MPMPoreSoil> soils;
   MPMPoreSurface::Conditions conditions;
   std::string initial = "0.0";     ///< pressure of points, a number or v_name
   bool geostatic = false;          ///< at rest under the weight at first
   double K0 = 0.0, table = 0.0;    ///< with this ratio of stresses, and height of the water table
+  double most_suction = -1.0;      ///< at first, positive; negative: no limit
   double relax = 0.2;
   int most_stages = 64;
 
@@ -44,14 +50,19 @@ struct MPMPoreOptions {
   // while they are read
   MPMPoreSoil next;
   std::pair<double, double> biot = {0.0, 0.0};
-  bool biot_alone = false;
+  bool biot_alone = false, forchheimer_alone = false;
+  enum Forchheimer { NUMBER, ERGUN } forchheimer = NUMBER;
+  double forchheimer_value = 0.0;
+  MPMRetention retention;
+  std::string without_soil, without_retention;    // keywords that have come too early
 };
 
-/** Pore water in the points of soils, which move with one velocity for both (u-p): flow by Darcy's law, and the
- *  pressure of the water in the forces. */
+/** Pore water in the points of soils, which move with the velocity of the soil: the flow of the water, without
+ *  inertia of its own (u-p) or with it (u-v-p), and the pressure of the water in the forces. */
 class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions {
  public:
   FixMPMPore(class LAMMPS *, int, char **);
+  ~FixMPMPore() override;
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   double compute_scalar() override;
@@ -64,15 +75,18 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   void setup_points() override;
   void extend_topology(MPMField &field) override { of(field).surface.extend_topology(); }
+  void topology_changed(MPMField &field) override { of(field).look_for_water(); }
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
   {
-    return of(field).wave_speed(i, c);
+    return of(field).wave_speed(i, pressure[i][0], c);
   }
   const double *pressure_in_forces(const MPMField &field) const override
   {
     return of(field).pressure_in_forces();
   }
+  bool surface_force(MPMField &, const std::vector<char> &near,
+                     std::vector<double> &force) const override;
   std::vector<Account> accounts() const override
   {
     return {{"energy of pore water", true, true},
@@ -82,17 +96,27 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
 
+  /** Has it water in the pores of this material (ID of a fix mpm/material)? */
+  bool has(const std::string &material) const
+  {
+    return std::any_of(soils.begin(), soils.end(), [&](const MPMPoreSoil &soil) {
+      return soil.material == material;
+    });
+  }
+
  private:
-  MPMRows pressure;          // [n][1+dim] with its gradient
-  int initial_index = -1;    // of a variable
+  MPMRows pressure;             // [n][1+dim] with its gradient
+  MPMRows inertia;              // [n][dim] flow with inertia, see MPMPoreMotion
+  double *content = nullptr;    // [n] volume of water, where a soil can dry (MPMPoreSuction)
+  int initial_index = -1;       // of a variable
   double initial_value = 0.0;
   bool gradients_known = true;    // not yet where pressures were given
   bool has_state = false;         // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
-  MPMSuperStep steps;                        // of the pressures of all fields together
-  double gravity[3];                         // force per mass
-  std::vector<const class Fix *> weights;    // fixes gravity
-  std::vector<double> formula_values;        // [n] permeability by variables
+  MPMSuperStep steps;    // of the pressures of all fields together
+  double gravity[3];     // force per mass
+  MPMGravity weight;
+  std::vector<double> formula_values;    // [n] permeability by variables
 
   // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this rank's share: that has come in so far; that came in the last step, and comes in a stage of
   // it for each time; the last step of all ranks for each time
@@ -102,10 +126,14 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
 
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
+  void warn_of_contact() const;
+  void init_motion(MPMField &);
+  bool can_dry() const;
   void set_initial_pressure();
-  void find_gravity();
+  void weigh_points();
   void evaluate_variables();
   void begin_step();
+  void take_off();
   void flow();
 };
 

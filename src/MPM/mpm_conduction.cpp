@@ -79,8 +79,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int AHEAD = BATCH;    // distance of prefetches, in points
-
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
@@ -113,6 +111,7 @@ void MPMConduction::init(double sigma)
     greatest_capacity = std::max(greatest_capacity, capacity);
   }
   if (greatest_capacity > 0.0) slowest *= least_capacity / greatest_capacity;
+  active = !thermals.empty();
   total = field.frame->is_total();
   steepest = 0.0;
   if (field.options.shape == QUADRATIC || field.options.shape == CUBIC) {
@@ -131,6 +130,18 @@ void MPMConduction::init(double sigma)
   init_layers();
   faces.init(sigma);
   scalar.init(transfer.kind != MPMHeatTransfer::PIC, faces.any());
+}
+
+void MPMConduction::find_points(bool may_rest)
+{
+  int any = 0, all = !thermals.empty();
+  for (const auto &run : field.map->runs) any |= thermal(run.material) != nullptr;
+  if (any) field.jacobians.ask();
+  if (all && may_rest) MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
+  active = all;
+  if (active) return;
+  temperature.clear();
+  rate.clear();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -335,10 +346,9 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
         if (!t) return false;
         const double *const rmass = atom->rmass + first, *const vfrac = atom->vfrac + first;
         double *const V = volumes.data() + first;
-        for (int p = 0; p < n; p++) {
-          __builtin_prefetch(field.points->F[std::min(first + p + AHEAD, atom->nlocal - 1)]);
-          V[p] = vfrac[p] * MPMPoints::det(field.points->F[first + p]);
-        }
+        double room[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, room);
+        for (int p = 0; p < n; p++) V[p] = vfrac[p] * J[p];
         Conduction c = t->all;
         double greatest = c.most();
         for (int p = 0; p < n; p++) {
@@ -452,6 +462,7 @@ double MPMConduction::greatest_rate(double conduction, double exchange)
  *  what they have inside of a body that is not deformed. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
+  if (!active) return 0.0;
   const double h = field.lattice.h;
   const int dim = field.lattice.dim;
   const bool bounded = steepest > 0.0 || field.boxes;

@@ -68,8 +68,10 @@ class MPMConduction : protected Pointers {
 
   /** Bound of the eigenvalues for this rank's points [1/time]; tag: the point that limits it. */
   double greatest_rate_of_points(tagint &tag) const;
+  /** The points are known. Without any that conduct, on any rank, there is nothing to do if it may rest. Collective. */
+  void find_points(bool may_rest);
   /** A material of the field conducts. */
-  bool conducts() const { return !thermals.empty(); }
+  bool conducts() const { return active; }
   double memory_usage() const;
 
  private:
@@ -93,7 +95,7 @@ class MPMConduction : protected Pointers {
   double steepest =
       0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
   double conducted = 0.0, exchanged = 0.0;    // limits of the last step
-  bool total = false;
+  bool total = false, active = false;
 
   std::vector<double> volumes;    // [n] of points in this step
   std::unique_ptr<MPMLayerMean>

@@ -25,6 +25,13 @@ struct SphereDrag {
   Law law;
   double density, viscosity;    ///< of the fluid; viscosity: pressure * time in units of mass
 
+  /** Of a bed of packed spheres, by Ergun's law: what the gradient of the pressure has besides a linear term, per square of
+   *  the superficial velocity. */
+  static double bed_inertia(double density, double diameter, double porosity)
+  {
+    return INERTIAL * density * (1.0 - porosity) / (diameter * porosity * porosity * porosity);
+  }
+
   /** Factor of the drag on a single sphere in a bed, where it does not depend on the slip. */
   double hindrance(double porosity) const
   {
@@ -43,7 +50,7 @@ struct SphereDrag {
     const auto ergun = [&]() {
       const double cube = porosity * porosity * porosity;
       return PI / 6.0 * diameter *
-          (150.0 * viscosity * (1.0 - porosity) + 1.75 * density * diameter * slip) / cube;
+          (VISCOUS * viscosity * (1.0 - porosity) + INERTIAL * density * diameter * slip) / cube;
     };
     switch (law) {
       case STOKES:
@@ -64,6 +71,9 @@ struct SphereDrag {
         return 0.0;
     }
   }
+
+ private:
+  static constexpr double VISCOUS = 150.0, INERTIAL = 1.75;    // of Ergun's law
 };
 
 }    // namespace MPM_NS

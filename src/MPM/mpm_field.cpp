@@ -144,6 +144,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();
   nodes.clear_fields();
   slopes.clear();
+  jacobians.init();
 
   find_materials();
   elements = find_fixes<FixMPMElements>(lmp);
@@ -312,7 +313,8 @@ TransferStep MPMField::step_data(double dt) const
 
 double MPMField::memory_usage() const
 {
-  double bytes = nodes.memory_usage() + map->memory_usage() + frame->memory_usage();
+  double bytes =
+      nodes.memory_usage() + map->memory_usage() + frame->memory_usage() + jacobians.memory_usage();
   if (locking) bytes += locking->memory_usage();
   if (smoothing) bytes += smoothing->memory_usage();
   if (heating) bytes += heating->memory_usage();

@@ -10,6 +10,7 @@
 #define LMP_MPM_FIELD_H
 
 #include "mpm_field_options.h"
+#include "mpm_jacobians.h"
 #include "mpm_ledger.h"
 #include "mpm_nodes.h"
 #include "pointers.h"
@@ -80,6 +81,8 @@ class MPMField : protected Pointers {
 
   /** [n][dim] gradients on the lattice that other physics keeps for points; set by its init_physics(). */
   std::vector<const MPMRows *> slopes;
+  /** det F of points, for other physics: asked for by its init_physics(). */
+  MPMJacobians jacobians;
 
   // what depends on the options; null: not with these
 

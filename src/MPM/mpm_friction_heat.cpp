@@ -54,7 +54,7 @@ MPMFrictionHeat::MPMFrictionHeat(LAMMPS *lmp, const MPMFrictionHeatOptions &opti
 
 /* ---------------------------------------------------------------------- */
 
-void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &fields)
+void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &fields, bool shared)
 {
   const auto heats = modify->get_fix_by_style("^mpm/heat$");
   if (heats.empty())
@@ -81,6 +81,11 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
       const auto &material = *field->materials[k]->material;
       if (!material.conducts()) continue;
       const Conduction c = material.conduction(nullptr);
+      if (c.orthotropic && shared && options.kind == MPMFrictionHeatOptions::YES)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix {} {} heat yes: bodies share the heat by their conductivities, but that of "
+                   "fix mpm/material {} is orthotropic: tell the share by 'heat share S'",
+                   user.style, user.id, field->materials[k]->id);
       nconducting++;
       body.mixed = body.mixed || material.conduction_varies();
       body.effusivity = std::sqrt(c.conductivity * material.density() * c.capacity);

@@ -40,9 +40,10 @@ class MPMFrictionHeat : protected Pointers {
  public:
   MPMFrictionHeat(class LAMMPS *, const MPMFrictionHeatOptions &);
 
-  /** Start of a run, in init_action(): stops with an error when nothing can take up the heat. Fields keep
-   *  the old velocities of their nodes from now on. */
-  void begin_run(const Fix &user, const std::vector<MPMField *> &);
+  /** Start of a run, in init_action(): stops with an error when nothing can take up the heat, or when
+   *  bodies that share it, by between(), have no effusivity. Fields keep the old velocities of their nodes
+   *  from now on. */
+  void begin_run(const Fix &user, const std::vector<MPMField *> &, bool shared = false);
   /** Collective, in each step before heat is given, with the nodes of this step. */
   void begin_step();
 

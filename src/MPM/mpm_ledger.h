@@ -58,6 +58,9 @@ class MPMLedger : protected Pointers, public MPMEnergies {
     kinetic_points -= kinetic;
   }
 
+  /** Points have lost kinetic energy that is in the account of other physics. */
+  void take(double kinetic) { kinetic_points -= kinetic; }
+
   /** Change the velocity of a node by an impulse, which counts as contact where the node is owned. */
   void push_node(double *record, bool owned, const double *impulse);
   /** An owned node had its velocity changed by contact: its record has the new one. */

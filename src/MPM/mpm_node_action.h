@@ -65,6 +65,9 @@ class MPMNodeAction {
    *  material is held for good (see fix_mpm_boundary.cpp). */
   virtual void act(double dt, Stage) = 0;
 
+  /** Another action has changed the velocities of this stage; called on all actions after each of them. */
+  virtual void has_acted(MPMNodeAction & /*other*/, Stage) {}
+
  protected:
   ~MPMNodeAction() = default;    // owned and deleted as a Fix, whose destructor may throw
 };

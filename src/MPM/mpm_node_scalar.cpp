@@ -80,7 +80,8 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
   for (auto &block : field.map->active) {
     int *const box = box_of(block);
     reset_box(box);
-    visit(block, DISTANCE_SLOPES, box, [&](const auto &run, int first, int n, const auto &prepare) {
+    const auto kind = slopes ? DISTANCE_SLOPES : NO_SLOPES;
+    visit(block, kind, box, [&](const auto &run, int first, int n, const auto &prepare) {
       if (!fill(run, first, n, points)) return false;
       prepare();
       if (slopes) {
@@ -207,15 +208,52 @@ void MPMNodeScalar::values_to_points(const TakeValues &take)
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
     kernels.load(tile, value.data(), field.grid.blocks[block.slot].slot, box_of(block));
+    visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
+      prepare();
+      kernels.get_values(stencil, tile, values);
+      take(run, first, n, values);
+      return true;
+    });
+  }
+  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+}
+
+void MPMNodeScalar::gradients_to_points(const Conduct &take)
+{
+  field.nodes.complete(value.data(), 1, 1);
+  double q[BATCH][4];
+  double *const tile = tiles[1].data();
+  for (const auto &block : field.map->active) {
+    if (box_of(block)[0] > box_of(block)[3]) continue;
+    kernels.load(tile, value.data(), field.grid.blocks[block.slot].slot, box_of(block));
     visit(block, GRADIENT_SLOPES, nullptr,
           [&](const auto &run, int first, int n, const auto &prepare) {
             prepare();
-            kernels.get_values(stencil, tile, values);
-            take(run, first, n, values);
+            kernels.get(stencil, tile, q[0]);
+            take(run, first, n, q);
             return true;
           });
   }
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+}
+
+void MPMNodeScalar::add_up(const GiveValues &give, std::vector<double> &nodes)
+{
+  nodes.assign(field.grid.nnodes(), 0.0);
+  double values[BATCH];
+  double *const tile = tiles[0].data();
+  for (const auto &block : field.map->active) {
+    if (box_of(block)[0] > box_of(block)[3]) continue;
+    visit(block, GRADIENT_SLOPES, nullptr,
+          [&](const auto &run, int first, int n, const auto &prepare) {
+            prepare();
+            give(run, first, n, values);
+            kernels.add_values(stencil, values, tile);
+            return true;
+          });
+    kernels.flush(tile, nodes.data(), field.grid.blocks[block.slot].slot, box_of(block));
+  }
+  sum(nodes);
 }
 
 double MPMNodeScalar::memory_usage() const

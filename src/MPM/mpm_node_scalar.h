@@ -73,6 +73,12 @@ class MPMNodeScalar {
   /** changes: give the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
   void values_to_points(const TakeValues &);
+  /** Gradients and values at points. */
+  void gradients_to_points(const Conduct &);
+  /** Sums sum_p q_p N_ip of numbers q_p that points give, of runs that have a part. */
+  using GiveValues =
+      std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
+  void add_up(const GiveValues &, std::vector<double> &nodes);
 
   double memory_usage() const;
 

@@ -94,6 +94,31 @@ void LAMMPS_NS::map_surface(MPMField &field, const std::vector<char> &near,
 
 /* ---------------------------------------------------------------------- */
 
+void LAMMPS_NS::map_forces(MPMField &field, const std::vector<char> &near,
+                           const std::function<void(int, double *, double *)> &give,
+                           std::vector<double> &force)
+{
+  auto &work = field.work;
+  const std::size_t nmax = field.atom->nmax;
+  work.stress.resize(6 * nmax);
+  work.vectors.resize(3 * nmax);
+  PointRows r = field.rows();
+  r.tau = work.stress.data();
+  r.f = work.vectors.data();
+  TransferStep s = field.step_data(1.0);
+  s.force_scale = s.stress_scale;
+  const int nreal = field.kernel.nreal, lane = nreal == 8 ? 4 : 0;
+  map_some(field, field.kernel, r, s, field.kernel.p2g_force, near, lane, 3, [&](int i) {
+    give(i, r.tau + 6 * (std::size_t) i, work.vectors.data() + 3 * (std::size_t) i);
+  });
+  field.nodes.complete(work.nodes.data(), nreal, nreal);
+  force.resize(3 * field.grid.nnodes());
+  for (int64_t n = 0; n < field.grid.nnodes(); n++)
+    for (int d = 0; d < 3; d++) force[3 * n + d] = work.nodes[n * nreal + lane + d];
+}
+
+/* ---------------------------------------------------------------------- */
+
 void LAMMPS_NS::map_volume(MPMField &field, const std::vector<char> &near,
                            std::vector<double> &share)
 {

@@ -24,6 +24,11 @@ void map_gradient(MPMField &, Weight, const std::vector<char> &near, std::vector
 /** The same of volumes with the gradients of the functions, also where stress is an affine term of the transfer
  *  and so takes other ones. */
 void map_surface(MPMField &, const std::vector<char> &near, std::vector<double> &gradient);
+/** At the same nodes: forces [node][3] of points whose stress and external force are those that give(i, tau, f) sets;
+ *  tau: [6] J times the stress, f: [3], both in the units of a force over nktv2p. */
+void map_forces(MPMField &, const std::vector<char> &near,
+                const std::function<void(int i, double *tau, double *f)> &give,
+                std::vector<double> &force);
 /** At the same nodes: sum_p V_p N(x_p) as share of the volume of a cell, [node]. */
 void map_volume(MPMField &, const std::vector<char> &near, std::vector<double> &share);
 /** At the points, [n]: that share, which is 1 inside of a body and falls to 0 across its surface. Points

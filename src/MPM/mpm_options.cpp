@@ -60,10 +60,15 @@ int LAMMPS_NS::read_precision(LAMMPS *lmp, int narg, char **arg, bool &single)
 void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
                              const OptionRules &rules)
 {
+  refuse_field(lmp, fmt::format("Fix {} {}", user.style, user.id), field, rules);
+}
+
+void LAMMPS_NS::refuse_field(LAMMPS *lmp, const std::string &user, const MPMField &field,
+                             const OptionRules &rules)
+{
   for (const auto &rule : rules)
     if (rule.broken)
-      lmp->error->all(FLERR, Error::NOLASTLINE,
-                      "Fix {} {} cannot be used with {} of fix mpm {}: {}", user.style, user.id,
+      lmp->error->all(FLERR, Error::NOLASTLINE, "{} cannot be used with {} of fix mpm {}: {}", user,
                       rule.keyword, field.id(), rule.text);
 }
 

@@ -30,6 +30,9 @@ int read_precision(LAMMPS *, int narg, char **arg, bool &single);
 /** Stops with an error when a field (fix mpm) breaks one of the rules of a fix: their keyword is what
  *  of the field cannot be used, their text says why, and the remedy. */
 void refuse_field(LAMMPS *, const Fix &user, const MPMField &field, const MPM_NS::OptionRules &);
+/** The same for a command. */
+void refuse_field(LAMMPS *, const std::string &user, const MPMField &field,
+                  const MPM_NS::OptionRules &);
 
 /** Finds the variable, if it is one, and stops with an error if it does not exist or is not
  *  equal-style; user: who needs it, for example fix mpm/rigid force. */

@@ -55,6 +55,16 @@ class MPMPhysics {
    *  keep as their stress is the effective one. */
   virtual const double *pressure_in_forces(const MPMField &) const { return nullptr; }
 
+  /** The part of forces on walls that the contact of points does not bear, such as that of water in pores: at nodes of blocks
+   *  that are marked in near (and others), force[node][3] is the integral of N p n over the surface of the body [mass
+   *  acceleration], n outward; it is of the pressure_in_forces(). Returns false, and leaves force alone, where there is none.
+   *  Collective; after the momentum equation. */
+  virtual bool surface_force(MPMField &, const std::vector<char> & /*near*/,
+                             std::vector<double> & /*force*/) const
+  {
+    return false;
+  }
+
   /** Quantities of points for compute mpm/atom: names, fixed when the fix is defined, and their values. */
   virtual std::vector<std::string> quantities() const { return {}; }
   virtual double quantity(int /*k*/, int /*i*/) const { return 0.0; }
@@ -77,6 +87,9 @@ class MPMPhysics {
 
 /** What the physics of a field add to internal forces: J times a pressure for each point, or null. */
 const double *pressure_of_physics(const MPMField &);
+/** MPMPhysics::surface_force() of the physics that has one. */
+bool surface_force_of_physics(MPMField &, const std::vector<char> &near,
+                              std::vector<double> &force);
 /** Take it from the stress of n <= BATCH rows from point first on, for which there is room [6*n]. */
 void add_pressure(const double *pressure, MPM_NS::PointRows &, int first, int n, double *room);
 

@@ -88,7 +88,11 @@ void MPMPlan::place(Place at)
 void MPMPlan::act_on_nodes(MPMNodeAction::Stage stage)
 {
   const double dt = fields[0]->step_dt();
-  for (auto *action : actions) action->act(dt, stage);
+  for (auto *action : actions) {
+    action->act(dt, stage);
+    for (auto *other : actions)
+      if (other != action) other->has_acted(*action, stage);
+  }
 }
 
 /** Each stage for all fields before the next one. */

@@ -290,6 +290,7 @@ void MPMPointMap::finish_blocks()
     return field.plan->looks_at_all(field, block);
   });
 
+  field.jacobians.forget();
   valid = true;
   drifted = 0;
   nbuild++;

@@ -14,7 +14,8 @@
      S dp/dt = - alpha div v - div w,   w = - k (grad p - rho_f g),   S = n/K_f + (alpha - n)/K_s,
 
    sigma' is the stress of the material, w the volume of water that flows through a unit of area, and k the mobility.
-   The acceleration of the water relative to that of the soil is left out, and that of both in w.
+   The acceleration of the water relative to that of the soil is left out, and that of both in w; with both it is mpm_pore_motion.cpp (u-v-p).
+   With Forchheimer's term, -(grad p - rho_f g) = w/k + b |w| w, which for the length of w is a quadratic equation.
 
    On nodes, with C_p = S_p V_p, and D the matrix of sum_p alpha V_p N_ip grad N_jp,
 
@@ -42,8 +43,10 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "material/material.h"
+#include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_node_sums.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -55,22 +58,23 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int AHEAD = BATCH;    // distance of prefetches, in points
-
 /* ---------------------------------------------------------------------- */
 
 MPMPore::MPMPore(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
-                 const MPMPoreSurface::Conditions &conditions, const double *gravity,
-                 double relax) :
+                 const MPMPoreSurface::Conditions &conditions, const double *gravity, double relax,
+                 bool moves) :
     Pointers(lmp),
     field(field), nodes(field), surface(lmp, field, conditions, water, gravity), water(water),
     gravity(gravity), relax(relax)
 {
+  if (moves) motion = std::make_unique<MPMPoreMotion>(lmp, field, water.density, gravity);
 }
 
-void MPMPore::init(const std::vector<MPMPoreSoil> &all)
+void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
 {
   soils.clear();
+  quadratic.clear();
+  bool dries = false;
   slowest = waves = least_storage = std::numeric_limits<double>::max();
   for (const auto *fix : field.materials)
     for (const auto &one : all)
@@ -78,12 +82,17 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
         const double storage = one.storage_at(1.0, water);
         const double unit = force->mvv2e * force->nktv2p;
         soils.push_back({fix, one});
+        if (!one.is_linear()) quadratic.resize(1);
         least_storage = std::min(least_storage, storage);
         slowest = std::min(slowest, one.permeability / (water.resistance * storage));
         waves = std::min(waves, one.biot / sqrt(storage * fix->material->density() * unit));
+        dries = dries || one.retention.can_dry();
       }
   nodes.init(true, surface.any());
-  if (surface.any()) surface.init();
+  wet = !soils.empty();
+  if (surface.any()) surface.init(dries);
+  suction.reset();
+  if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
 
   const MPMStencil stencil(field);
   constexpr int SAMPLES = 4096;
@@ -96,6 +105,27 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all)
       if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
     steepest = std::max(steepest, sum);
   }
+}
+
+void MPMPore::weigh_points(const MPMRows &state) const
+{
+  if (!suction) return;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (field.is_point(i))
+      if (const auto *const s = soil_of(i)) suction->weigh(i, *s, state[i][0]);
+}
+
+void MPMPore::look_for_water()
+{
+  int any = 0, all;
+  for (const auto &run : field.map->runs) any |= soil(run.material) != nullptr;
+  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
+  wet = all;
+  if (any) field.jacobians.ask();
+  if (wet) return;
+  fastest = exchange = 0.0;
+  nodes.value.clear();
+  nodes.rate.clear();
 }
 
 const MPMPore::Soil *MPMPore::soil(const FixMPMMaterial *fix) const
@@ -117,6 +147,30 @@ double MPMPore::mobility(const Soil &s, int i, double J, const double *formula) 
   return (given ? formula[i] : s.of.permeability_at(J)) / water.resistance;
 }
 
+/** Weight of the water, in pressure per length. */
+double MPMPore::weight(int d) const
+{
+  return water.density * gravity[d] * force->nktv2p;
+}
+
+MPMPoreMotion::Pores MPMPore::pores(const Soil &s, int i, double J, double mobility) const
+{
+  return {J * atom->vfrac[i], J, s.of.pores_at(J), 1.0 / mobility,
+          quadratic.empty() ? 0.0 : quadratic[i]};
+}
+
+/** Mobility for the flow through the surface: that of the gradient in the step before, as there it is not known
+ *  before the flow is. */
+double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, const double *row) const
+{
+  if (motion) return motion->response(i, pores(s, i, J, mobility));
+  if (quadratic.empty()) return mobility;
+  double square = 0.0;
+  for (int d = 0; d < field.lattice.dim; d++)
+    square += (row[1 + d] - weight(d)) * (row[1 + d] - weight(d));
+  return secant_mobility(mobility, quadratic[i], sqrt(square));
+}
+
 /* ---------------------------------------------------------------------- */
 
 void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
@@ -124,24 +178,31 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
   const int dim = field.lattice.dim;
   for (auto *list : {&capacity, &conductance, &mean, &squeezed}) list->resize(atom->nmax);
   in_forces.assign(atom->nmax, 0.0);
+  if (!quadratic.empty()) quadratic.resize(atom->nmax);
+  const double density = water.density * force->mvv2e * force->nktv2p;
+  if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
   fastest = exchange = 0.0;
   nodes.points_to_nodes(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
         const Soil *const s = soil(run.material);
         if (!s) return false;
         double *const C = capacity.data() + first, *const K = conductance.data() + first;
-        double most = fastest;
+        double most = fastest, room[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, room);
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          __builtin_prefetch(field.points->F[std::min(i + AHEAD, atom->nlocal - 1)]);
-          const double J = field.points->jacobian(i), V = J * atom->vfrac[i];
-          C[p] = V * s->of.storage_at(J, water);
-          K[p] = V * mobility(*s, i, J, formula);
-          in_forces[i] = s->of.biot * J;
-          if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
-          points.volume[p] = K[p];
-          points.capacity[p] = C[p];
+          const double V = J[p] * atom->vfrac[i];
+          C[p] = V * s->of.storage_at(J[p], water);
+          const double k = mobility(*s, i, J[p], formula);
+          K[p] = V * k;
+          in_forces[i] = s->of.biot * J[p];
           const double *const mine = state[i];
+          if (suction) suction->begin_point(i, s->of, J[p], V, mine[0], C[p], K[p], in_forces[i]);
+          if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
+          if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J[p], density);
+          if (surface.any())
+            points.volume[p] = suction ? K[p] : V * at_surface(*s, i, J[p], k, mine);
+          points.capacity[p] = C[p];
           points.row[p][3] = mine[0];
           points.row[p][0] = mine[1];
           points.row[p][1] = mine[2];
@@ -186,21 +247,75 @@ void MPMPore::find_gradients(const MPMRows &state, const double *formula)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPore::begin_step(const MPMRows &state, const double *formula)
+void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double *formula)
 {
   if (surface.any()) surface.find_places();
+  if (motion) motion->begin_step(flow);
   points_to_nodes(state, formula);
-  nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *values) {
-    for (int p = 0; p < n; p++) {
-      mean[first + p] = values[p];
-      in_forces[first + p] *= values[p];
-    }
-  });
+  const auto take = [&](int i, double value) {
+    mean[i] = value;
+    in_forces[i] *= value;
+    if (suction) suction->set_lag(i, state[i][0] - value);
+  };
+  if (motion) {
+    nodes.gradients_to_points(
+        [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
+          for (int p = 0; p < n; p++) {
+            motion->set_gradient(first + p, q[p]);
+            take(first + p, q[p][3]);
+          }
+        });
+  } else {
+    nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *values) {
+      for (int p = 0; p < n; p++) take(first + p, values[p]);
+    });
+  }
   if (!surface.any()) return;
   // places at surfaces look at nodes of periodic images, too
   field.nodes.complete(nodes.capacity.data(), 1, 1);
   field.nodes.complete(nodes.volume.data(), 1, 1);
-  exchange = surface.prepare(nodes, least_storage);
+  if (suction)
+    suction->find_conductances(nodes, surface, [this](const MPMPointMap::Run &run) {
+      return &soil(run.material)->of;
+    });
+  exchange = surface.prepare(nodes, least_storage, suction ? &suction->at_surface() : nullptr);
+  if (motion) surface.share_area(nodes);
+}
+
+void MPMPore::take_off()
+{
+  if (surface.any()) {
+    surface.find_push(nodes, of_flow);
+    motion->add_gradients(of_flow);
+  }
+  for (const auto &run : field.map->runs) {
+    const Soil *const s = soil(run.material);
+    for (int i = run.first; s && i < run.last; i++) {
+      const double J = field.points->jacobian(i);
+      motion->begin_point(i, pores(*s, i, J, conductance[i] / (J * atom->vfrac[i])));
+    }
+  }
+  motion->take_off();
+}
+
+/* ----------------------------------------------------------------------
+   int N p n dA = int (p grad N + N grad p) dV, where the first term is the force of the pressure on nodes: nothing is left
+   inside of the soil, and of the surface what water pushes with
+------------------------------------------------------------------------- */
+
+void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &near,
+                                 std::vector<double> &force) const
+{
+  const int dim = field.lattice.dim;
+  map_forces(
+      field, near,
+      [&](int i, double *tau, double *f) {
+        const MPMPoreSoil *const s = soil_of(i);
+        for (int c = 0; c < 6; c++) tau[c] = c < 3 ? -in_forces[i] : 0.0;
+        const double volume = s ? s->biot * field.points->jacobian(i) * atom->vfrac[i] : 0.0;
+        for (int d = 0; d < 3; d++) f[d] = d < dim ? volume * state[i][1 + d] : 0.0;
+      },
+      force);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -217,26 +332,56 @@ void MPMPore::take_motion()
     const Soil *const s = soil(run.material);
     if (!s) return;
     field.kernel.g2p_gradient(rows, step, first, first + n, base, field.map->tile_load, L);
+    double room[BATCH];
+    const double *const J = field.jacobians.get(field, first, n, room);
     for (int p = 0; p < n; p++) {
       const int i = first + p;
-      const double V = field.points->jacobian(i) * atom->vfrac[i];
-      squeezed[i] = -s->of.biot * V * field.frame->volume_change(i, L + nL * p, dt) / dt;
+      const double V = J[p] * atom->vfrac[i];
+      const double change = field.frame->volume_change(i, L + nL * p, dt);
+      squeezed[i] = -s->of.biot * V * change / dt;
+      if (suction) squeezed[i] *= suction->take_motion(i, V * change, dt);
     }
   });
+  if (suction) suction->take_rates(dt);
+}
+
+void MPMPore::move_water()
+{
+  if (!motion) return;
+  motion->move();
+  if (!surface.any()) return;
+  motion->flow_at_nodes(
+      [this](int slot) {
+        return surface.is_near(slot);
+      },
+      of_flow);
+  surface.take_flow(of_flow);
 }
 
 void MPMPore::find_rates(std::vector<double> &inflow)
 {
-  double weight[3];    // of the water, in pressure per length
-  for (int d = 0; d < 3; d++) weight[d] = water.density * gravity[d] * force->nktv2p;
+  const double dt = field.step_dt();
+  const int dim = field.lattice.dim;
+  const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
     double power[3] = {0.0, 0.0, 0.0};
     for (int p = 0; p < n; p++) {
-      for (int d = 0; d < 3; d++) {
-        q[p][d] = -conductance[first + p] * (q[p][d] - weight[d]);
-        power[d] += q[p][d] * weight[d];
+      const int i = first + p;
+      if (motion) {
+        motion->discharge(i, q[p]);
+      } else {
+        double K = conductance[i];
+        for (int d = 0; d < 3; d++) q[p][d] = along[d] - q[p][d];
+        if (!quadratic.empty() && K > 0.0) {
+          const double V = field.points->jacobian(i) * atom->vfrac[i];
+          const double size = sqrt(MPM_NS::dot(q[p], q[p]));
+          K = V * secant_mobility(K / V, quadratic[i], size);
+        }
+        for (int d = 0; d < 3; d++) q[p][d] *= K;
       }
+      for (int d = 0; d < dim; d++) power[d] += q[p][d] * along[d];
       q[p][3] = squeezed[first + p];
+      if (suction) q[p][3] += suction->regained(first + p, capacity[first + p], dt);
     }
     inflow[MPMPoreSurface::ENERGY] += power[0] + power[1] + power[2];
   };
@@ -256,19 +401,32 @@ void MPMPore::find_rates(std::vector<double> &inflow)
    some crossings of a cell, and one over many cells stays.
 ------------------------------------------------------------------------- */
 
+double MPMPore::rate_of_waves() const
+{
+  return relax * waves / field.lattice.h;
+}
+
+double MPMPore::rate_of_lag() const
+{
+  return slowest / (field.lattice.h * field.lattice.h) + rate_of_waves();
+}
+
 void MPMPore::end_step(const MPMRows &state)
 {
   const int dim = field.lattice.dim;
-  const double dt = field.step_dt(), h = field.lattice.h;
-  const double keep = exp(-(slowest / (h * h) + relax * waves / h) * dt);
+  const double dt = field.step_dt();
+  const double keep = exp(-rate_of_lag() * dt);
   nodes.nodes_to_points(
-      [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q, const double *) {
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q, const double *) {
+        const MPMPoreSoil *const dries = suction ? &soil(run.material)->of : nullptr;
         for (int p = 0; p < n; p++) {
           const int i = first + p;
           double *const mine = state[i];
-          const double now = q[p][3] + keep * (mine[0] - mean[i]);
+          const double lag = dries ? suction->kept_lag(i) : keep * (mine[0] - mean[i]);
+          double now = q[p][3] + lag;
           const double more = capacity[i] * (now - mine[0]) - squeezed[i] * dt;
           atom->rmass[i] += water.density * more;
+          if (dries) now = suction->take_water(i, *dries, mine[0], now, more);
           mine[0] = now;
           for (int d = 0; d < dim; d++) mine[1 + d] = q[p][d];
         }
@@ -283,15 +441,20 @@ double MPMPore::greatest_rate() const
   return fastest * steepest / (field.lattice.h * field.lattice.h) + exchange;
 }
 
-double MPMPore::greatest_rate(tagint &tag) const
+double MPMPore::greatest_rate(const MPMRows &state, tagint &tag) const
 {
+  if (!wet) return 0.0;
   double most = fastest;    // formulas are evaluated in steps
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     const Soil *const s = soil(field.material_of(i));
     if (!s || s->of.law == MPMPoreSoil::FORMULA) continue;
     const double J = field.points->jacobian(i);
-    const double here = mobility(*s, i, J, nullptr) / s->of.storage_at(J, water);
+    double here = mobility(*s, i, J, nullptr) / s->of.storage_at(J, water);
+    if (s->of.retention.can_dry() && state[i][0] < 0.0) {
+      const auto moisture = MPMPoreMoisture::at(s->of, J, state[i][0], water);
+      here = mobility(*s, i, J, nullptr) * moisture.relative / moisture.storage;
+    }
     if (here <= most) continue;
     most = here;
     tag = atom->tag[i];
@@ -299,19 +462,29 @@ double MPMPore::greatest_rate(tagint &tag) const
   return most * steepest / (field.lattice.h * field.lattice.h) + exchange;
 }
 
-double MPMPore::wave_speed(int i, double c) const
+double MPMPore::wave_speed(int i, double p, double c) const
 {
-  const Soil *const s = soil(field.material_of(i));
+  const Soil *const s = wet ? soil(field.material_of(i)) : nullptr;
   if (!s) return c;
   const double J = field.points->jacobian(i), density = atom->rmass[i] / (J * atom->vfrac[i]);
-  const double more = s->of.biot * s->of.biot / s->of.storage_at(J, water);
+  const double storage = s->of.storage_at(J, water);
+  if (motion) return motion->wave_speed(c, density, s->of.biot, storage, s->of.pores_at(J));
+  double more = s->of.biot * s->of.biot / storage;
+  if (s->of.retention.can_dry()) {
+    const auto moisture = MPMPoreMoisture::at(s->of, J, p, water);
+    more = moisture.bishop * std::min(1.0, moisture.filling) / moisture.storage;
+    c *= sqrt(s->fix->density(i) * atom->vfrac[i] / atom->rmass[i]);    // it is that of full pores
+  }
   return sqrt(c * c + more / (density * force->mvv2e * force->nktv2p));
 }
 
 double MPMPore::memory_usage() const
 {
-  double bytes = nodes.memory_usage() + surface.memory_usage();
-  for (const auto *list : {&in_forces, &capacity, &conductance, &mean, &squeezed})
+  double bytes =
+      nodes.memory_usage() + surface.memory_usage() + (motion ? motion->memory_usage() : 0.0);
+  if (suction) bytes += suction->memory_usage();
+  for (const auto *list :
+       {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic, &of_flow})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -10,11 +10,14 @@
 #define LMP_MPM_PORE_H
 
 #include "mpm_node_scalar.h"
+#include "mpm_pore_motion.h"
 #include "mpm_pore_soil.h"
+#include "mpm_pore_suction.h"
 #include "mpm_pore_surface.h"
 #include "mpm_rows.h"
 #include "pointers.h"
 
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -29,24 +32,37 @@ class MPMPore : protected Pointers {
   MPMField &field;
   MPMNodeScalar nodes;
   MPMPoreSurface surface;
+  std::unique_ptr<MPMPoreMotion>
+      motion;    ///< null: water has no inertia relative to the soil (u-p)
 
   /** gravity: force per mass that the water has, too. */
   MPMPore(class LAMMPS *, MPMField &, const MPMPoreWater &, const MPMPoreSurface::Conditions &,
-          const double *gravity, double relax);
+          const double *gravity, double relax, bool moves);
 
-  /** Start of a run: the soils of this field. */
-  void init(const std::vector<MPMPoreSoil> &);
-  bool has_water() const { return !soils.empty(); }
+  /** Start of a run: the soils of this field. content: of points, if there is a soil that can dry (MPMPoreSuction). */
+  void init(const std::vector<MPMPoreSoil> &, double *const &content);
+  /** The points are known: have any of them water, on any rank? Collective. */
+  void look_for_water();
+  bool has_water() const { return wet; }
 
+  /** The water of points of soils that can dry, where it is not yet known. */
+  void weigh_points(const MPMRows &state) const;
   /** Gradients of points whose pressures alone were given; those of a linear pressure are exact. Collective. */
   void find_gradients(const MPMRows &state, const double *formula);
   /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n] permeabilities of
    *  points, or null. */
-  void begin_step(const MPMRows &state, const double *formula);
-  /** [n] J times the pressure in internal forces. */
-  const double *pressure_in_forces() const { return in_forces.data(); }
+  void begin_step(const MPMRows &state, const MPMRows &flow, const double *formula);
+  /** [n] J times the pressure in internal forces; null: there is none. */
+  const double *pressure_in_forces() const { return wet ? in_forces.data() : nullptr; }
+  /** See MPMPhysics::surface_force(). */
+  void find_surface_force(const MPMRows &state, const std::vector<char> &near,
+                          std::vector<double> &force) const;
   /** The velocities of the step are known. */
   void take_motion();
+  /** If the water has inertia: nodes have mass, momentum, and forces, summed over ranks. */
+  void take_off();
+  /** The same: after take_motion(). */
+  void move_water();
   /** Rates of the pressures of nodes; adds the volumes of water that come in for each time, and the power of what
    *  comes in and of the weight of water that flows. */
   void find_rates(std::vector<double> &inflow);
@@ -56,9 +72,9 @@ class MPMPore : protected Pointers {
   /** Bound of the eigenvalues of minus the rates [1/time] for this rank's points, in this step and at present;
    *  tag: of the point that limits it. */
   double greatest_rate() const;
-  double greatest_rate(tagint &tag) const;
-  /** Wave speed of a point where water cannot flow, c: of the soil alone. */
-  double wave_speed(int i, double c) const;
+  double greatest_rate(const MPMRows &state, tagint &tag) const;
+  /** Wave speed of a point where water cannot flow, c: of the soil alone; p: pressure of its water. */
+  double wave_speed(int i, double p, double c) const;
   const MPMPoreSoil *soil_of(int i) const;
 
   double memory_usage() const;
@@ -72,6 +88,7 @@ class MPMPore : protected Pointers {
   const double *const gravity;
   const double relax;    // of points, in the rate at which waves cross a cell
   std::vector<Soil> soils;
+  bool wet = false;    // there are points of these
   double steepest =
       0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
   double slowest = 0.0;    // smallest mobility over storage of a soil
@@ -79,6 +96,7 @@ class MPMPore : protected Pointers {
   double waves = 0.0;       // smallest wave speed by the stiffness of the water in a soil
   double fastest = 0.0;     // largest of the points in the last step
   double exchange = 0.0;    // rate of exchange through the surface in the last step
+  std::unique_ptr<MPMPoreSuction> suction;    // of soils that can dry
 
   // of points in this step
 
@@ -87,10 +105,17 @@ class MPMPore : protected Pointers {
   std::vector<double> conductance;    // [n] mobility times volume
   std::vector<double> mean;           // [n] pressure by the nodes, at the start
   std::vector<double> squeezed;       // [n] rate of the volume of water that the motion drives out
+  std::vector<double> quadratic;      // [n] of the resistance, if there is any
+  std::vector<double> of_flow;        // [node][8] next to the surface
 
   void points_to_nodes(const MPMRows &state, const double *formula);
   const Soil *soil(const FixMPMMaterial *) const;
+  double rate_of_waves() const;
+  double rate_of_lag() const;
   double mobility(const Soil &, int i, double J, const double *formula) const;
+  double weight(int d) const;
+  MPMPoreMotion::Pores pores(const Soil &, int i, double J, double mobility) const;
+  double at_surface(const Soil &, int i, double J, double mobility, const double *row) const;
 };
 
 }    // namespace LAMMPS_NS

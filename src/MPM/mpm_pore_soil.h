@@ -9,7 +9,11 @@
 #ifndef LMP_MPM_PORE_SOIL_H
 #define LMP_MPM_PORE_SOIL_H
 
+#include "mpm_drag.h"
+#include "mpm_retention.h"
+
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -29,12 +33,18 @@ struct MPMPoreSoil {
   double porosity = 0.0;
   Law law = CONSTANT;
   double permeability = 0.0;
-  std::string formula;    ///< variable, with v_
-  double biot = 1.0;      ///< coefficient of Biot
-  double grains = 0.0;    ///< bulk modulus of the grains [pressure]; 0: rigid
+  std::string formula;       ///< variable, with v_
+  double biot = 1.0;         ///< coefficient of Biot
+  double grains = 0.0;       ///< bulk modulus of the grains [pressure]; 0: rigid
+  double quadratic = 0.0;    ///< gradient of pressure per square of flow (Forchheimer)
+  double diameter =
+      0.0;    ///< of grains, from which that follows (Ergun); 0: it is the number above
+  MPMRetention retention;
 
   /** Grains keep their volume. */
   double porosity_at(double J) const { return 1.0 - (1.0 - porosity) / J; }
+  /** The same, where it must not vanish: not below a hundredth of the initial one. */
+  double pores_at(double J) const { return std::max(porosity_at(J), 0.01 * porosity); }
 
   /** Kozeny and Carman: n^3/(1 - n)^2, from its initial value; without pores nothing flows. */
   double permeability_at(double J) const
@@ -46,14 +56,31 @@ struct MPMPoreSoil {
     return law == SQUARED ? permeability * J * J : permeability;
   }
 
-  /** Volume of water that a unit of volume takes up for a unit of pressure. Where there are next to no pores left, it
-   *  stays that of a hundredth of the initial porosity. */
+  bool is_linear() const { return quadratic == 0.0 && diameter == 0.0; }
+
+  /** What the gradient of the pressure has besides that of Darcy's law, per square of the flow. density: of the water, in
+   *  units of pressure over velocity squared. */
+  double quadratic_at(double J, double density) const
+  {
+    if (diameter == 0.0) return quadratic;
+    const double n = pores_at(J);
+    return MPM_NS::SphereDrag::bed_inertia(density, diameter, n);
+  }
+
+  /** Volume of water that a unit of volume takes up for a unit of pressure, when pores are full. */
   double storage_at(double J, const MPMPoreWater &water) const
   {
-    const double n = std::max(porosity_at(J), 0.01 * porosity);
-    return n / water.bulk + (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
+    const double n = pores_at(J);
+    return retention.most * n / water.bulk +
+        (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
   }
 };
+
+/** Flow w over the gradient i of the pressure that drives it, where i = w/mobility + quadratic w^2. */
+inline double secant_mobility(double mobility, double quadratic, double gradient)
+{
+  return 2.0 * mobility / (1.0 + std::sqrt(1.0 + 4.0 * quadratic * mobility * mobility * gradient));
+}
 
 }    // namespace LAMMPS_NS
 #endif

@@ -41,6 +41,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -50,6 +51,7 @@ enum { VOLUME = 3, GRADIENT = 4 };    // reals of a record
 static constexpr double INSET = 0.5;    // of places below the surface, in node spacings
 // gaps between material and a face of the box up to which it touches, and from which on not
 static constexpr double TOUCHES = 0.25, IS_APART = 0.5;
+static constexpr double LEAK = 0.5;       // of what a step makes from rest, for water with inertia
 static constexpr double FULL = 0.97;      // of a cell: sums over points are not exactly integrals
 static constexpr double ENOUGH = 0.01;    // of a cell at a node, for its whole weight
 static constexpr double MOSTLY = 0.5;     // part of a place that has water, for its whole area
@@ -72,8 +74,9 @@ bool MPMPoreSurface::any() const
   });
 }
 
-void MPMPoreSurface::init()
+void MPMPoreSurface::init(bool soil_dries)
 {
+  dries = soil_dries;
   profile = std::make_unique<MPMNodeProfile>(field);
 }
 
@@ -98,9 +101,13 @@ void MPMPoreSurface::find_blocks_near()
 {
   const auto &blocks = field.grid.blocks;
   std::vector<double> filled(blocks.size(), 0.0);
+  double room[BATCH];
   for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++)
-      filled[run.slot] += field.atom->vfrac[i] * field.points->jacobian(i);
+    for (int i = run.first; i < run.last; i += BATCH) {
+      const int n = std::min(BATCH, run.last - i);
+      const double *const J = field.jacobians.get(field, i, n, room);
+      for (int p = 0; p < n; p++) filled[run.slot] += field.atom->vfrac[i + p] * J[p];
+    }
   const double full = NODES_PER_BLOCK * field.lattice.cell_volume();
   near.assign(blocks.size(), 0);
   for (std::size_t ib = 0; ib < blocks.size(); ib++)
@@ -163,6 +170,7 @@ double MPMPoreSurface::function(double depth) const
 
 double MPMPoreSurface::pressure_outside(const MPMPoreCondition &c, const double *x) const
 {
+  if (c.kind == MPMPoreCondition::SEEPAGE || c.kind == MPMPoreCondition::RAIN) return 0.0;
   if (c.kind != MPMPoreCondition::HEAD) return c.now;
   double size = 0.0, along = 0.0;
   for (int d = 0; d < 3; d++) {
@@ -174,11 +182,21 @@ double MPMPoreSurface::pressure_outside(const MPMPoreCondition &c, const double 
 }
 
 /** at: on the surface; normal: out of the soil. */
-void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, const double *at,
-                               const double *normal)
+void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, double touch,
+                               const double *at, const double *normal)
 {
   const auto &condition = conditions[part];
-  Place place = {part, area, pressure_outside(condition, at), 0.0, 0, 0, 0, 0};
+  Place place = {};
+  place.part = part;
+  place.area = area;
+  place.outside = place.outside_at = pressure_outside(condition, at);
+  place.touch = touch;
+  std::copy_n(at, 3, place.at);
+  std::copy_n(normal, 3, place.normal);
+  place.most = std::numeric_limits<double>::max();
+  if (condition.kind == MPMPoreCondition::RAIN) place.most = condition.now;
+  const bool air = condition.kind == MPMPoreCondition::HEAD && dries && place.outside == 0.0;
+  if (condition.kind == MPMPoreCondition::SEEPAGE || air) place.most = 0.0;
   double x[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < field.lattice.dim; d++) {
     const double step = -INSET * field.lattice.h * normal[d];
@@ -250,7 +268,7 @@ void MPMPoreSurface::find_places()
         at[axis] = wall;
         normal[axis] = sign;
         const double part = std::min(1.0, out / function(depth));
-        add_place(stencil, face, touch * part * (1.0 - fabs(depth)) * side, at, normal);
+        add_place(stencil, face, touch * part * (1.0 - fabs(depth)) * side, touch, at, normal);
       }
       if (conditions[FREE].kind == MPMPoreCondition::CLOSED) continue;
       const double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
@@ -263,14 +281,18 @@ void MPMPoreSurface::find_places()
         at[d] = x[d] + depth * h * normal[d];
       }
       const double part = std::min(1.0, length / function(depth));
-      add_place(stencil, FREE, part * (1.0 - fabs(depth)) * side, at, normal);
+      add_place(stencil, FREE, part * (1.0 - fabs(depth)) * side, 1.0, at, normal);
     }
   }
 }
 
 /* ---------------------------------------------------------------------- */
 
-/** Makes the sum of weights one; enough: capacity of a node for its whole weight. Returns the sum before. */
+/** Makes the sum of weights one; enough: capacity of a node for its whole weight. Returns the sum before.
+ *
+ *  A point in the middle of a cell gives a node that is out of reach of all others next to no capacity. Conduction bounds what
+ *  a node stores, C p^2, hence p there may be as large as 1/sqrt(C): such nodes must not be asked with their whole weight,
+ *  neither for water nor for their pressure. */
 double MPMPoreSurface::normalize(int first, int n, double enough,
                                  const std::vector<double> &capacity)
 {
@@ -284,37 +306,147 @@ double MPMPoreSurface::normalize(int first, int n, double enough,
   return sum;
 }
 
-double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage)
+double MPMPoreSurface::suction_outside(int part) const
 {
-  const double cell = field.lattice.cell_volume();
-  double fastest = 0.0;
+  const auto &c = conditions[part];
+  return c.kind == MPMPoreCondition::PRESSURE ? std::min(0.0, c.now) : 0.0;
+}
+
+/** With the lists a_k of weights where water comes in and b_k where the pressure is taken, the exchange is the matrix
+ *  sum_k c_k a_k b_k^T, which is not symmetric: what counts is its norm, not its eigenvalues, as conduction is added to it.
+ *  In the norm of the capacities it is at most that of sum_k c_k a_k a_k^T and of sum_k c_k b_k b_k^T in the
+ *  geometric mean, and these are at most their greatest sum of a row, (sum_k c_k a_ki)/C_i, as weights have the sum one. */
+double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage, const Wet *wet)
+{
+  const double cell = field.lattice.cell_volume(), enough = ENOUGH * least_storage * cell;
+  const auto &capacity = wet ? wet->capacity : scalar.capacity;
+  rows.assign(2 * scalar.capacity.size(), 0.0);
   for (auto &place : places) {
     double storage = 0.0;
     for (int k = place.first; k < place.first + place.n; k++) {
       const double V = nodes[node[k] * field.pic.nreal + VOLUME];
-      if (V > ENOUGH * cell) storage = std::max(storage, scalar.capacity[node[k]] / V);
+      if (V > ENOUGH * cell) storage = std::max(storage, capacity[node[k]] / V);
     }
     // the surface may be that of another material, without water
-    const double inside = normalize(place.first, place.n, 1.0e-300, scalar.capacity);
-    const double at =
-        normalize(place.first_at, place.n_at, ENOUGH * least_storage * cell, scalar.capacity);
+    const double inside = normalize(place.first, place.n, enough, capacity);
+    const double at = normalize(place.first_at, place.n_at, enough, capacity);
     const bool has_water = storage > 0.0 && inside > 0.0 && at > 0.0;
-    place.area *= has_water ? std::min(1.0, at / MOSTLY) : 0.0;
-    double K = 0.0, C = 0.0, response = 0.0;
+    place.area *= has_water ? std::min(1.0, std::min(inside, at) / MOSTLY) : 0.0;
+    const std::vector<double> *outer = nullptr;
+    if (wet) outer = &wet->conductance[suction_outside(place.part) < 0.0 ? 1 + place.part : 0];
+    double K = 0.0, C = 0.0;
     for (int k = place.first; k < place.first + place.n && has_water; k++) {
-      K += weight[k] * scalar.volume[node[k]];
-      C += weight[k] * scalar.capacity[node[k]];
-      for (int j = place.first_at; j < place.first_at + place.n_at; j++)
-        if (node[j] == node[k] && weight[j] > 0.0)
-          response += weight[j] * weight[k] / scalar.capacity[node[k]];
+      const double inner = scalar.volume[node[k]];
+      K += weight[k] * (outer ? 0.5 * (inner + (*outer)[node[k]]) : inner);
+      C += weight[k] * capacity[node[k]];
     }
     place.conductance = C > 0.0 ? place.area * storage * K / (C * INSET * field.lattice.h) : 0.0;
-    if (conditions[place.part].kind != MPMPoreCondition::FLUX)
-      fastest = std::max(fastest, response * place.conductance);
+    if (conditions[place.part].kind == MPMPoreCondition::FLUX) continue;
+    for (int k = place.first; k < place.first + place.n; k++)
+      rows[2 * node[k]] += place.conductance * weight[k];
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+      rows[2 * node[k] + 1] += place.conductance * weight[k];
   }
-  // places of nodes next to each other share nodes
-  constexpr double TOGETHER = 3.0;
-  return TOGETHER * fastest;
+  field.nodes.sum(rows.data(), 2, 0, 2);
+  double taken = 0.0, given = 0.0;
+  for (std::size_t k = 0; k < scalar.capacity.size(); k++) {
+    const double C = scalar.capacity[k];
+    if (!(C > 0.0)) continue;
+    taken = std::max(taken, rows[2 * k] / C);
+    given = std::max(given, rows[2 * k + 1] / C);
+  }
+  return sqrt(taken * given);
+}
+
+/* ----------------------------------------------------------------------
+   What an even flow brings to a node by its sum over points, w . g_i, must go through the surface there: else pressures of nodes
+   beyond the surface grow until they stop the flow next to it. So each place takes from its nodes their g_i instead of the values of their
+   functions, shared with other places by these. Where they have their mean place is where the pressure outside counts
+------------------------------------------------------------------------- */
+
+void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)
+{
+  const auto &grid = field.grid;
+  const auto &lattice = field.lattice;
+  const int nreal = field.pic.nreal;
+  std::vector<double> all(grid.nnodes(), 0.0);
+  const auto visit = [&](const auto &f) {
+    for (auto &place : places) {
+      if (!(place.area > 0.0)) continue;
+      for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+        if (scalar.capacity[node[k]] > 0.0)
+          f(place, k);
+        else
+          weight[k] = 0.0;
+    }
+  };
+  visit([&](Place &place, int k) {
+    all[node[k]] += place.area * weight[k];
+  });
+  field.nodes.sum(all.data(), 1, 0, 1);
+  field.nodes.complete(all.data(), 1, 1);
+  visit([&](Place &place, int k) {
+    double out = 0.0;
+    for (int d = 0; d < lattice.dim; d++)
+      out += nodes[nreal * node[k] + GRADIENT + d] * place.normal[d];
+    const double share = all[node[k]] > 0.0 ? place.area * weight[k] / all[node[k]] : 0.0;
+    weight[k] = std::max(0.0, out) * place.touch * share;
+  });
+  for (auto &place : places) {
+    if (!(place.area > 0.0)) continue;
+    double area = 0.0;
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++) area += weight[k];
+    if (conditions[place.part].kind != MPMPoreCondition::FLUX || area == 0.0) place.area = area;
+    for (int k = place.first_at; k < place.first_at + place.n_at && area > 0.0; k++) {
+      weight[k] /= area;
+      int index[3] = {0, 0, 0};
+      grid.node_index(grid.blocks[node[k] / NODES_PER_BLOCK], node[k] % NODES_PER_BLOCK, index);
+      for (int d = 0; d < lattice.dim; d++)
+        place.outside_at += weight[k] * water.density * force->nktv2p * gravity[d] *
+            (lattice.origin[d] + index[d] * lattice.h - place.at[d]);
+    }
+  }
+}
+
+double MPMPoreSurface::at_surface(const MPMNodeScalar &scalar, const Place &place) const
+{
+  double p = 0.0;
+  for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+    p += weight[k] * scalar.value[node[k]];
+  return p;
+}
+
+void MPMPoreSurface::find_push(const MPMNodeScalar &scalar, std::vector<double> &of_nodes) const
+{
+  const int nreal = field.pic.nreal;
+  of_nodes.assign(nreal * field.grid.nnodes(), 0.0);
+  for (const auto &place : places) {
+    if (conditions[place.part].kind == MPMPoreCondition::FLUX) continue;
+    const double ahead = place.area * (at_surface(scalar, place) - place.outside_at);
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
+      const double V = nodes[nreal * node[k] + VOLUME];
+      if (!(weight[k] > 0.0 && V > 0.0)) continue;
+      // the gradient is that of a fall to the pressure outside
+      for (int d = 0; d < 3; d++)
+        of_nodes[nreal * node[k] + d] -= weight[k] * ahead / V * place.normal[d];
+    }
+  }
+  field.nodes.sum(of_nodes.data(), nreal, 0, 3);
+}
+
+void MPMPoreSurface::take_flow(const std::vector<double> &of_nodes)
+{
+  const int nreal = field.pic.nreal;
+  flow_is_given = true;
+  for (auto &place : places) {
+    double out = 0.0;
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
+      const double V = nodes[nreal * node[k] + VOLUME], *const q = &of_nodes[nreal * node[k]];
+      if (!(weight[k] > 0.0 && V > 0.0)) continue;
+      for (int d = 0; d < 3; d++) out += weight[k] * q[d] / V * place.normal[d];
+    }
+    place.inflow = -place.area * out;
+  }
 }
 
 void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflow) const
@@ -322,17 +454,17 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
   for (const auto &place : places) {
     const auto &condition = conditions[place.part];
     double Q = place.area * condition.now;
+    const double p = at_surface(scalar, place);
     if (condition.kind != MPMPoreCondition::FLUX) {
       double inside = 0.0;
       for (int k = place.first; k < place.first + place.n; k++)
         inside += weight[k] * scalar.value[node[k]];
-      Q = place.conductance * (place.outside - inside);
+      Q = flow_is_given
+          ? place.inflow + LEAK * place.conductance * (place.outside_at - p)
+          : std::min(place.conductance * (place.outside - inside), place.area * place.most);
     }
-    double p = 0.0;
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
       scalar.rate[node[k]] += weight[k] * Q;
-      p += weight[k] * scalar.value[node[k]];
-    }
     inflow[place.part] += Q;
     inflow[ENERGY] += Q * p;
   }
@@ -341,5 +473,5 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
 double MPMPoreSurface::memory_usage() const
 {
   return places.capacity() * sizeof(Place) + node.capacity() * sizeof(int64_t) +
-      (weight.capacity() + nodes.capacity()) * sizeof(double) + near.capacity();
+      (weight.capacity() + nodes.capacity() + rows.capacity()) * sizeof(double) + near.capacity();
 }

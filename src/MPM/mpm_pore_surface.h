@@ -23,13 +23,14 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** What pore water has outside of a face of the box, or of the free surface of the soil. */
+/** What pore water has outside of a face of the box, or of the free surface of the soil. Where there is air (SEEPAGE, RAIN, and HEAD
+ *  above the table of soils that can dry) water leaves by its pressure, but none comes in, or not more than falls there. */
 struct MPMPoreCondition {
-  enum Kind { CLOSED, PRESSURE, HEAD, FLUX };
+  enum Kind { CLOSED, PRESSURE, HEAD, FLUX, SEEPAGE, RAIN };
 
   Kind kind = CLOSED;
   MPM_NS::NumberOrVariable
-      value;    ///< pressure; height of a water table; volume of water that comes in per area
+      value;    ///< pressure; height of a water table; volume of water that comes in, or falls, per area
   double now = 0.0;    ///< in this step
 };
 
@@ -43,20 +44,37 @@ class MPMPoreSurface : protected Pointers {
   static constexpr int ENERGY = NPART;    ///< place of the energy of water behind them
   using Conditions = std::array<MPMPoreCondition, NPART>;
 
+  /** Of each node, of soils that can dry: sums over points of the capacity that full pores have, and of the conductance, by the
+   *  permeabilities at the pressure zero, and for parts that have a suction outside at that. */
+  struct Wet {
+    std::vector<double> capacity;
+    std::array<std::vector<double>, 1 + NPART> conductance;
+  };
+
   MPMPoreSurface(class LAMMPS *, MPMField &, const Conditions &, const MPMPoreWater &,
                  const double *gravity);
 
   /** Does water go through any part? If not, nothing else needs to be called. */
   bool any() const;
-  /** Start of a run. */
-  void init();
+  /** Start of a run. dries: is there soil that can dry? */
+  void init(bool dries);
   /** Places are in reach of the points, and may have nodes beyond these. */
   void extend_topology();
   /** Where the surface is. Before MPMNodeScalar::points_to_nodes(). Collective. */
   void find_places();
-  /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest of a soil.
-   *  Returns the greatest rate of exchange of this rank's places [1/time]. */
-  double prepare(const MPMNodeScalar &, double least_storage);
+  /** The pressure outside of a part where it is given and below that of the air; otherwise zero. */
+  double suction_outside(int part) const;
+  /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest of a soil;
+   *  wet: of soils that can dry, or null. Returns a bound of the rates of exchange at this rank's
+   *  nodes [1/time]. Collective. */
+  double prepare(const MPMNodeScalar &, double least_storage, const Wet *wet);
+  /** For water with inertia, after prepare(): which nodes the surface belongs to. Collective. */
+  void share_area(const MPMNodeScalar &);
+  /** Water with inertia: [node][8] what drives it, gradients of pressure, by pressures of nodes. For MPMPoreMotion. */
+  void find_push(const MPMNodeScalar &, std::vector<double> &of_nodes) const;
+  /** What then flows out, [node][8]: sums of volume times flow, instead of what pressures drive. */
+  void take_flow(const std::vector<double> &of_nodes);
+  bool is_near(int slot) const { return near[slot]; }
   /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in for each
    *  time, with the energy that this brings. */
   void add_rates(MPMNodeScalar &, std::vector<double> &inflow) const;
@@ -66,28 +84,39 @@ class MPMPoreSurface : protected Pointers {
  private:
   struct Place {
     int part;
-    double area, outside;    // pressure at which nothing flows
-    double conductance;      // volume of water for a difference in pressure, and time
-    int first, n;            // nodes of the place where the pressure is taken
-    int first_at, n_at;      // nodes of the surface next to it, where water comes in
+    double area, outside;       // pressure at which nothing flows
+    double conductance;         // volume of water for a difference in pressure, and time
+    int first, n;               // nodes of the place where the pressure is taken
+    int first_at, n_at;         // nodes of the surface next to it, where water comes in
+    double at[3], normal[3];    // on the surface, out of the soil
+    double touch;               // part of the surface there that is of this place
+    double outside_at;          // pressure outside at the surface itself
+    double inflow;              // of water with inertia, volume for each time
+    double most;                // volume of water that can come in for each area and time
   };
   MPMField &field;
   const Conditions &conditions;
   const MPMPoreWater &water;
   const double *const gravity;
+  bool dries = false;
   std::unique_ptr<MPMNodeProfile> profile;
   std::vector<Place> places;
   std::vector<int64_t> node;    // of all places
   std::vector<double> weight;
   std::vector<double> nodes;    // records with volume and its gradient
-  std::vector<char> near;       // [block]
+  std::vector<double>
+      rows;    // [2*node] sums of conductances where pressures are taken, and where water comes in
+  std::vector<char> near;        // [block]
+  bool flow_is_given = false;    // by take_flow()
 
   void find_blocks_near();
   void map_volume();
   double function(double depth) const;
   double pressure_outside(const MPMPoreCondition &, const double *x) const;
   int add_nodes(class MPMStencil &, const double *x);
-  void add_place(class MPMStencil &, int part, double area, const double *at, const double *normal);
+  void add_place(class MPMStencil &, int part, double area, double touch, const double *at,
+                 const double *normal);
+  double at_surface(const MPMNodeScalar &, const Place &) const;
   double normalize(int first, int n, double enough, const std::vector<double> &capacity);
 };
 

@@ -325,6 +325,7 @@ void MPMSmoothing::smooth()
     const double cross = crossings * time_to_cross(*fluid);
     const double times = std::floor(now / cross) - std::floor((now - field.step_dt()) / cross);
     if (!(times > 0.0)) continue;
+    field.jacobians.forget();
     const double share = 1.0 - std::pow(1.0 - crossings * field.options.smooth, times);
     if (field.lattice.dim == 3)
       smooth<3>(fluid, share);

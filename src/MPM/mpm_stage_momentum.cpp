@@ -17,6 +17,8 @@
 #include "mpm_physics.h"
 #include "mpm_stages.h"
 
+#include <cstdint>
+
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
@@ -31,10 +33,22 @@ const double *LAMMPS_NS::pressure_of_physics(const MPMField &field)
   return nullptr;
 }
 
+bool LAMMPS_NS::surface_force_of_physics(MPMField &field, const std::vector<char> &near,
+                                         std::vector<double> &force)
+{
+  const auto &all = field.plan->physics;
+  return std::any_of(all.begin(), all.end(), [&](const auto *physics) {
+    return physics->surface_force(field, near, force);
+  });
+}
+
 void LAMMPS_NS::add_pressure(const double *pressure, PointRows &rows, int first, int n,
                              double *room)
 {
   for (int k = 0; k < 6 * n; k++) room[k] = rows.tau[k];
+  const auto next = reinterpret_cast<std::uintptr_t>(rows.tau + 6 * n);    // of the next batch
+  for (int k = 0; k < 6 * BATCH; k += 8)
+    __builtin_prefetch(reinterpret_cast<const void *>(next + 8 * k));
   for (int p = 0; p < n; p++)
     for (int c = 0; c < 3; c++) room[6 * p + c] -= pressure[first + p];
   rows.tau = room;

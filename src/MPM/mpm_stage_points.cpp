@@ -158,6 +158,7 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);
 
   const int bad = field.batch_kernels->store(b, F, tau);
+  field.jacobians.note(*field.batch_kernels, b, first, field.atom->nmax);
   if (nhistory && !bad) field.batch_kernels->store_history(b, nhistory, h);
   for (int p = 0; p < n && nhistory && bad; p++)
     if (b.J[p] > 0.0)

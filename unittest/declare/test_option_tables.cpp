@@ -24,6 +24,7 @@
 #include "fix_mpm_immersed.h"
 #include "fix_mpm_mixture.h"
 #include "fix_mpm_pore.h"
+#include "fix_mpm_relax.h"
 #include "fix_mpm_rigid.h"
 #include "fix_mpm_surface.h"
 #include "mpm_field_options.h"
@@ -56,6 +57,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_immersed", MPMImmersedOptions().declare(3));
   add("fix_mpm_mixture", MPMMixtureOptions().declare());
   add("fix_mpm_pore", MPMPoreOptions().declare(3));
+  add("fix_mpm_relax", MPMRelaxOptions().declare());
   add("fix_mpm_rigid", MPMRigidOptions().declare());
   add("fix_mpm_surface", MPMSurfaceOptions().declare());
   add("mpm_point", MPMPointOptions().declare());

@@ -102,6 +102,16 @@ TEST(Scalar, IsThatOfThePlainLoops)
       kernels.get_values(fast, scene.tile.data(), a.data());
       plain.get_values(slow, scene.tile.data(), b.data());
       EXPECT_LT(difference(a, b), 1e-13);
+      if (kind != GRADIENT_SLOPES) continue;
+      // the same without any slopes
+      const ScalarStencil bare = scene.stencil(kernels, NO_SLOPES);
+      b.assign(scene.n, 0.0);
+      kernels.get_values(bare, scene.tile.data(), b.data());
+      EXPECT_EQ(a, b);
+      Reals three = scene.tile, four = scene.tile;
+      kernels.add_values(bare, scene.q.data(), three.data());
+      kernels.add_values(fast, scene.q.data(), four.data());
+      EXPECT_EQ(three, four);
     }
   });
 }

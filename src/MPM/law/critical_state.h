@@ -161,9 +161,10 @@ namespace {
         {"", "LAMBDA", "1", POSITIVE, REQUIRED,
          "slope of the compression line, void ratio over ln p"},
         {"", "KAPPA", "1", POSITIVE, REQUIRED, "slope of swelling lines"},
-        {"", "E0", "1", NOT_NEGATIVE, REQUIRED, "initial void ratio"},
-        {"", "P0", "pressure", POSITIVE, REQUIRED, "initial pressure"},
-        {"", "PC", "pressure", POSITIVE, REQUIRED, "initial preconsolidation pressure"}};
+        {"", "E0", "1", NOT_NEGATIVE, REQUIRED, "initial void ratio", OF_NEW_POINTS},
+        {"", "P0", "pressure", POSITIVE, REQUIRED, "initial pressure", OF_NEW_POINTS},
+        {"", "PC", "pressure", POSITIVE, REQUIRED, "initial preconsolidation pressure",
+         OF_NEW_POINTS}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
         PLASTIC_STRAIN,
@@ -247,7 +248,13 @@ namespace {
         {"", "M", "1", POSITIVE, REQUIRED, "slope of the critical state line for BETA = 0"},
         {"", "BETA", "1", FRACTION, REQUIRED, "tensile strength over compressive strength"},
         {"", "XI", "1", POSITIVE, REQUIRED, "hardening factor"},
-        {"", "ALPHA0", "1", {-UNBOUNDED, 0.0, true}, REQUIRED, "initial value of alpha"}};
+        {"",
+         "ALPHA0",
+         "1",
+         {-UNBOUNDED, 0.0, true},
+         REQUIRED,
+         "initial value of alpha",
+         OF_NEW_POINTS}};
     static constexpr HistoryDeclaration history[] = {
         MPM_ELASTIC_STRAIN_HISTORY,
         PLASTIC_STRAIN,

@@ -35,9 +35,10 @@ namespace {
     static constexpr Parameter parameters[] = {
         {"", "SIGMA", "pressure", POSITIVE, REQUIRED, "tensile strength, with weibull its scale"},
         {"soften energy", "GC", "pressure*length", POSITIVE, 0.0, "fracture energy per area"},
-        {"weibull", "M", "1", POSITIVE, 0.0, "Weibull modulus"},
-        {"weibull", "V0", "volume", POSITIVE, 1.0, "reference volume (in 2d per thickness)"},
-        {"weibull", "SEED", "1", NOT_NEGATIVE, 0.0, "seed of the random numbers"},
+        {"weibull", "M", "1", POSITIVE, 0.0, "Weibull modulus", OF_NEW_POINTS},
+        {"weibull", "V0", "volume", POSITIVE, 1.0, "reference volume (in 2d per thickness)",
+         OF_NEW_POINTS},
+        {"weibull", "SEED", "1", NOT_NEGATIVE, 0.0, "seed of the random numbers", OF_NEW_POINTS},
         MPM_AFTER_PARAMETERS};
     static constexpr HistoryDeclaration history[] = {
         MPM_DAMAGE_HISTORY,

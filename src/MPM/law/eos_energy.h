@@ -199,7 +199,8 @@ namespace {
         {"", "B1", "1", ANY_NUMBER, REQUIRED, "coefficient of mu times energy in compression"},
         {"", "T1", "pressure", NOT_NEGATIVE, 0.0, "linear coefficient in tension, 0: A1"},
         {"", "T2", "pressure", ANY_NUMBER, 0.0, "coefficient of the square in tension"},
-        {"energy", "E0", "pressure", NOT_NEGATIVE, 0.0, "initial energy per reference volume"},
+        {"energy", "E0", "pressure", NOT_NEGATIVE, 0.0, "initial energy per reference volume",
+         OF_NEW_POINTS},
         cutoff,
         spall};
     static constexpr HistoryDeclaration history[] = {internal_energy(E0), dissipated, spalled};
@@ -293,8 +294,9 @@ namespace {
     enum { GAMMA, P0, E0 };
     static constexpr Parameter parameters[] = {
         {"", "GAMMA", "1", {1.0, UNBOUNDED, false}, REQUIRED, "ratio of specific heats"},
-        {"pressure", "P0", "pressure", POSITIVE, 0.0, "initial pressure"},
-        {"energy", "E0", "energy/mass", POSITIVE, 0.0, "initial internal energy per mass"}};
+        {"pressure", "P0", "pressure", POSITIVE, 0.0, "initial pressure", OF_NEW_POINTS},
+        {"energy", "E0", "energy/mass", POSITIVE, 0.0, "initial internal energy per mass",
+         OF_NEW_POINTS}};
     static constexpr const char *check(const LawParameters &p)
     {
       return (p.value[P0] > 0.0) == (p.value[E0] > 0.0)
@@ -318,7 +320,7 @@ namespace {
     static constexpr Parameter parameters[] = {
         {"", "GAMMA", "1", {1.0, UNBOUNDED, false}, REQUIRED, "ratio of specific heats"},
         {"", "PINF", "pressure", POSITIVE, REQUIRED, "pressure that is added"},
-        {"pressure", "P0", "pressure", NOT_NEGATIVE, 0.0, "initial pressure"},
+        {"pressure", "P0", "pressure", NOT_NEGATIVE, 0.0, "initial pressure", OF_NEW_POINTS},
         cutoff};
     static constexpr const char *check(const LawParameters &p)
     {
@@ -350,6 +352,7 @@ namespace {
   struct EosJWL : InternalEnergy {
     static constexpr const char *name = "jwl";
     static constexpr const char *meaning = "Jones-Wilkins-Lee detonation products";
+    static constexpr bool finds_temperature = true;
     enum { A, B, R1, R2, OMEGA, E0, D, WIDTH };
     static constexpr Parameter parameters[] = {
         {"", "A", "pressure", NOT_NEGATIVE, REQUIRED, "coefficient of the first exponential"},
@@ -357,15 +360,16 @@ namespace {
         {"", "R1", "1", POSITIVE, REQUIRED, "rate of the first exponential"},
         {"", "R2", "1", POSITIVE, REQUIRED, "rate of the second exponential"},
         {"", "OMEGA", "1", POSITIVE, REQUIRED, "Gruneisen parameter of the products"},
-        {"", "E0", "pressure", POSITIVE, REQUIRED, "chemical energy per reference volume"},
+        {"", "E0", "pressure", POSITIVE, REQUIRED, "chemical energy per reference volume",
+         OF_NEW_POINTS},
         {"", "D", "velocity", POSITIVE, REQUIRED, "detonation velocity"},
         {"width", "WIDTH", "1", POSITIVE, 3.0, "width of the burn in node spacings"}};
     static constexpr const char *term = "detonate";
     static constexpr Parameter term_parameters[] = {
-        {"detonate", "X", "length", ANY_NUMBER, REQUIRED, "detonation point"},
-        {"detonate", "Y", "length", ANY_NUMBER, REQUIRED, "detonation point"},
-        {"detonate", "Z", "length", ANY_NUMBER, REQUIRED, "detonation point"},
-        {"detonate", "T", "time", ANY_NUMBER, REQUIRED, "time of its detonation"}};
+        {"detonate", "X", "length", ANY_NUMBER, REQUIRED, "detonation point", OF_NEW_POINTS},
+        {"detonate", "Y", "length", ANY_NUMBER, REQUIRED, "detonation point", OF_NEW_POINTS},
+        {"detonate", "Z", "length", ANY_NUMBER, REQUIRED, "detonation point", OF_NEW_POINTS},
+        {"detonate", "T", "time", ANY_NUMBER, REQUIRED, "time of its detonation", OF_NEW_POINTS}};
     static constexpr HistoryDeclaration history[] = {
         internal_energy(E0),
         dissipated,

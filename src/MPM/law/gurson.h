@@ -44,7 +44,7 @@ namespace {
         YOUNGS_MODULUS,
         POISSONS_RATIO,
         {"", "SIGMAY", "pressure", POSITIVE, REQUIRED, "yield stress of the matrix"},
-        {"", "F0", "1", {0.0, 0.5, true}, REQUIRED, "initial porosity"},
+        {"", "F0", "1", {0.0, 0.5, true}, REQUIRED, "initial porosity", OF_NEW_POINTS},
         {"hardening", "E0", "1", POSITIVE, 1.0, "strain scale of the hardening"},
         {"hardening", "N", "1", FRACTION, 0.0, "exponent of the hardening"},
         {"tvergaard", "Q1", "1", POSITIVE, 1.5, "factor of the porosity"},

@@ -20,41 +20,32 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Enthalpy per mass as a function H(T) of the temperature: between knots the specific heat is linear in T, before the
-   *  first and behind the last one constant. The knots are the terms {T, specific heat, its slope, H} of the
-   *  parameters of a thermal part. Where melting takes no range, a knot without specific heat is the end of the solid, and
-   *  the next one, at the same temperature, the beginning of the melt.
+  /** Enthalpy per mass as a function H(T) of the temperature: between knots the specific heat is linear in
+   *  T, before the first and behind the last one constant. The knots are the terms {T, specific heat, its
+   *  slope, H} of the parameters of a thermal part. Where melting takes no range, a knot without specific
+   *  heat is the end of the solid, and the next one, at the same temperature, the beginning of the melt.
    *
-   *  A point has its temperature and its molten fraction f. Heat changes H, from which both follow: none is lost,
-   *  however long the step. */
+   *  A point has its temperature and its molten fraction f. Heat changes H, from which both follow: none is
+   *  lost, however long the step. */
   struct HeatCurve {
     enum { TEMPERATURE, CAPACITY, SLOPE, ENTHALPY };
 
     const LawParameters &p;
     double melt, latent, over;
 
-    static bool is_curved(const LawParameters &p) { return p.nterms > 0; }
-
-    /** Makes the knots, from a specific heat cp times factors at temperatures that increase (none: constant). */
-    static void make(LawParameters &p, const std::vector<double> &table,
-                     const std::vector<double> &factor, double cp, double melt, double latent,
-                     double over)
+    /** Makes the knots, from a specific heat c(T) with straight lines between these temperatures and constant
+     *  outside of them. */
+    template <class Capacity>
+    static void make(LawParameters &p, std::vector<double> T, const Capacity &c, double melt,
+                     double latent, double over)
     {
-      std::vector<double> T = table;
       if (latent > 0.0) {
         T.push_back(melt);
         if (over > 0.0) T.push_back(melt + over);
       }
       std::sort(T.begin(), T.end());
       T.erase(std::unique(T.begin(), T.end()), T.end());
-      const auto c = [&](double t) {
-        if (table.empty()) return cp;
-        if (t <= table.front()) return cp * factor.front();
-        if (t >= table.back()) return cp * factor.back();
-        const std::size_t k = std::upper_bound(table.begin(), table.end(), t) - table.begin();
-        const double share = (t - table[k - 1]) / (table[k] - table[k - 1]);
-        return cp * (factor[k - 1] + share * (factor[k] - factor[k - 1]));
-      };
+      p.curved = true;
       p.nterms = 0;
       double H = 0.0;
       const auto add = [&](double t, double capacity, double slope) {

@@ -39,6 +39,7 @@ namespace MPM_NS {
 
 constexpr double REQUIRED = std::numeric_limits<double>::quiet_NaN();    ///< no default value
 constexpr const char *FLAG = "flag";    ///< unit of an option without a value: 1 when given
+constexpr bool OF_NEW_POINTS = true;    ///< last word of a declaration, see Parameter
 
 /** Declaration of one parameter.
  *
@@ -53,6 +54,7 @@ struct Parameter {
   Range range;
   double standard;    ///< value when not given, or REQUIRED
   const char *meaning;
+  bool of_new_points = false;    ///< of the state of new points, which no temperature changes?
 };
 
 /** Declarations that several laws share. */
@@ -92,6 +94,7 @@ struct LawParameters {
   double broken;          ///< share of the work of damage that becomes heat
   double warm;        ///< temperature rise per heat of unit reference volume; 0: no thermal part
   int temperature;    ///< row of the temperature in batch.history, -1: no thermal part
+  bool curved = false;    ///< of a thermal part: are its terms the knots of a HeatCurve?
 };
 
 /** Rows of history variables of a batch, beginning with the first one of a law. */
@@ -121,7 +124,12 @@ struct LawInfo {
   int (*nhistory)(const LawParameters &);
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
   bool uses_F;        ///< does any kernel read batch.F? Else J and A are all that it knows
-  bool expands;       ///< of an equation of state: does heat expand it by its internal energy?
+  /** Of an equation of state: does it have an internal energy, which heat raises, so that it expands? Then
+   *  no 'expansion' goes with it, and what conduction brings is in batch.heat when it is updated. */
+  bool expands;
+  /** Of an equation of state: does the temperature follow from its internal energy? Then no other part
+   *  changes that but by heat. */
+  bool finds_temperature;
   /** What is wrong with parameters that are each in their range; null when all is well. */
   const char *(*check)(const LawParameters &);
   /** Does a law with these parameters need the temperature, and so a thermal part? */
@@ -136,9 +144,10 @@ struct LawInfo {
   Conduction (*conduction)(const LawParameters &);
   /** Of a thermal part: coefficient of the linear thermal expansion [1/temperature]. Null: none. */
   double (*expansion)(const LawParameters &);
-  /** Of a thermal part with expansion: which of the parameters is the Gruneisen parameter that the
-   *  material finds by its bulk modulus, -1 when that is given. */
-  int (*consistent)(const LawParameters &);
+  int gruneisen;    ///< of a thermal part: which of the parameters is the Gruneisen parameter, -1: none
+  /** Of a thermal part with expansion: does the material find the Gruneisen parameter by its bulk modulus?
+   *  Null: never. */
+  bool (*consistent)(const LawParameters &);
   /** History of a new point at x (its values one after the other; in: initial values). Null: keep
    *  the initial values. */
   void (*initialize)(const LawParameters &, const double *x, double *history);
@@ -186,7 +195,9 @@ struct LawKernels {
 /** What a law need not declare or provide; all laws derive from this. */
 struct LawDefaults {
   static constexpr StressShare share = NO_SHARE;
-  static constexpr bool uses_speed = true, uses_F = true, expands = false;
+  static constexpr bool uses_speed = true, uses_F = true, expands = false,
+                        finds_temperature = false;
+  static constexpr int gruneisen = -1;
   static constexpr const char *term = nullptr;
   static constexpr std::nullptr_t term_parameters = nullptr;
   static constexpr std::nullptr_t history = nullptr;
@@ -224,7 +235,7 @@ struct LawVersion {
   int interface;    ///< raised with each change of what laws and package expect of each other
   int batch, info, kernels, parameters, conduction;
 };
-constexpr LawVersion law_version{5,
+constexpr LawVersion law_version{6,
                                  sizeof(Batch),
                                  sizeof(LawInfo),
                                  sizeof(LawKernels),
@@ -274,6 +285,8 @@ namespace law {
       info.uses_speed = Law::uses_speed;
       info.uses_F = Law::uses_F;
       info.expands = Law::expands;
+      info.finds_temperature = Law::finds_temperature;
+      info.gruneisen = Law::gruneisen;
       info.check = Law::check;
       info.needs_temperature = Law::needs_temperature;
       info.heat_share = Law::heat_share;

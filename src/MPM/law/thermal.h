@@ -18,8 +18,9 @@ namespace {
 
   constexpr Parameter SPECIFIC_HEAT = {"",       "CP",     "energy/(mass temperature)",
                                        POSITIVE, REQUIRED, "specific heat"};
-  constexpr Parameter FIRST_TEMPERATURE = {"",         "T0",     "temperature",
-                                           ANY_NUMBER, REQUIRED, "initial temperature"};
+  constexpr Parameter FIRST_TEMPERATURE = {
+      "",         "T0",     "temperature",
+      ANY_NUMBER, REQUIRED, "initial temperature, absolute with gruneisen"};
   constexpr Parameter HEAT_SHARE = {"",       "CHI", "1",
                                     FRACTION, 0.9,   "share of the plastic work that becomes heat"};
   constexpr Parameter GRUNEISEN = {
@@ -36,7 +37,7 @@ namespace {
       FLAG,
       FRACTION,
       0.0,
-      "GAMMA = 3 K ALPHA/(density CP), with the bulk modulus K of the material at T0"};
+      "GAMMA = 3 K ALPHA/(density CP), with the bulk modulus K and ALPHA at T0"};
   constexpr Parameter FRACTURE_SHARE = {
       "fracture", "SHARE", "1", FRACTION, 0.0, "share of the work of damage that becomes heat"};
 
@@ -53,9 +54,11 @@ namespace {
    *  second term is the change along an isentrope when density * Gruneisen parameter is constant,
    *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. With melting the
    *  temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone from 0 to 1,
-   *  and on cooling back to 0, or rises from TMELT to TMELT + DT meanwhile; with this, and with a CP that depends on the
-   *  temperature, it follows from the enthalpy (HeatCurve). With expansion the second term comes before the stress of the step, which
-   *  depends on it. MORE: parameters between T0 and CHI. */
+   *  and on cooling back to 0, or rises from TMELT to TMELT + DT meanwhile; with this, and with a CP that
+   *  depends on the temperature, it follows from the enthalpy (HeatCurve). With expansion the second term
+   *  comes before the stress of the step, which depends on it. A GAMMA that follows from the expansion is
+   *  that of the given CP, and goes with its inverse: dp/dT at constant volume, 3 K ALPHA, is what stays.
+   *  MORE: parameters between T0 and CHI. */
   template <int MORE> struct ThermalByWork : LawDefaults {
     static constexpr bool uses_F = false;
     enum { CP, T0, CHI = 2 + MORE, GAMMA, TMELT, LATENT, ALPHA, CONSISTENT, BREAKS, OVER };
@@ -67,6 +70,8 @@ namespace {
     {
       if (p.value[CONSISTENT] > 0.0 && p.value[ALPHA] == 0.0)
         return "'gruneisen consistent' follows from the expansion: add 'expansion ALPHA'";
+      if ((p.value[CONSISTENT] > 0.0 || p.value[GAMMA] > 0.0) && !(p.value[T0] > 0.0))
+        return "'gruneisen' needs absolute temperatures: T0 above zero";
       if (p.value[OVER] > 0.0 && !(p.value[LATENT] > 0.0))
         return "'over DT' is a range of melting: add 'melt TMELT LATENT'";
       return nullptr;
@@ -74,14 +79,19 @@ namespace {
     /** A material above its melting temperature is a melt. */
     static void initialize(const LawParameters &p, const double *, double *history)
     {
-      const HeatCurve curve = {p, p.value[TMELT], p.value[LATENT], p.value[OVER]};
+      const HeatCurve curve = curve_of(p);
       if (nhistory(p) == 2 && history[0] > p.value[TMELT]) history[1] = curve.molten_at(history[0]);
     }
     static double heat_share(const LawParameters &p) { return p.value[CHI]; }
     static double warming(const LawParameters &p) { return 1.0 / (p.heat_density * p.value[CP]); }
     static double fracture_share(const LawParameters &p) { return p.value[BREAKS]; }
     static double expansion(const LawParameters &p) { return p.value[ALPHA]; }
-    static int consistent(const LawParameters &p) { return p.value[CONSISTENT] > 0.0 ? GAMMA : -1; }
+    static constexpr int gruneisen = GAMMA;
+    static bool consistent(const LawParameters &p) { return p.value[CONSISTENT] > 0.0; }
+    static MPM_INLINE HeatCurve curve_of(const LawParameters &p)
+    {
+      return {p, p.value[TMELT], p.value[LATENT], p.value[OVER]};
+    }
 
     /** Change of temperature by compression. */
     static MPM_INLINE void compress(const LawParameters &p, Batch &b, History history)
@@ -89,6 +99,15 @@ namespace {
       const double gamma = p.value[GAMMA];
       double *const T = history[0];
       if (gamma == 0.0) return;
+      if (consistent(p) && p.curved) {
+        const HeatCurve curve = curve_of(p);
+        for (int i = 0; i < b.n; i++) {
+          const double g = gamma * p.value[CP] * (b.J[i] - b.Jold[i]);
+          const double middle = T[i] * exp(-0.5 * g / curve.capacity(T[i]));
+          T[i] *= exp(-g / curve.capacity(middle));
+        }
+        return;
+      }
       MPM_SIMD
       for (int i = 0; i < b.n; i++) T[i] += T[i] * expm1(-gamma * (b.J[i] - b.Jold[i]));
     }
@@ -103,8 +122,8 @@ namespace {
       const double warm = p.warm;
       double *const T = history[0];
       if (p.value[ALPHA] == 0.0) compress(p, b, history);
-      if (HeatCurve::is_curved(p)) {
-        const HeatCurve curve = {p, p.value[TMELT], p.value[LATENT], p.value[OVER]};
+      if (p.curved) {
+        const HeatCurve curve = curve_of(p);
         double *const molten = nhistory(p) == 2 ? history[1] : nullptr;
         for (int i = 0; i < b.n; i++)
           curve.warm(warm * p.value[CP] * b.heat[i], T[i], molten ? molten + i : nullptr);
@@ -172,7 +191,7 @@ namespace {
       c.capacity = p.value[CP];
       c.conductivity = p.value[K];
       c.melting = {p.value[TMELT], p.value[LATENT] / p.value[CP]};
-      c.by_enthalpy = HeatCurve::is_curved(p);
+      c.by_enthalpy = p.curved;
       c.orthotropic = p.value[K2] > 0.0;
       if (c.orthotropic) {
         c.across[0] = p.value[K2];

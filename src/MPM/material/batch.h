@@ -49,6 +49,9 @@ struct BatchKernels {
   void (*load_history)(Batch &, int width, const double *rows);
   void (*store_history)(const Batch &, int width, double *rows);
 
+  /** det F of n points. */
+  void (*jacobians)(const double (*F)[BATCH], int n, double *J);
+
   /** Write F and tau (2d: only what can change). Returns the number of points whose J is not
    *  positive (NaN included); nothing is written for these. */
   int (*store)(const Batch &, double *F, double *tau);

@@ -393,6 +393,15 @@ double stress_work(const Batch &b, const double (*twice_tau)[BATCH])
   return work;
 }
 
+void jacobians(const Column *F, int n, double *J)
+{
+#pragma omp simd
+  for (int p = 0; p < n; p++)
+    J[p] = F[0][p] * (F[4][p] * F[8][p] - F[5][p] * F[7][p]) -
+        F[1][p] * (F[3][p] * F[8][p] - F[5][p] * F[6][p]) +
+        F[2][p] * (F[3][p] * F[7][p] - F[4][p] * F[6][p]);
+}
+
 }    // namespace
 
 namespace MPM_NS {
@@ -403,12 +412,15 @@ const BatchKernels *MPM_NS::MPM_OF_ISA(mpm_batch)(int dim, bool hoop)
 {
   static const BatchKernels solid = {load<3, false, false>, load<3, true, false>, forget_shape<3>,
                                      first_piola<3>,        add_kirchhoff,        stress_work,
-                                     load_history,          store_history,        store<3, false>},
+                                     load_history,          store_history,        jacobians,
+                                     store<3, false>},
                             plane = {load<2, false, false>, load<2, true, false>, forget_shape<2>,
                                      first_piola<2>,        add_kirchhoff,        stress_work,
-                                     load_history,          store_history,        store<2, false>},
+                                     load_history,          store_history,        jacobians,
+                                     store<2, false>},
                             axial = {load<2, false, true>, load<2, true, true>, forget_shape<2>,
                                      first_piola<2>,       add_kirchhoff,       stress_work,
-                                     load_history,         store_history,       store<2, true>};
+                                     load_history,         store_history,       jacobians,
+                                     store<2, true>};
   return dim == 3 ? &solid : hoop ? &axial : &plane;
 }

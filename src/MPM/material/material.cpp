@@ -42,9 +42,12 @@ class ComposedMaterial : public Material {
       speed_matters = speed_matters || (law.part == VISCOSITY && law.info->uses_speed);
     }
     for (const auto &r : definition.random) add(r);
-    for (const auto &v : definition.vary) add(v);
+    std::vector<Varied> varied;
+    for (const auto &v : definition.vary) add(v, varied);
+    for (const auto &v : varied) check(v);
     depend_on_temperature();
     melt_and_solidify();
+    expand_by_conducted_heat();
     for (const auto &range : definition.ranges) add(range);
     if (definition.shares_stress()) {
       viscous = variables.size();
@@ -107,6 +110,7 @@ class ComposedMaterial : public Material {
         law.info->initialize(law.parameters, x, history + law.history);
       }
     if (solid >= 0) history[solid] = 1.0 - history[molten];
+    for (int k = 0; k < nheated; k++) history[heated + k] = history[thermal->history + k];
   }
 
   bool is_thermoelastic() const override { return seen >= 0; }
@@ -117,27 +121,21 @@ class ComposedMaterial : public Material {
   }
   Conduction conduction(const double *history) const override
   {
-    const auto &of = thermal->info->conduction;
-    if (!history || !conduction_varies()) return of(thermal->parameters);
+    Conduction c = mean_conduction;
+    if (!history) return c;
     const double T = history[thermal->history];
-    LocalParameters local(*this, *thermal);
-    LawParameters p = local.at(history, 1);
-    for (const auto &w : conducting) w.of(p) *= w.factor.at(T);
-    Conduction c = of(p);
+    if (!thermal->random.empty()) {
+      LocalParameters local(*this, *thermal);
+      c = thermal->info->conduction(local.at(history, 1));
+    }
+    for (const auto &k : conducting) k.of(c) *= k.factor.at(T);
     if (is_curved()) c.capacity = heat_curve().capacity(T);
     return c;
   }
   void warm(double *history, double heat) const override
   {
     double *const T = history + thermal->history;
-    const bool melts = thermal->info->count_history(thermal->parameters) > 1;
-    if (is_curved()) {
-      heat_curve().warm(heat, *T, melts ? T + 1 : nullptr);
-      return;
-    }
-    const Conduction c = conduction(history);
-    *T += heat / c.capacity;
-    if (melts) c.melting.settle(*T, T[1]);
+    heat_curve().warm(heat, *T, melting.latent > 0.0 ? T + 1 : nullptr);
   }
 
   void initialized() const override
@@ -171,7 +169,7 @@ class ComposedMaterial : public Material {
       return;
     }
     make_stress(b);
-    run(thermal, b);
+    find_temperature(b);
   }
 
   const std::vector<ValidRange> &ranges() const override { return valid; }
@@ -247,10 +245,17 @@ class ComposedMaterial : public Material {
   /** History variable with the temperature to which the stress belongs, when stress depends on it by
    *  expansion or by parameters: conduction and heat may have changed the temperature since. Else -1. */
   int seen = -1;
-  bool expands = false;                     ///< does it have thermal expansion?
-  std::vector<WarmParameter> conducting;    ///< conductivities that depend on the temperature
+  bool expands = false;                        ///< does it have thermal expansion?
+  std::vector<WarmConductivity> conducting;    ///< those that depend on the temperature
+  Conduction mean_conduction = {};             ///< without what differs from point to point
   std::unique_ptr<const TemperatureFactor>
       capacity_factor;    ///< of the specific heat, a table; or null
+  struct {
+    double point, latent, range;
+  } melting = {};    ///< TMELT, LATENT, and DT of a thermal part
+  /** First of nheated history variables with the temperature, and the molten fraction, that the internal
+   *  energy of an equation of state knows of: conduction may have changed them since. -1: not needed. */
+  int heated = -1, nheated = 0;
   /** History variable with the solid share to which the stress belongs, when what melts becomes a liquid with
    *  a viscosity of its own; else -1. molten: the one with the molten fraction. */
   int solid = -1, molten = -1;
@@ -296,9 +301,76 @@ class ComposedMaterial : public Material {
       added += stress;
     });
     if (damage) table->mean_stress(b, b.viscous_mean);
-    run(eos, b);
+    run_eos(b);
     if (damage) add_energy(eos, b, b.volume_energy);
     run(damage, b);
+  }
+
+  /** The thermal part, after all others. */
+  void find_temperature(Batch &b) const
+  {
+    run(thermal, b);
+    for (int k = 0; k < nheated; k++)
+      std::copy_n(b.history[thermal->history + k], b.n, b.history[heated + k]);
+  }
+
+  /* ------------------------------------------------------------------ heat that is conducted */
+
+  /** A material with an internal energy, to which fix mpm/heat brings heat. */
+  void expand_by_conducted_heat()
+  {
+    const auto find = [this](Part part) {
+      return std::find_if(laws.begin(), laws.end(), [=](const auto &law) {
+        return law.part == part;
+      });
+    };
+    const auto heating = find(THERMAL), pressing = find(EOS);
+    if (heating == laws.end() || pressing == laws.end()) return;
+    if (!heating->info->conduction || !pressing->info->expands) return;
+    heated = variables.size();
+    nheated = heating->info->count_history(heating->parameters);
+    for (int k = 0; k < nheated; k++) {
+      const HistoryVariable &of = variables[heating->history + k];
+      variables.push_back({"energy_" + of.name, of.initial});
+    }
+  }
+
+  /** The equation of state. Its internal energy gets what conduction has brought since the last step, too, as
+   *  heat of this one, which the temperature knows of already. */
+  void run_eos(Batch &b) const
+  {
+    if (heated < 0) {
+      run(eos, b);
+      return;
+    }
+    double own[BATCH], brought[BATCH];
+    find_conducted_heat(b, brought);
+    std::copy_n(b.heat, b.n, own);
+    for (int i = 0; i < b.n; i++) b.heat[i] += brought[i];
+    run(eos, b);
+    std::copy_n(own, b.n, b.heat);
+  }
+
+  /** Heat per reference volume. */
+  void find_conducted_heat(const Batch &b, double *heat) const
+  {
+    const History now = b.history + thermal->history, before = b.history + heated;
+    const bool melts = nheated > 1, differs = !thermal->random.empty() || random_density;
+    LocalParameters local(*this, *thermal);
+    double density = thermal->parameters.heat_density;
+    Conduction c = mean_conduction;
+    for (int i = 0; i < b.n; i++) {
+      if (differs) {
+        const LawParameters &p = local.at(&b.history[0][i], BATCH);
+        density = p.heat_density;
+        c = thermal->info->conduction(p);
+      }
+      const double f = melts ? now[1][i] : 0.0, old = melts ? before[1][i] : 0.0;
+      heat[i] = density *
+          (is_curved()
+               ? heat_curve().enthalpy(now[0][i], f) - heat_curve().enthalpy(before[0][i], old)
+               : c.capacity * (now[0][i] - before[0][i] + c.melting.range * (f - old)));
+    }
   }
 
   /** Energy per reference volume that the laws have stored, those of a batch without thermal stretch. */
@@ -412,7 +484,7 @@ class ComposedMaterial : public Material {
       }
     }
     for (int i = 0; i < b.n; i++) b.work[THERMOELASTIC] += b.vol0[i] * work[i];
-    run(thermal, b);
+    find_temperature(b);
   }
 
   /** Adds the stored energy with the temperatures before minus that with those of now, in the elastic state
@@ -444,15 +516,16 @@ class ComposedMaterial : public Material {
       const ElasticMotion motion(b, s, shape_matters);
       plain_speed(b, c);
     }
-    const int gruneisen = parameter_of_option(*thermal->info, "gruneisen");
+    const LawInfo &info = *thermal->info;
     LocalParameters local(*this, *thermal);
     for (int i = 0; i < b.n; i++) {
       const LawParameters &p = local.at(&b.history[0][i], BATCH);
+      const double T = b.history[seen][i];
+      double gamma = info.gruneisen < 0 ? 0.0 : p.value[info.gruneisen];
+      if (is_curved() && info.consistent && info.consistent(p))
+        gamma /= info.warming(p) * p.heat_density * heat_curve().capacity(T);
       // d ln J_e = (1 + 3 ALPHA GAMMA T J) d ln J
-      const double stiffer = 1.0 +
-          std::max(3.0 * thermal->info->expansion(p) * p.value[gruneisen] * b.history[seen][i] *
-                       b.J[i],
-                   0.0);
+      const double stiffer = 1.0 + std::max(3.0 * info.expansion(p) * gamma * T * b.J[i], 0.0);
       c[i] *= std::sqrt(stiffer) * std::sqrt(s.volume(i));
     }
   }
@@ -462,18 +535,39 @@ class ComposedMaterial : public Material {
   void find_consistent_coupling()
   {
     const LawInfo &info = *thermal->info;
-    const int gamma = info.consistent(thermal->parameters);
-    if (gamma < 0) return;
-    LawParameters &p = laws[thermal - laws.data()].parameters;
-    p.value[gamma] = 3.0 * bulk_modulus() * info.expansion(p) * info.warming(p);
+    if (!info.consistent || !info.consistent(thermal->parameters)) return;
+    std::vector<double> initial;
+    for (const auto &v : variables) initial.push_back(v.initial);
+    const double gamma = consistent_gruneisen(initial);
+    const auto refuse_if_it_changes = [&](const RandomParameter &r) {
+      std::vector<double> other = initial;
+      other[r.row] = 0.5;
+      if (consistent_gruneisen(other) != gamma)
+        throw MaterialError(r.word,
+                            "random " + r.name +
+                                ": 'gruneisen consistent' is one Gruneisen parameter for all "
+                                "points, which this changes: give 'gruneisen GAMMA' instead");
+    };
+    if (random_density) refuse_if_it_changes(*random_density);
+    for (const auto &law : laws)
+      for (const auto &r : law.random) refuse_if_it_changes(r);
+    laws[thermal - laws.data()].parameters.value[info.gruneisen] = gamma;
   }
 
-  /** Bulk modulus at the first temperature without stress, from two small compressions. */
-  double bulk_modulus() const
+  /** The same of a point with the initial values of its history variables, at its first temperature. */
+  double consistent_gruneisen(std::vector<double> initial) const
+  {
+    initial[seen] = first_temperature(initial.data(), 1);
+    LocalParameters local(*this, *thermal);
+    const LawParameters &p = local.at(initial.data(), 1);
+    return 3.0 * bulk_modulus(initial) * thermal->info->expansion(p) * thermal->info->warming(p);
+  }
+
+  /** Bulk modulus without stress, from two small compressions. */
+  double bulk_modulus(std::vector<double> initial) const
   {
     constexpr double STRAIN = 1e-5;
-    std::vector<double> initial, storage(variables.size() * BATCH);
-    for (const auto &v : variables) initial.push_back(v.initial);
+    std::vector<double> storage(variables.size() * BATCH);
     const double x[3] = {0.0, 0.0, 0.0};
     for (const auto &law : laws)
       if (law.info->initialize)
@@ -605,13 +699,6 @@ class ComposedMaterial : public Material {
   }
 
   /* ------------------------------------------------------------------ parts */
-
-  static int parameter_of_option(const LawInfo &info, const char *option)
-  {
-    int k = 0;
-    while (k < info.nparameters && strcmp(info.parameters[k].option, option) != 0) k++;
-    return k;
-  }
 
   /** Stress of a material without strength. */
   static void clear_stress(Batch &b)
@@ -801,26 +888,28 @@ class ComposedMaterial : public Material {
     return 0.0;
   }
   /** Does heat give the temperature by the enthalpy? */
-  bool is_curved() const { return thermal && law::HeatCurve::is_curved(thermal->parameters); }
-  void make_heat_curve(UsedLaw &of) const
+  bool is_curved() const { return thermal && thermal->parameters.curved; }
+  void make_heat_curve(UsedLaw &of)
   {
-    if (!capacity_factor && !(thermal_value("DT") > 0.0)) return;
+    melting = {thermal_value("TMELT"), thermal_value("LATENT"), thermal_value("DT")};
+    if (of.info->term || (!capacity_factor && !(melting.range > 0.0))) return;
     for (const auto &r : of.random)
       for (const char *name : {"CP", "TMELT", "LATENT", "DT"})
         if (!strcmp(r.declaration(*of.info).name, name))
           throw MaterialError(r.word,
                               std::string("random ") + name +
                                   ": not with melting over a range or a specific heat that varies");
-    const auto T = capacity_factor ? capacity_factor->knots() : std::vector<double>();
-    std::vector<double> factors;
-    for (const double t : T) factors.push_back(capacity_factor->at(t));
-    law::HeatCurve::make(of.parameters, T, factors, thermal_value("CP"), thermal_value("TMELT"),
-                         thermal_value("LATENT"), thermal_value("DT"));
+    const double cp = thermal_value("CP");
+    law::HeatCurve::make(
+        of.parameters, capacity_factor ? capacity_factor->knots() : std::vector<double>(),
+        [&](double T) {
+          return capacity_factor ? cp * capacity_factor->at(T) : cp;
+        },
+        melting.point, melting.latent, melting.range);
   }
   law::HeatCurve heat_curve() const
   {
-    return {thermal->parameters, thermal_value("TMELT"), thermal_value("LATENT"),
-            thermal_value("DT")};
+    return {thermal->parameters, melting.point, melting.latent, melting.range};
   }
 
   /** What a thermal part with parameters t tells another law. With a damage all plastic work goes to
@@ -846,6 +935,7 @@ class ComposedMaterial : public Material {
     }
     for (auto &law : laws)
       if (&law == thermal) make_heat_curve(law);
+    if (conducts()) mean_conduction = thermal->info->conduction(thermal->parameters);
     random_heat = thermal && random_heats();
     for (auto &law : laws) {
       LawParameters &p = law.parameters;
@@ -929,9 +1019,10 @@ class ComposedMaterial : public Material {
 
   /** A parameter by its name, NAME or LAW.NAME, where LAW is the name of the part or of the closed law or, of
    *  viscosities, as there may be several, that of the law. Parameters of terms are NAME1, NAME2, ...
-   *  Null: there is none with this name. choice: adds all names; what, word: for the error message. */
+   *  Null: there is none with this name. choice: adds all names that fit; what, word: for the error message. */
+  template <class Fits>
   UsedLaw *find_parameter(const std::string &wanted, ParameterPlace &place, std::string &choice,
-                          const std::string &what, int word)
+                          const std::string &what, int word, const Fits &fits)
   {
     UsedLaw *owner = nullptr;
     const auto consider = [&](UsedLaw &law, int term, int k) {
@@ -941,7 +1032,8 @@ class ComposedMaterial : public Material {
       const std::string of_part = std::string(part_name[law.part]) + "." + name;
       const std::string of_law = std::string(info.name) + "." + name;
       const bool by_law = law.part == CLOSED || law.part == VISCOSITY;
-      choice += (choice.empty() ? "" : ", ") + (by_law ? of_law : of_part);
+      if (fits(law, (term < 0 ? info.parameters : info.term_parameters)[k]))
+        choice += (choice.empty() ? "" : ", ") + (by_law ? of_law : of_part);
       if (wanted != name && wanted != of_part && !(by_law && wanted == of_law)) return;
       if (owner)
         throw MaterialError(word,
@@ -966,7 +1058,10 @@ class ComposedMaterial : public Material {
     };
     RandomParameter r = {random, {-1, -1}, static_cast<int>(variables.size()), nullptr};
     std::string choice = "density";
-    UsedLaw *const owner = find_parameter(random.name, r, choice, what, random.word);
+    const auto all = [](const UsedLaw &, const Parameter &) {
+      return true;
+    };
+    UsedLaw *const owner = find_parameter(random.name, r, choice, what, random.word, all);
     const bool of_density = random.name == "density";
     if (!owner && !of_density) refuse("no such parameter: choose one of " + choice);
     const double mean = of_density ? rho : r.of(owner->parameters);
@@ -987,8 +1082,15 @@ class ComposedMaterial : public Material {
         number(random.variation) + " " + number(random.length) + " " + std::to_string(random.seed);
   }
 
-  /** A parameter that depends on the temperature: in range and fit for its law at all temperatures. */
-  void add(const UsedVary &vary)
+  /** A parameter that was added and depends on the temperature. */
+  struct Varied {
+    const UsedVary &given;
+    const UsedLaw *owner;
+    ParameterPlace place;
+  };
+
+  /** A parameter that depends on the temperature; a thermal one is in range at all temperatures. */
+  void add(const UsedVary &vary, std::vector<Varied> &varied)
   {
     const std::string what = "vary " + vary.name;
     const auto refuse = [&](const std::string &why) {
@@ -996,24 +1098,32 @@ class ComposedMaterial : public Material {
     };
     WarmParameter w = {{-1, -1}, vary.factor};
     std::string choice;
-    UsedLaw *const owner = find_parameter(vary.name, w, choice, what, vary.word);
+    UsedLaw *const owner = find_parameter(vary.name, w, choice, what, vary.word, can_vary);
     if (!owner) refuse("no such parameter: choose one of " + choice);
     const LawInfo &info = *owner->info;
     const Parameter &declared = w.declaration(info);
-    const bool of_capacity = owner->part == THERMAL && !strcmp(declared.name, "CP");
-    const bool of_conduction = owner->part == THERMAL && declared.name[0] == 'K';
-    if (owner->part == THERMAL && !of_capacity && !of_conduction &&
-        strcmp(declared.option, "expansion") != 0)
+    const bool of_capacity = owner->part == THERMAL && is_capacity(declared);
+    const bool of_conduction = owner->part == THERMAL && is_conductivity(declared);
+    if (owner->part == THERMAL && !can_vary(*owner, declared))
       refuse("of a thermal part, only CP, the conductivities, and the coefficient of expansion can "
              "vary");
+    if (declared.of_new_points)
+      refuse("it is about the state of new points, which no temperature changes later: choose one "
+             "of " +
+             choice);
     const double given = w.of(owner->parameters);
     if (given == 0.0 || !std::isfinite(given) || !strcmp(declared.unit, FLAG))
       refuse("its value is " + number(given) +
              ", which a factor does not change: give it another one");
-    for (const auto &other : of_conduction ? conducting : owner->warm)
+    for (const auto &other : owner->warm)
       if (other == w) refuse("is given twice");
     if (of_capacity) {
       if (capacity_factor) refuse("is given twice");
+      if (info.term) refuse("this law cannot have a specific heat that varies");
+      for (const auto &law : laws)
+        if (law.part == EOS && law.info->finds_temperature)
+          refuse("the temperature follows from the internal energy of '" + title(law) +
+                 "', with a constant CP: leave 'vary' out");
       if (!vary.factor.is_table()) refuse("the specific heat needs a table");
       if (static_cast<int>(vary.factor.knots().size()) + law::HeatCurve::MORE >
           LawParameters::MAX_TERMS)
@@ -1021,7 +1131,10 @@ class ComposedMaterial : public Material {
                std::to_string(LawParameters::MAX_TERMS - law::HeatCurve::MORE) + " entries");
       capacity_factor = std::make_unique<const TemperatureFactor>(vary.factor);
     } else if (of_conduction) {
-      conducting.push_back(w);
+      const WarmConductivity k = {std::max(declared.name[1] - '1', 0), vary.factor};
+      for (const auto &other : conducting)
+        if (other.axis == k.axis) refuse("is given twice");
+      conducting.push_back(k);
     } else {
       owner->warm.push_back(w);
     }
@@ -1031,18 +1144,57 @@ class ComposedMaterial : public Material {
         refuse("it is " + number(value) + " at the temperature " + number(T) +
                ", which is out of range");
     }
-    for (const auto &of_knots : owner->warm)
-      for (const double T : of_knots.factor.knots()) {
-        LawParameters p = owner->parameters;
-        for (const auto &other : owner->warm) other.of(p) *= other.factor.at(T);
-        const double value = w.of(p);
-        const char *const wrong = info.check(p);
-        if (!std::isfinite(value) || !declared.range.contains(value))
-          refuse("it is " + number(value) + " at the temperature " + number(T) +
-                 ", which is out of range");
-        if (wrong) refuse("at the temperature " + number(T) + ", " + info.name + ": " + wrong);
-      }
     text += ", " + what + vary.text;
+    varied.push_back({vary, owner, w});
+  }
+
+  /** It is in its range, and its law can be with all that varies, at all temperatures. */
+  static void check(const Varied &v)
+  {
+    const LawInfo &info = *v.owner->info;
+    const auto refuse = [&](const std::string &why) {
+      throw MaterialError(v.given.word, "vary " + v.given.name + ": " + why);
+    };
+    for (const double T : temperatures_to_check(*v.owner)) {
+      LawParameters p = v.owner->parameters;
+      for (const auto &other : v.owner->warm) other.of(p) *= other.factor.at(T);
+      const double value = v.place.of(p);
+      if (!std::isfinite(value) || !v.place.declaration(info).range.contains(value))
+        refuse("it is " + number(value) + " at the temperature " + number(T) +
+               ", which is out of range");
+      if (const char *const wrong = info.check(p))
+        refuse("at the temperature " + number(T) + ", " + info.name + ": " + wrong);
+    }
+  }
+
+  static bool is_capacity(const Parameter &declared) { return !strcmp(declared.name, "CP"); }
+  static bool is_conductivity(const Parameter &declared)
+  {
+    const char *const name = declared.name;
+    return name[0] == 'K' && (name[1] == '\0' || name[1] == '2' || name[1] == '3');
+  }
+  /** Can a parameter depend on the temperature? */
+  static bool can_vary(const UsedLaw &law, const Parameter &declared)
+  {
+    if (declared.of_new_points || !strcmp(declared.unit, FLAG)) return false;
+    return law.part != THERMAL || is_capacity(declared) || is_conductivity(declared) ||
+        !strcmp(declared.option, "expansion");
+  }
+
+  /** Knots of all factors of a law, and some temperatures between them: what parameters must be
+   *  together need not hold between knots because it holds there. */
+  static std::vector<double> temperatures_to_check(const UsedLaw &law)
+  {
+    constexpr int BETWEEN = 16;
+    std::vector<double> all;
+    for (const auto &w : law.warm)
+      all.insert(all.end(), w.factor.knots().begin(), w.factor.knots().end());
+    std::sort(all.begin(), all.end());
+    const std::size_t n = all.size();
+    for (std::size_t k = 1; k < n; k++)
+      for (int j = 1; j < BETWEEN; j++)
+        all.push_back(all[k - 1] + (all[k] - all[k - 1]) * j / BETWEEN);
+    return all;
   }
 
   void add(const UsedRange &range)

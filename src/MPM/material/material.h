@@ -100,9 +100,8 @@ struct Conduction {
   double capacity;        ///< specific heat [energy/(mass temperature)]
   double conductivity;    ///< [power/(length temperature)], along axis 1 if orthotropic
   Melting melting;
-  bool by_enthalpy;    ///< the temperature follows from heat by Material::warm() only
-  bool
-      orthotropic;    ///< along the axes in the reference configuration, which turn with the material
+  bool by_enthalpy;     ///< the temperature follows from heat by Material::warm() only
+  bool orthotropic;     ///< along axes of the reference configuration, which turn with the material
   double across[2];     ///< conductivity along axes 2 and 3
   double axis[3][3];    ///< unit vectors
 
@@ -160,7 +159,8 @@ class Material {
   /** Of a point with this history (null: the mean of all points); varies: does that matter? */
   virtual Conduction conduction(const double *history) const = 0;
   virtual bool conduction_varies() const = 0;
-  /** Heat per mass comes to a point with this history: temperature and molten fraction. */
+  /** Heat per mass comes to a point with this history, whose temperature follows from the enthalpy
+   *  (Conduction::by_enthalpy): temperature and molten fraction. */
   virtual void warm(double *history, double heat) const = 0;
 
   /** All history variables of a new point at x; throws std::runtime_error when it cannot be. */

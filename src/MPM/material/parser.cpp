@@ -435,11 +435,12 @@ class Parser {
         refuse(DAMAGE,
                ": 'weibull' does not go with 'expansion', which would change the volume to which a "
                "strength belongs: use 'random SIGMA'");
-      const bool explosive = !strcmp(eos.info->name, "jwl");
-      if (explosive && (thermal.info->conduction || has_option(thermal, "gruneisen")))
+      if (eos.info->finds_temperature &&
+          (thermal.info->conduction || has_option(thermal, "gruneisen") ||
+           has_option(thermal, "melt")))
         refuse(THERMAL,
                ": the temperature of detonation products follows from the internal energy of '" +
-                   title(eos) + "': use 'thermal adiabatic' without 'gruneisen'");
+                   title(eos) + "': use 'thermal adiabatic' without 'gruneisen' and 'melt'");
       if (expands && eos.info->expands)
         refuse(THERMAL,
                ": 'expansion' does not go with '" + title(eos) +
@@ -451,6 +452,13 @@ class Parser {
                ": 'fracture' does not go with '" + title(eos) +
                    "', whose internal energy would not get this heat: leave it out, or use eos "
                    "linear or tait");
+    }
+    if (has(THERMAL) && !has(DAMAGE)) {
+      const UsedLaw &thermal = material.laws[THERMAL][0];
+      if (thermal.info->fracture_share && thermal.info->fracture_share(thermal.parameters) > 0.0)
+        refuse(THERMAL,
+               ": 'fracture' is the share of the work of a damage that becomes heat: add a part "
+               "damage, or leave it out");
     }
     if (has(DAMAGE) && material.shares_stress())
       refuse(DAMAGE,

@@ -71,6 +71,14 @@ struct WarmParameter : ParameterPlace {
   TemperatureFactor factor;
 };
 
+/** The same of a thermal conductivity. */
+struct WarmConductivity {
+  int axis;    ///< 0, and in orthotropic materials also 1 and 2
+  TemperatureFactor factor;
+
+  double &of(Conduction &c) const { return axis == 0 ? c.conductivity : c.across[axis - 1]; }
+};
+
 /** A law with its parameters in a material. */
 struct UsedLaw {
   Part part;

@@ -17,7 +17,8 @@ namespace MPM_NS {
 enum SlopeKind {
   GRADIENT_SLOPES,    ///< grad N, with respect to the place of the point
   DISTANCE_SLOPES,    ///< N (x_i - x_p), the first moment about the point
-  ABSOLUTE_SLOPES     ///< |dN/dx| along each axis, for bounds; not with domains
+  ABSOLUTE_SLOPES,    ///< |dN/dx| along each axis, for bounds; not with domains
+  NO_SLOPES           ///< for values alone
 };
 
 /** The nodes that a batch of points reaches, made once for any number of transfers. */
@@ -31,12 +32,13 @@ struct ScalarStencil {
   alignas(64) double last_w[BATCH][4];
   alignas(64) double last_slope[BATCH][4];
 
+  SlopeKind kind;
+
   // of the plain loops, which look at the points again
 
   PointRows points;
   TransferStep step;
   int base[3];
-  SlopeKind kind;
 };
 
 /** Transfers of one number between the points of a batch and the tile of their block, an entry of which is one real.

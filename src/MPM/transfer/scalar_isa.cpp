@@ -45,6 +45,14 @@ MPM_INLINE void transpose(V *a)
   a[3] = shuffle<2, 3, 6, 7>(high, high2);
 }
 
+/** Brings rows of three reals of four points into the cache, which may not exist. */
+MPM_INLINE void prefetch_points(const double *rows, Index p)
+{
+  const std::uintptr_t start = reinterpret_cast<std::uintptr_t>(rows) + 3 * sizeof(double) * p;
+  __builtin_prefetch(reinterpret_cast<const void *>(start));
+  __builtin_prefetch(reinterpret_cast<const void *>(start + 64));
+}
+
 /** Three reals of rows of four points from the given one on, axis by axis. Behind the last point there are others like it,
  *  and there may be no memory behind the last row. */
 MPM_INLINE void load_points(const double *rows, Index p, Index n, Index guarded, V *axis)
@@ -63,8 +71,15 @@ MPM_INLINE void load_points(const double *rows, Index p, Index n, Index guarded,
   transpose(axis);
 }
 
-/** Stores the weights of four points along an axis. */
-template <int N, bool LAST>
+/** Node MIDDLE along an axis, whose weight is never small, has what the others leave: weights sum to one, and slopes
+ *  to zero. Points that share their nodes then have one node less, and the gradient of a constant is exactly zero. Linear functions
+ *  and Bernstein polynomials have no such node. */
+constexpr int MIDDLE = 1;
+template <Shape SHAPE>
+constexpr bool has_middle = SHAPE == QUADRATIC || SHAPE == CUBIC || SHAPE == GIMP;
+
+/** Stores the weights of four points along an axis; LESS: none of node MIDDLE but along the last one. */
+template <int N, bool LAST, bool LESS>
 MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], double (*columns)[BATCH])
 {
   if constexpr (LAST) {
@@ -76,15 +91,17 @@ MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], doubl
     for (int k = 0; k < 4; k++) w[k].store(rows[p + k]);
   } else {
     MPM_UNROLL
-    for (int k = 0; k < N; k++) weight[k].store(columns[k] + p);
+    for (int k = 0; k < N; k++)
+      if (!LESS || k != MIDDLE) weight[k].store(columns[k] + p);
   }
 }
 
-template <int DIM, Shape SHAPE>
-void prepare(const PointRows &rows, const TransferStep &transfer, int n, const int base[3],
-             SlopeKind kind, ScalarStencil &out, int *box)
+template <int DIM, Shape SHAPE, SlopeKind KIND>
+void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, const int base[3],
+                  ScalarStencil &out, int *box)
 {
   using Function = FunctionOf<SHAPE>;
+  constexpr bool less = has_middle<SHAPE> && KIND != ABSOLUTE_SLOPES;
   constexpr int N = Function::nodes, CELL = Function::cell;
   constexpr int strides[3] = {stride<DIM, SHAPE>(0), stride<DIM, SHAPE>(1), 1};
   const PointRows points = rows;
@@ -100,8 +117,11 @@ void prepare(const PointRows &rows, const TransferStep &transfer, int n, const i
     shift[a] = Function::shift + (base[a] - before[a]) / CELL;
   }
   out.n = n;
+  out.kind = KIND;
   for (Index p = 0; p < n; p += 4) {
     V x[4], size[4];
+    prefetch_points(points.x, p + AHEAD);
+    if constexpr (Function::has_size) prefetch_points(points.size, p + AHEAD);
     load_points(points.x, p, n, points.guarded, x);
     if constexpr (Function::has_size) load_points(points.size, p, n, points.guarded, size);
     int place[4] = {0, 0, 0, 0};
@@ -116,18 +136,19 @@ void prepare(const PointRows &rows, const TransferStep &transfer, int n, const i
       if constexpr (Function::order == 1) fraction = max(fraction, V::all(SMALLEST_FRACTION));
       MPM_UNROLL
       for (int k = 0; k < 4; k++) place[k] += (CELL * cell[k] - before[a]) * strides[a];
-      V w[N], d[N];
+      V w[N];
+      [[maybe_unused]] V d[N];
       if constexpr (Function::has_size)
         Function::weights(fraction, size[a], w);
       else
         Function::weights(fraction, w);
-      store_weights<N, is_last>(w, p, out.last_w, out.w[is_last ? 0 : a]);
-      if (kind == DISTANCE_SLOPES) {
+      store_weights<N, is_last, less>(w, p, out.last_w, out.w[is_last ? 0 : a]);
+      if constexpr (KIND == DISTANCE_SLOPES) {
         const V distance = CELL == 1 ? fraction + Function::shift
                                      : static_cast<double>(CELL) * fraction;
         MPM_UNROLL
         for (int k = 0; k < N; k++) d[k] = step.h * (w[k] * (V::all(k) - distance));
-      } else {
+      } else if constexpr (KIND != NO_SLOPES) {
         if constexpr (Function::has_size)
           Function::gradients(fraction, size[a], d);
         else
@@ -135,10 +156,11 @@ void prepare(const PointRows &rows, const TransferStep &transfer, int n, const i
         MPM_UNROLL
         for (int k = 0; k < N; k++) {
           d[k] = step.inv_h * d[k];
-          if (kind == ABSOLUTE_SLOPES) d[k] = max(d[k], -d[k]);
+          if constexpr (KIND == ABSOLUTE_SLOPES) d[k] = max(d[k], -d[k]);
         }
       }
-      store_weights<N, is_last>(d, p, out.last_slope, out.slope[is_last ? 0 : a]);
+      if constexpr (KIND != NO_SLOPES)
+        store_weights<N, is_last, less>(d, p, out.last_slope, out.slope[is_last ? 0 : a]);
     };
     along(std::integral_constant<int, 0>());
     along(std::integral_constant<int, 1>());
@@ -158,11 +180,30 @@ void prepare(const PointRows &rows, const TransferStep &transfer, int n, const i
   }
 }
 
-/** The rows of nodes of points that share the first one. Lanes without a node hold whatever follows in the tile. */
-template <int DIM, Shape SHAPE> struct NodeRows {
+template <int DIM, Shape SHAPE>
+void prepare(const PointRows &rows, const TransferStep &step, int n, const int base[3],
+             SlopeKind kind, ScalarStencil &out, int *box)
+{
+  if (kind == DISTANCE_SLOPES)
+    prepare_kind<DIM, SHAPE, DISTANCE_SLOPES>(rows, step, n, base, out, box);
+  else if (kind == GRADIENT_SLOPES)
+    prepare_kind<DIM, SHAPE, GRADIENT_SLOPES>(rows, step, n, base, out, box);
+  else if (kind == NO_SLOPES)
+    prepare_kind<DIM, SHAPE, NO_SLOPES>(rows, step, n, base, out, box);
+  else
+    prepare_kind<DIM, SHAPE, ABSOLUTE_SLOPES>(rows, step, n, base, out, box);
+}
+
+/** The rows of nodes of points that share the first one. Lanes without a node hold whatever follows in the tile.
+ *  LESS: along the axes but the last one, nodes count as their difference from MIDDLE. */
+template <int DIM, Shape SHAPE, bool LESS> struct NodeRows {
   static constexpr int N = FunctionOf<SHAPE>::nodes, M = DIM == 3 ? N : 1, LAST = DIM - 1;
   static constexpr int sx = stride<DIM, SHAPE>(0), sy = DIM == 3 ? stride<DIM, SHAPE>(1) : 0;
+  static constexpr int X = MIDDLE, Y = DIM == 3 ? MIDDLE : 0;
   V row[N][M];
+
+  /** Has node k no factor of its own? Constant where loops are unrolled. */
+  static constexpr MPM_INLINE bool middle(int k) { return LESS && k == MIDDLE; }
 
   MPM_INLINE void load(const double *tile)
   {
@@ -170,6 +211,19 @@ template <int DIM, Shape SHAPE> struct NodeRows {
     for (int i = 0; i < N; i++) {
       MPM_UNROLL
       for (int j = 0; j < M; j++) row[i][j] = V::load(tile + sx * i + sy * j);
+    }
+    if constexpr (LESS) {
+      MPM_UNROLL
+      for (int i = 0; i < N; i++) {
+        MPM_UNROLL
+        for (int j = 0; j < M; j++)
+          if (j != Y) row[i][j] = row[i][j] - row[i][Y];
+      }
+      MPM_UNROLL
+      for (int i = 0; i < N; i++) {
+        MPM_UNROLL
+        for (int j = 0; i != X && j < M; j++) row[i][j] = row[i][j] - row[X][j];
+      }
     }
   }
   MPM_INLINE void clear()
@@ -180,8 +234,21 @@ template <int DIM, Shape SHAPE> struct NodeRows {
       for (int j = 0; j < M; j++) row[i][j] = V{};
     }
   }
-  MPM_INLINE void add_to(double *tile) const
+  MPM_INLINE void add_to(double *tile)
   {
+    if constexpr (LESS) {
+      MPM_UNROLL
+      for (int i = 0; i < N; i++) {
+        MPM_UNROLL
+        for (int j = 0; i != X && j < M; j++) row[X][j] = row[X][j] - row[i][j];
+      }
+      MPM_UNROLL
+      for (int i = 0; i < N; i++) {
+        MPM_UNROLL
+        for (int j = 0; j < M; j++)
+          if (j != Y) row[i][Y] = row[i][Y] - row[i][j];
+      }
+    }
     // one after the other: lanes without a node are zero, and belong to other rows
     MPM_UNROLL
     for (int i = 0; i < N; i++) {
@@ -203,9 +270,10 @@ template <class F> MPM_INLINE void visit_same(const ScalarStencil &in, const F &
   }
 }
 
-template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *q, double *tile)
+template <int DIM, Shape SHAPE, bool LESS>
+void add_rows(const ScalarStencil &in, const double *q, double *tile)
 {
-  using Rows = NodeRows<DIM, SHAPE>;
+  using Rows = NodeRows<DIM, SHAPE, LESS>;
   constexpr int N = Rows::N, M = Rows::M;
   visit_same(in, [&](int first, int last) {
     Rows nodes;
@@ -217,16 +285,23 @@ template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *
               along_y = mine[1] * w;
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
-        const double wx = in.w[0][i][p], sx = in.slope[0][i][p];
-        const V plane = wx * straight + sx * along_x;
+        V plane = straight, aside = along_y;
+        if (!Rows::middle(i)) {
+          const double wx = in.w[0][i][p], sx = in.slope[0][i][p];
+          plane = wx * straight + sx * along_x;
+          aside = wx * along_y;
+        }
         if constexpr (DIM == 2) {
           nodes.row[i][0] += plane;
         } else {
-          const V aside = wx * along_y;
           MPM_UNROLL
           for (int j = 0; j < M; j++) {
-            nodes.row[i][j] += in.w[1][j][p] * plane;
-            nodes.row[i][j] += in.slope[1][j][p] * aside;
+            if (Rows::middle(j)) {
+              nodes.row[i][j] += plane;
+            } else {
+              nodes.row[i][j] += in.w[1][j][p] * plane;
+              nodes.row[i][j] += in.slope[1][j][p] * aside;
+            }
           }
         }
       }
@@ -235,10 +310,18 @@ template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *
   });
 }
 
+template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *q, double *tile)
+{
+  if (has_middle<SHAPE> && in.kind != ABSOLUTE_SLOPES)
+    add_rows<DIM, SHAPE, has_middle<SHAPE>>(in, q, tile);
+  else
+    add_rows<DIM, SHAPE, false>(in, q, tile);
+}
+
 template <int DIM, Shape SHAPE>
 void add_values(const ScalarStencil &in, const double *q, double *tile)
 {
-  using Rows = NodeRows<DIM, SHAPE>;
+  using Rows = NodeRows<DIM, SHAPE, has_middle<SHAPE>>;
   constexpr int N = Rows::N, M = Rows::M;
   visit_same(in, [&](int first, int last) {
     Rows nodes;
@@ -247,10 +330,10 @@ void add_values(const ScalarStencil &in, const double *q, double *tile)
       const V w = q[p] * V::load(in.last_w[p]);
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
-        const V plane = in.w[0][i][p] * w;
+        const V plane = Rows::middle(i) ? w : in.w[0][i][p] * w;
         MPM_UNROLL
         for (int j = 0; j < M; j++) {
-          if constexpr (DIM == 2)
+          if (DIM == 2 || Rows::middle(j))
             nodes.row[i][j] += plane;
           else
             nodes.row[i][j] += in.w[1][j][p] * plane;
@@ -269,9 +352,10 @@ MPM_INLINE V sums(V a, V b, V c, V d)
   return shuffle<0, 1, 4, 5>(ab, cd) + shuffle<2, 3, 6, 7>(ab, cd);
 }
 
-template <int DIM, Shape SHAPE> void get(const ScalarStencil &in, const double *tile, double *q)
+template <int DIM, Shape SHAPE, bool LESS>
+void get_rows(const ScalarStencil &in, const double *tile, double *q)
 {
-  using Rows = NodeRows<DIM, SHAPE>;
+  using Rows = NodeRows<DIM, SHAPE, LESS>;
   constexpr int N = Rows::N, M = Rows::M;
   visit_same(in, [&](int first, int last) {
     Rows nodes;
@@ -284,15 +368,22 @@ template <int DIM, Shape SHAPE> void get(const ScalarStencil &in, const double *
         if constexpr (DIM == 2) {
           plane = nodes.row[i][0];
         } else {
+          if (LESS) plane = nodes.row[i][Rows::Y];
           MPM_UNROLL
-          for (int j = 0; j < M; j++) {
-            plane += in.w[1][j][p] * nodes.row[i][j];
-            aside += in.slope[1][j][p] * nodes.row[i][j];
-          }
+          for (int j = 0; j < M; j++)
+            if (!Rows::middle(j)) {
+              plane += in.w[1][j][p] * nodes.row[i][j];
+              aside += in.slope[1][j][p] * nodes.row[i][j];
+            }
+        }
+        if (Rows::middle(i)) {
+          value += plane;
+          along_y += aside;
+        } else {
+          value += in.w[0][i][p] * plane;
+          along_x += in.slope[0][i][p] * plane;
           along_y += in.w[0][i][p] * aside;
         }
-        value += in.w[0][i][p] * plane;
-        along_x += in.slope[0][i][p] * plane;
       }
       const V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
       if constexpr (DIM == 2)
@@ -303,10 +394,18 @@ template <int DIM, Shape SHAPE> void get(const ScalarStencil &in, const double *
   });
 }
 
+template <int DIM, Shape SHAPE> void get(const ScalarStencil &in, const double *tile, double *q)
+{
+  if (has_middle<SHAPE> && in.kind != ABSOLUTE_SLOPES)
+    get_rows<DIM, SHAPE, has_middle<SHAPE>>(in, tile, q);
+  else
+    get_rows<DIM, SHAPE, false>(in, tile, q);
+}
+
 template <int DIM, Shape SHAPE>
 void get_values(const ScalarStencil &in, const double *tile, double *q)
 {
-  using Rows = NodeRows<DIM, SHAPE>;
+  using Rows = NodeRows<DIM, SHAPE, has_middle<SHAPE>>;
   constexpr int N = Rows::N, M = Rows::M;
   visit_same(in, [&](int first, int last) {
     Rows nodes;
@@ -318,12 +417,15 @@ void get_values(const ScalarStencil &in, const double *tile, double *q)
         V plane = {};
         MPM_UNROLL
         for (int j = 0; j < M; j++) {
-          if constexpr (DIM == 2)
-            plane = nodes.row[i][j];
+          if (DIM == 2 || Rows::middle(j))
+            plane += nodes.row[i][j];
           else
             plane += in.w[1][j][p] * nodes.row[i][j];
         }
-        value += in.w[0][i][p] * plane;
+        if (Rows::middle(i))
+          value += plane;
+        else
+          value += in.w[0][i][p] * plane;
       }
       const V sum = value * V::load(in.last_w[p]);
       const Vec<2> two = half<0>(sum) + half<1>(sum);
@@ -337,13 +439,17 @@ void get_values(const ScalarStencil &in, const double *tile, double *q)
 /** Adds a tile's reals to those of the nodes and clears them, or loads them. */
 template <int COUNT, bool FLUSHES> MPM_INLINE void move_some(double *mine, double *theirs)
 {
-  for (int k = 0; k < COUNT; k++)
-    if (FLUSHES) {
-      theirs[k] += mine[k];
-      mine[k] = 0.0;
-    } else {
-      mine[k] = theirs[k];
-    }
+  constexpr int SIZE = COUNT >= 4 ? 4 : COUNT >= 2 ? 2 : 1;
+  if constexpr (SIZE == 1) {
+    if (FLUSHES) *theirs += *mine;
+    *mine = FLUSHES ? 0.0 : *theirs;
+  } else if constexpr (FLUSHES) {
+    (Vec<SIZE>::load(theirs) + Vec<SIZE>::load(mine)).store(theirs);
+    Vec<SIZE>{}.store(mine);
+  } else {
+    Vec<SIZE>::load(theirs).store(mine);
+  }
+  if constexpr (COUNT > SIZE) move_some<COUNT - SIZE, FLUSHES>(mine + SIZE, theirs + SIZE);
 }
 
 /** As tile_io() of other transfers. */

@@ -1,0 +1,249 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   A body that is released from a state out of equilibrium turns the energy that it has too much into motion. Where this is greatest it
+   passes through equilibrium of its slowest mode; taking the motion away there takes that energy out, and what is left is that of the other
+   modes. No coefficient has to be chosen, and where the energy does not fall nothing is done.
+
+   Forces on a node are balanced if its velocity does not change: m dv/dt, with the reactions of walls and contacts, which have changed velocities
+   in the same step. They are compared with the forces that the stress of points brings to nodes, sum_p V_p |sigma_p|/h, which
+   cancel in equilibrium.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_relax.h"
+
+#include "mpm_affine.h"
+#include "mpm_field.h"
+#include "mpm_options.h"
+#include "mpm_points.h"
+#include "mpm_state.h"
+#include "transfer/kernels.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "output.h"
+#include "timer.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double UNKNOWN = std::numeric_limits<double>::infinity();
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/relax TOLERANCE keyword value ...
+------------------------------------------------------------------------- */
+
+Options MPMRelaxOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/relax");
+  o.argument(number(tolerance, "largest ratio of forces", POSITIVE));
+  o.add("every", {integer(look_every, "N", POSITIVE, "look at the forces every this many steps")});
+  o.add("stop", {yes_no(stops)}, "end the run when forces are balanced");
+  return o;
+}
+
+FixMPMRelax::FixMPMRelax(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  if (igroup != 0)
+    error->all(FLERR, 1, "Fix mpm/relax brings the points of all fix mpm to rest: use group all");
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
+  ratio = UNKNOWN;
+  nevery = 1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 4;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  restart_global = 1;
+  dynamic_group_allow = 1;
+}
+
+void FixMPMRelax::init()
+{
+  if (modify->get_fix_by_style("^mpm$").empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/relax needs a fix mpm");
+  if (modify->get_fix_by_style("^mpm/relax$").size() > 1)
+    error->all(FLERR, Error::NOLASTLINE, "There is more than one fix mpm/relax: remove one");
+}
+
+void FixMPMRelax::init_physics(MPMPlan &plan)
+{
+  fields = plan.fields;
+  for (auto *field : fields) field->keep_old = true;
+}
+
+void FixMPMRelax::add_stages(MPMPlan &plan, MPMPlan::Place place)
+{
+  if (place == MPMPlan::AFTER_SOLVE)
+    plan.together("relaxation", [this]() {
+      look();
+    });
+  if (place == MPMPlan::AFTER_MOTION)
+    plan.together("relaxation", [this]() {
+      if (falls) rest();
+    });
+}
+
+void FixMPMRelax::setup(int)
+{
+  state = RUNNING;
+  ratio = UNKNOWN;    // loads can be others
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRelax::look()
+{
+  const bool looks = std::fmod(nsteps++, look_every) == 0.0;
+  double mine[3] = {0.0, 0.0, 0.0}, all[3];    // energy, forces, forces of stress
+  for (auto *field : fields) {
+    Grid &grid = field->grid;
+    const double *record = grid.nodes();
+    double energy = 0.0, forces = 0.0;
+    for (const auto &block : grid.blocks)
+      for (int n = 0; n < NODES_PER_BLOCK; n++, record += 8) {
+        if (!(block.owned >> n & 1) || !(record[3] > 0.0)) continue;
+        double square = 0.0;
+        for (int d = 0; d < 3; d++) {
+          const double change = record[d] - record[4 + d];
+          energy += 0.5 * record[3] * record[d] * record[d];
+          square += change * change;
+        }
+        forces += record[3] * sqrt(square);
+      }
+    mine[0] += energy * force->mvv2e;
+    mine[1] += forces / (field->step_dt() * force->ftm2v);
+  }
+  if (looks) mine[2] = force_of_stress();
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  falls = all[0] < kinetic || state == LAST_STEP;
+  kinetic = all[0];
+  unbalanced = all[1];
+  if (!looks) return;
+  carried = all[2];
+  ratio = unbalanced == 0.0 ? 0.0 : unbalanced / carried;
+  if (ratio <= tolerance) falls = true;
+}
+
+/** Of the points of this rank. */
+double FixMPMRelax::force_of_stress() const
+{
+  double sum = 0.0;
+  for (auto *field : fields) {
+    double mine = 0.0;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i)) continue;
+      const double *const s = field->points->tau[i];
+      mine += atom->vfrac[i] *
+          sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2] +
+               2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+    }
+    sum += mine / (field->lattice.h * force->nktv2p);
+  }
+  return sum;
+}
+
+/* ----------------------------------------------------------------------
+   What points lose is not lost by transfers. The work of forces is counted with the velocities of points at the start of each step
+   (MPMEnergyWatch), and so a step late: that of the last step would not be
+------------------------------------------------------------------------- */
+
+void FixMPMRelax::rest()
+{
+  for (auto *field : fields) {
+    const double energy = field->ledger.point_kinetic_energy();
+    field->ledger.take(energy);
+    taken[0] += energy;
+    double power = 0.0;
+    const int nC = field->affine ? field->affine->size() : 0,
+              nQ = field->affine && field->affine->Q ? poly_size(field->lattice.dim) : 0;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i)) continue;
+      for (int d = 0; d < 3; d++) power += atom->f[i][d] * atom->v[i][d];
+      std::fill_n(atom->v[i], 3, 0.0);
+      if (nC) std::fill_n(field->affine->C[i], nC, 0.0);
+      if (nQ) std::fill_n(field->affine->Q[i], nQ, 0.0);
+    }
+    taken[1] -= power * field->step_dt();
+  }
+  kinetic = 0.0;
+  nrests++;
+}
+
+/* ----------------------------------------------------------------------
+   the run ends as with fix halt, a step after it is known that it does, so that there is thermodynamic output of the last one
+------------------------------------------------------------------------- */
+
+void FixMPMRelax::end_of_step()
+{
+  if (!stops) return;
+  if (state == LAST_STEP) {
+    state = ENDED;
+    timer->force_timeout();
+  } else if (state == RUNNING && ratio <= tolerance) {
+    state = LAST_STEP;
+    const bigint last = update->ntimestep + 1;
+    output->next_thermo = std::min(output->next_thermo, last);
+    output->next = std::min(output->next, last);
+    modify->addstep_compute_all(last);
+  }
+}
+
+void FixMPMRelax::post_run()
+{
+  if (state == ENDED) {
+    timer->reset_timeout();
+    if (comm->me == 0)
+      utils::logmesg(lmp, "Fix mpm/relax {}: forces are balanced to {:.3g} after {:.0f} rests\n",
+                     id, ratio, nrests);
+  } else if (comm->me == 0 && update->nsteps > 0 && stops)
+    error->warning(
+        FLERR,
+        "Fix mpm/relax {}: the run has ended with a ratio of forces of {:.3g}, above {:.3g}: run "
+        "more steps",
+        id, ratio, tolerance);
+}
+
+double FixMPMRelax::compute_vector(int k)
+{
+  const double values[4] = {unbalanced, carried, kinetic, nrests};
+  return values[k];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRelax::write_restart(FILE *fp)
+{
+  keep_totals(world, taken, 2);
+  if (comm->me) return;
+  const double list[] = {kinetic, unbalanced, carried, ratio, nrests, nsteps, taken[0], taken[1]};
+  const int size = sizeof(list);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list, size, 1, fp);
+}
+
+void FixMPMRelax::restart(char *buf)
+{
+  const auto *const list = (const double *) buf;
+  kinetic = list[0];
+  unbalanced = list[1];
+  carried = list[2];
+  ratio = list[3];
+  nrests = list[4];
+  nsteps = list[5];
+  if (comm->me == 0) std::copy_n(list + 6, 2, taken);
+}

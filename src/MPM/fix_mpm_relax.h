@@ -1,0 +1,79 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/relax,FixMPMRelax);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_RELAX_H
+#define LMP_FIX_MPM_RELAX_H
+
+#include "declare/option.h"
+#include "fix.h"
+#include "mpm_physics.h"
+
+namespace LAMMPS_NS {
+
+struct MPMRelaxOptions {
+  double tolerance = 0.0;    ///< of the ratio of forces
+  int64_t look_every = 10;
+  bool stops = true;
+
+  MPM_NS::Options declare();
+};
+
+/** Brings all material points to rest in equilibrium: dynamic relaxation with kinetic damping. Velocities are set to zero whenever
+ *  the kinetic energy has passed a maximum, until forces on the nodes are balanced (P.A. Cundall, 1976; M.R. Barnes,
+ *  Computers and Structures 30, 685-695, 1988). */
+class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
+ public:
+  FixMPMRelax(class LAMMPS *, int, char **);
+  int setmask() override { return FixConst::END_OF_STEP | FixConst::POST_RUN; }
+  void init() override;
+  void setup(int) override;
+  void end_of_step() override;
+  void post_run() override;
+  double compute_scalar() override { return ratio; }
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void init_physics(MPMPlan &) override;
+  void add_stages(MPMPlan &, MPMPlan::Place) override;
+  std::vector<Account> accounts() const override
+  {
+    return {{"rest", false}, {"work at rest", false, true}};
+  }
+  void account(double *values) const override
+  {
+    for (int k = 0; k < 2; k++) values[k] = -taken[k];
+  }
+
+ private:
+  enum { RUNNING, LAST_STEP, ENDED } state = RUNNING;
+  double kinetic = 0.0;       // of the nodes at the end of the last step, all ranks [energy]
+  double unbalanced = 0.0;    // sum of forces on nodes, all ranks [force]
+  double carried = 0.0;       // sum of what the stress of points gives to nodes [force]
+  double ratio = 0.0;         // of these; UNKNOWN before the first look
+  double nrests = 0.0;        // how often velocities were set to zero
+  double nsteps = 0.0;        // of the cycle
+  // energy so far, this rank's share, in restart files that of all ranks: kinetic, and work of forces in a step
+  double taken[2] = {0.0, 0.0};
+  bool falls = false;    // the kinetic energy, in this step
+  std::vector<MPMField *> fields;
+
+  void look();
+  void rest();
+  double force_of_stress() const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,237 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Partly saturated soil, with the saturation S(p), Bishop's coefficient chi, and the relative permeability k_r:
+
+     rho dv/dt = div(sigma' - chi p I) + rho g,   rho = (1 - n) rho_s + n w rho_f,
+     n dw/dp dp/dt = - w div v - div q,   q = - k k_r (grad p - rho_f g)/G,   w = S exp(p/K),
+
+   so that the storage is n (dS/dp + S/K) as far as p is small beside K. Grains are rigid.
+
+   The water of a point is what flow has brought to it: its volume W is a state of the point, and what W grows by goes to the mass
+   of the point, too. The pressure follows from w = W/(volume of pores), the mixed form (M.A. Celia, E.T. Bouloutas, R.L.
+   Zarba, Water Resour. Res. 26 (1990) 1483): a step is linear in p, with the capacity at its start, and what this would get wrong
+   where the capacity changes by orders of magnitude, at fronts and the water table, is no error in the mass of water
+   but one of the time at which it comes. The volume of pores is that after the motion of the step, so that a closed
+   body of any motion keeps both W and the relation of p and W. Only where pores are full before and after the step p is what
+   the step makes it, as 1e-16 of W are 1e-7 Pa of water, and as in soil that is always full.
+
+   Lag. What nodes do not see of the pressures of points, p_p - sum_i N_ip p_i, goes at the rate k/(G C h^2) in which flow crosses a
+   cell and, in full pores, in some crossings of waves (mpm_pore.cpp). In dry soil flow takes 1e5 times as long, and at the rate
+   of full pores points would have the pressure of nodes after each step, which is a diffusion of its own: the share of
+   waves falls as the storage grows. With factors e_p of a step that differ from point to point the sum of C_p e_p (p_p - ...) is
+   not zero, and water would be lost. Hence nodes get the rate C_p (e - e_p) (p_p - ...)/dt, with the greatest factor e: with the
+   weights N_ip, of which the sum is one, what all points and nodes have together is kept, and in full pores nothing changes.
+
+   Surface. Through half a cell next to the surface, water flows with the mean of the permeabilities at the
+   pressure outside and inside: rain on dry soil would otherwise not get in.
+------------------------------------------------------------------------- */
+
+#include "mpm_pore_suction.h"
+
+#include "atom.h"
+#include "error.h"
+#include "mpm_field.h"
+#include "mpm_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double NOTHING = 1.0e-6;    // effective saturation of soil that is dry
+
+/* ---------------------------------------------------------------------- */
+
+MPMPoreMoisture MPMPoreMoisture::at(const MPMPoreSoil &soil, double J, double p,
+                                    const MPMPoreWater &water)
+{
+  const auto state = soil.retention.at(p);
+  if (!soil.retention.can_dry() || !(p < 0.0))
+    return {soil.retention.most * (1.0 + p / water.bulk), soil.storage_at(J, water), 1.0,
+            state.bishop};
+  const double dense = exp(p / water.bulk);
+  return {state.saturation * dense,
+          soil.pores_at(J) * dense * (state.slope + state.saturation / water.bulk), state.relative,
+          state.bishop};
+}
+
+/** Newton's method within bounds. */
+double MPMPoreMoisture::pressure(const MPMPoreSoil &soil, double filling, double guess,
+                                 const MPMPoreWater &water)
+{
+  const auto &r = soil.retention;
+  if (filling >= r.most) return (filling / r.most - 1.0) * water.bulk;
+  constexpr int TURNS = 200;
+  constexpr double CLOSE = 4.0e-16, FIRST = 1.0e-3;
+  const auto error = [&](double p, double *slope = nullptr) {
+    const auto state = r.at(p);
+    const double dense = exp(p / water.bulk);
+    if (slope) *slope = dense * (state.slope + state.saturation / water.bulk);
+    return state.saturation * dense - filling;
+  };
+  double low = std::min(guess, -FIRST / r.alpha), high = 0.0;
+  while (error(low) > 0.0) {
+    if (r.at(low).effective < NOTHING) return low;
+    high = low;
+    low *= 2.0;
+  }
+  double p = guess < high && guess > low ? guess : low;
+  for (int turn = 0; turn < TURNS; turn++) {
+    double slope;
+    const double e = error(p, &slope);
+    if (e == 0.0) break;
+    (e > 0.0 ? high : low) = p;
+    double next = p - e / slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const double change = fabs(next - p);
+    p = next;
+    if (change <= CLOSE * fabs(p)) break;
+  }
+  return p;
+}
+
+/** By the rule of Gauss with four points, for parts that are longer the greater the suction is. */
+double MPMPoreMoisture::energy(const MPMPoreSoil &soil, double J, double p,
+                               const MPMPoreWater &water)
+{
+  if (!soil.retention.can_dry() || !(p < 0.0)) return 0.5 * soil.storage_at(J, water) * p * p;
+  static constexpr double AT[] = {0.3399810435848563, 0.8611363115940526},
+                          WEIGHT[] = {0.6521451548625461, 0.3478548451374538};
+  double sum = 0.0, end = 0.0;
+  const double first = 0.25 / soil.retention.alpha;
+  for (double begin = 0.0; begin > p; begin = end) {
+    end = std::max(p, begin == 0.0 ? -first : 1.5 * begin);
+    const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin);
+    for (int k = 0; k < 4; k++) {
+      const double q = middle + (k % 2 ? half : -half) * AT[k / 2];
+      sum += WEIGHT[k / 2] * half * q * at(soil, J, q, water).storage;
+    }
+  }
+  return sum;
+}
+
+/* ---------------------------------------------------------------------- */
+
+MPMPoreSuction::MPMPoreSuction(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
+                               double *const &content) :
+    Pointers(lmp),
+    field(field), water(water), content(content)
+{
+}
+
+void MPMPoreSuction::weigh(int i, const MPMPoreSoil &soil, double p) const
+{
+  if (content[i] >= 0.0 || !soil.retention.can_dry()) return;
+  const double J = field.points->jacobian(i);
+  const double pores = soil.pores_at(J) * J * atom->vfrac[i];
+  const double filling = MPMPoreMoisture::at(soil, J, p, water).filling;
+  content[i] = pores * filling;
+  const double missing = p < 0.0 ? 1.0 - filling : 1.0 - soil.retention.most;
+  atom->rmass[i] -= water.density * pores * missing;
+}
+
+void MPMPoreSuction::begin(int nmax, double usual_rate, double rate_of_waves)
+{
+  of.resize(nmax);
+  usual = usual_rate;
+  waves = rate_of_waves;
+  slowest = std::numeric_limits<double>::max();
+}
+
+void MPMPoreSuction::begin_point(int i, const MPMPoreSoil &soil, double J, double V, double p,
+                                 double &capacity, double &conductance, double &in_forces)
+{
+  weigh(i, soil, p);
+  Point &point = of[i];
+  point.most = capacity;
+  point.conductance = conductance;
+  point.keep = usual;
+  point.filling = 1.0;
+  point.full = soil.pores_at(J) * V;
+  if (soil.retention.can_dry()) {
+    const auto state = MPMPoreMoisture::at(soil, J, p, water);
+    point.filling = p < 0.0 ? state.filling : soil.retention.most;
+    in_forces *= state.bishop;
+    if (p < 0.0) {
+      const double h = field.lattice.h;
+      capacity = V * state.storage;
+      conductance *= state.relative;
+      point.keep = conductance / (capacity * h * h) + waves * point.most / capacity;
+    }
+  }
+  slowest = std::min(slowest, point.keep);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMPoreSuction::find_conductances(MPMNodeScalar &scalar, const MPMPoreSurface &surface,
+                                       const Soils &soil)
+{
+  scalar.add_up(
+      [&](const MPMPointMap::Run &, int first, int n, double *values) {
+        for (int p = 0; p < n; p++) values[p] = of[first + p].most;
+      },
+      wet.capacity);
+  field.nodes.complete(wet.capacity.data(), 1, 1);
+  for (int part = -1; part < MPMPoreSurface::NPART; part++) {
+    const double outside = part < 0 ? 0.0 : surface.suction_outside(part);
+    auto &nodes = wet.conductance[1 + part];
+    if (part >= 0 && outside == 0.0) {
+      nodes.clear();
+      continue;
+    }
+    scalar.add_up(
+        [&](const MPMPointMap::Run &run, int first, int n, double *values) {
+          const double share = soil(run)->retention.at(outside).relative;
+          for (int p = 0; p < n; p++) values[p] = share * of[first + p].conductance;
+        },
+        nodes);
+    field.nodes.complete(nodes.data(), 1, 1);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMPoreSuction::take_motion(int i, double more, double dt)
+{
+  Point &point = of[i];
+  point.full += more;
+  point.keep = exp(-point.keep * dt);
+  return point.filling;
+}
+
+void MPMPoreSuction::take_rates(double dt)
+{
+  const double mine = exp(-slowest * dt);
+  MPI_Allreduce(&mine, &longest, 1, MPI_DOUBLE, MPI_MAX, world);
+}
+
+double MPMPoreSuction::take_water(int i, const MPMPoreSoil &soil, double before, double guess,
+                                  double more)
+{
+  if (!soil.retention.can_dry()) return guess;
+  content[i] += more;
+  if (before >= 0.0 && guess >= 0.0) return guess;
+  if (!(content[i] >= 0.0))
+    error->one(FLERR, Error::NOLASTLINE,
+               "More water flows out of point {} of soil {} than it has: a flux takes water from "
+               "soil that is dry; give its suction by pressure in place of flux",
+               atom->tag[i], soil.material);
+  return MPMPoreMoisture::pressure(soil, content[i] / of[i].full, guess, water);
+}
+
+double MPMPoreSuction::memory_usage() const
+{
+  double bytes = of.capacity() * sizeof(Point) + wet.capacity.capacity() * sizeof(double);
+  for (const auto &nodes : wet.conductance) bytes += nodes.capacity() * sizeof(double);
+  return bytes;
+}

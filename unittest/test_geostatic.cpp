@@ -1,0 +1,149 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// The command mpm_geostatic: level ground at rest under its weight. Ground with pore water is in test_pore.cpp.
+
+#include "mpm_lammps.h"
+
+#include "force.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr double G = 9.81, DENSITY = 1800.0;
+const char *const SOIL = "linear 1e7 0.3";
+
+/** Ground of n cells in a height of 1 m, in 2d or 3d, its lattice moved by an offset in cells. */
+std::string ground(int dim, int n, const std::string &law, double offset,
+                   const std::string &options = "", const std::string &units = "si", int wide = 4)
+{
+  const double h = 1.0 / n;
+  const std::string up = dim == 3 ? "0 0 -1" : "0 -1 0", across = strprintf("0 %.17g ", wide * h);
+  return box(dim, units, dim == 3 ? "p p f" : "p f p", across + (dim == 3 ? across : "") + "0 1.2",
+             1, 0.3 * h) +
+      "region soil block INF INF " + (dim == 3 ? "INF INF 0 1\n" : "0 1 INF INF\n") +
+      strprintf("create_points 1 region soil spacing %.17g\n", 0.5 * h) +
+      strprintf("fix grid all mpm %.17g origin 0 %s%.17g %s\n", h, dim == 3 ? "0 " : "", offset * h,
+                options.c_str()) +
+      strprintf("fix m all mpm/material density %g ", DENSITY) + law +
+      "\nfix floor all mpm/boundary " + (dim == 3 ? "zlo" : "ylo") + " slip\n" +
+      strprintf("fix g all gravity %g vector ", G) + up + "\n";
+}
+
+/** Greatest velocity of points over what the weight alone would give them in the time t. */
+double fall(Scene &run, double t)
+{
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    for (int d = 0; d < 3; d++) most = std::max(most, std::fabs(run.v()[i][d]));
+  return over_ranks(most) / (G * run.lmp->force->ftm2v * t);
+}
+
+}    // namespace
+
+// forces on nodes are zero wherever these are, the stress is the weight above
+SERIAL_TEST(Geostatic, StaysAtRest)
+{
+  const int n = 20;
+  const double dt = 5e-5, cell = DENSITY * G / n;
+  for (const int dim : {2, 3})
+    for (const char *options : {"", "stress gradient", "shape cubic", "scheme musl"})
+      for (const double offset : {0.0, 0.27}) {
+        if (offset > 0.0 && strcmp(options, "shape cubic") == 0) continue;
+        Scene run(ground(dim, n, SOIL, offset, options) + "mpm_geostatic grid 0.4\nrun 0\n");
+        double most = 0.0;
+        for (int i = 0; i < run.n(); i++) {
+          const double z = 1.0 - run.x()[i][dim - 1];
+          double sigma[6];
+          run.points().cauchy(i, sigma);
+          EXPECT_NEAR(sigma[0], 0.4 * sigma[dim - 1], 1e-12 * cell);
+          if (std::fabs(z - 0.5) < 0.35)
+            most = std::max(most, std::fabs(sigma[dim - 1] + DENSITY * G * z) / cell);
+        }
+        const auto name = strprintf("%dd %s %g: ", dim, options, offset);
+        EXPECT_LT(measured(name + "stress inside", most), 0.01);
+        run.commands(strprintf("timestep %g\nrun 1\n", dt));
+        EXPECT_LT(measured(name + "force over weight", fall(run, dt)), 1e-11);
+        if (dim == 3) continue;
+        run.commands("run 400\n");
+        EXPECT_LT(measured(name + "velocity", fall(run, 401 * dt)), 1e-11);
+      }
+}
+
+// sand, which keeps an elastic strain, and units in which stress is not force over area
+SERIAL_TEST(Geostatic, SoilsAndUnits)
+{
+  for (const char *law : {"mohr/coulomb 1e7 0.3 35 0", "drucker/prager 1e7 0.3 35"}) {
+    Scene run(ground(2, 20, law, 0.1) + "mpm_geostatic grid 0.5\ntimestep 4e-5\nrun 1\n");
+    EXPECT_LT(measured(law, fall(run, 4e-5)), 1e-10);
+  }
+  for (const char *units : {"metal", "cgs", "lj"}) {
+    const auto scene =
+        replaced(replaced(ground(2, 20, SOIL, 0.1, "", units), "density 1800", "density 1e-3"),
+                 "1e7 0.3", "1e6 0.3");
+    Scene run(scene + "mpm_geostatic grid 0.5\ntimestep 1e-8\nrun 1\n");
+    EXPECT_LT(measured(units, fall(run, 1e-8)), 1e-10);
+  }
+}
+
+// a wall in the ground is removed: the sand behind it moves, what is far away does not
+SERIAL_TEST(Geostatic, PartIsTakenAway)
+{
+  Scene run(ground(2, 20, "mohr/coulomb 1e7 0.3 35 0", 0.0, "", "si", 40) +
+            "mpm_geostatic grid 0.43\nregion pit block 0.2 0.6 0.5 1.1 INF INF\n"
+            "delete_atoms region pit\ntimestep 4e-5\nrun 125\n");
+  double bank = 0.0, far = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double x = run.x()[i][0], v = std::hypot(run.v()[i][0], run.v()[i][1]);
+    if (std::fabs(x - 0.4) < 0.3) bank = std::max(bank, v);
+    if (std::fabs(x - 1.4) < 0.05) far = std::max(far, v);    // 0.8 m from the pit, or more
+  }
+  EXPECT_GT(measured("speed of the bank over g t", bank / (G * 0.005)), 0.2);
+  // waves, at 87 m/s, are not there yet
+  EXPECT_LT(measured("far away", far / (G * 0.005)), 1e-3);
+}
+
+TEST(Geostatic, RanksAndRestart)
+{
+  const std::string scene = ground(3, 8, "mohr/coulomb 1e7 0.3 35 0", 0.3),
+                    start = "mpm_geostatic grid 0.5\nvelocity all set 0 0 0.01\ntimestep 8e-5\n";
+  OnRanks run(scene, start + "run 100\n");
+  EXPECT_LT(run.difference(), 1e-11);
+  const std::string fixes = "neighbor 0.0375 bin\nfix grid" +
+      scene.substr(scene.find("fix grid") + 8) + "timestep 8e-5\n";
+  Continued again(scene + start, 30, fixes, 30);
+  EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+}
+
+SERIAL_TEST(Geostatic, BadInput)
+{
+  const auto plain = ground(2, 10, SOIL, 0.0);
+  expect_refused(
+      plain,
+      {{"mpm_geostatic", "missing argument"},
+       {"mpm_geostatic grid", "missing argument"},
+       {"mpm_geostatic grid -0.5", "K0"},
+       {"mpm_geostatic grid 0.5 0.5", "0.5"},
+       {"mpm_geostatic gird 0.5", "no fix mpm with the ID gird"},
+       {"unfix g\nmpm_geostatic grid 0.5", "needs a weight along an axis"},
+       {"fix h all gravity 1 vector 1 0 0\nmpm_geostatic grid 0.5", "needs a weight along an axis"},
+       {"group some id 1\nfix h some gravity 1 vector 0 1 0\nmpm_geostatic grid 0.5",
+        "must be of group all"},
+       {"delete_atoms group all\nmpm_geostatic grid 0.5", "needs points"},
+       {"displace_atoms all move 0 0.15 0\nmpm_geostatic grid 0.5", "needs level ground"},
+       {"fix w all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-3\nmpm_geostatic grid 1",
+        "use keyword geostatic of fix mpm/pore"}});
+  const auto refused = [&](const char *what, const std::string &with, const char *why) {
+    expect_error(replaced(plain, what, with) + "mpm_geostatic grid 0.5\n", why);
+  };
+  refused("linear 1e7", "hencky 1e7", "does not keep the stress");
+  refused("linear 1e7 0.3", "mohr/coulomb 1e7 0.3 15 0", "K0 within its yield surface");
+  refused("origin 0 0", "shape linear origin 0 0", "use shape quadratic or cubic");
+  refused("origin 0 0", "shape cubic origin 0 0.04", "in a plane of nodes");
+  refused("origin 0 0", "frame total origin 0 0", "use frame updated");
+  refused("origin 0 0", "locking pressure origin 0 0", "use locking none");
+}

@@ -1,0 +1,467 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 400
+
+// Fix mpm/pore with formulation u-v-p: pore water with inertia of its own in the points of the soil.
+
+#include "pore_testing.h"
+#include "wave_testing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr double N = 0.4, RHO = 0.6 * 2650.0 + N * 1000.0, G = 9810.0;
+const std::string MOVES = "formulation u-v-p ";
+
+struct Mode {
+  double K, k;    ///< bulk modulus of water, hydraulic conductivity
+  std::string transfer;
+};
+
+/** Velocity of the soil v, flow w, stress s, and pressure p of a mode between closed ends: RK4 up to each of the
+ *  times; of v = 1 and w = 0. */
+std::vector<double> exact(const Mode &mode, const std::vector<double> &times, bool moves = true)
+{
+  using State = std::array<double, 4>;
+  const double wave = PI, rhof = 1000.0, R = G / mode.k;
+  const auto rate = [&](const State &y) {
+    // rho v' + rhof w' = F, rhof v' + rhof/n w' = D
+    const double F = wave * (y[3] - y[2]), D = wave * y[3] - R * y[1];
+    if (!moves) {    // u-p: w follows the pressure
+      const double w = wave * y[3] / R;
+      return State{F / RHO, 0.0, MODULUS * wave * y[0], -mode.K / N * wave * (y[0] + w)};
+    }
+    const double a = (F - N * D) / (RHO - N * rhof), w = N * (D / rhof - a);
+    return State{a, w, MODULUS * wave * y[0], -mode.K / N * wave * (y[0] + y[1])};
+  };
+  State y = {1.0, 0.0, 0.0, 0.0};
+  std::vector<double> result;
+  double now = 0.0;
+  for (const double at : times) {
+    const int steps = 1 + (int) ((at - now) * (5e4 + R * N / rhof));
+    const double dt = (at - now) / steps;
+    for (int k = 0; k < steps; k++) {
+      const auto add = [&](const State &r, double by) {
+        State sum = y;
+        for (int j = 0; j < 4; j++) sum[j] += by * r[j];
+        return sum;
+      };
+      const auto a = rate(y), b = rate(add(a, 0.5 * dt)), c = rate(add(b, 0.5 * dt)),
+                 d = rate(add(c, dt));
+      for (int j = 0; j < 4; j++) y[j] += dt / 6.0 * (a[j] + 2.0 * b[j] + 2.0 * c[j] + d[j]);
+    }
+    now = at;
+    result.push_back(y[0]);
+  }
+  return result;
+}
+
+void vibrate(const Mode &mode, const std::string &formulation, double periods,
+             std::vector<double> &t, std::vector<double> &y)
+{
+  const int n = 40;
+  Scene run(
+      replaced(
+          column(n, strprintf("%g 1000 9810 soil m 0.4 constant %g ", mode.K, mode.k) + formulation,
+                 "density 1990 linear 1e7 0.3", 1.0, 0.0, "ylo yhi"),
+          "origin", mode.transfer + " origin") +
+      "fix dt all mpm/dt 0.2\n");
+  run.set_velocity([](const double *x, double *v) {
+    v[1] = 1e-4 * std::sin(PI * x[1]);
+  });
+  run.each_step([&](double **) {
+    double sum = 0.0, norm = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double w = std::sin(PI * run.x()[i][1]);
+      sum += 1e4 * w * run.v()[i][1];
+      norm += w * w;
+    }
+    t.push_back(run.time());
+    y.push_back(sum / norm);
+  });
+  const double end = periods * 2.0 * PI / (1690.0 * std::sqrt(mode.K / 2.2e8));
+  run.commands(strprintf("variable t equal time\nfix end all halt 1 v_t > %.17g error continue\n"
+                         "run 100000\n",
+                         end));
+}
+
+/** Frequency and decay of the fast mode in a signal that has a slow one, of a known root, too: the best fit of both. */
+std::array<double, 2> fast_mode(const std::vector<double> &t, const std::vector<double> &y,
+                                std::array<double, 2> fast, const std::array<double, 2> &slow)
+{
+  const auto misfit = [&](double omega, double decay) {
+    double A[4][5] = {};
+    const auto terms = [&](double at, double *f) {
+      const double a = std::exp(-decay * at), b = std::exp(-slow[1] * at);
+      f[0] = a * std::cos(omega * at);
+      f[1] = a * std::sin(omega * at);
+      f[2] = b * std::cos(slow[0] * at);
+      f[3] = b * std::sin(slow[0] * at);
+    };
+    double f[4], c[4], sum = 0.0;
+    for (std::size_t k = 0; k < t.size(); k++) {
+      terms(t[k], f);
+      for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) A[i][j] += f[i] * f[j];
+        A[i][4] += f[i] * y[k];
+      }
+    }
+    for (int i = 0; i < 4; i++)
+      for (int j = i + 1; j < 4; j++) {
+        const double by = A[j][i] / A[i][i];
+        for (int k = i; k < 5; k++) A[j][k] -= by * A[i][k];
+      }
+    for (int i = 3; i >= 0; i--) {
+      c[i] = A[i][4];
+      for (int j = i + 1; j < 4; j++) c[i] -= A[i][j] * c[j];
+      c[i] /= A[i][i];
+    }
+    for (std::size_t k = 0; k < t.size(); k++) {
+      terms(t[k], f);
+      const double d = y[k] - c[0] * f[0] - c[1] * f[1] - c[2] * f[2] - c[3] * f[3];
+      sum += d * d;
+    }
+    return sum;
+  };
+  double best = misfit(fast[0], fast[1]);
+  for (double step = 0.02 * fast[0]; step > 1e-6 * fast[0]; step *= 0.5)
+    for (bool better = true; better;) {
+      better = false;
+      for (const auto &d :
+           {std::array<double, 2>{step, 0.0}, {-step, 0.0}, {0.0, step}, {0.0, -step}}) {
+        const double now = misfit(fast[0] + d[0], fast[1] + d[1]);
+        if (now >= best) continue;
+        best = now;
+        fast = {fast[0] + d[0], fast[1] + d[1]};
+        better = true;
+      }
+    }
+  return fast;
+}
+
+}    // namespace
+
+// The roots of u-v-p for the fast wave of a sealed column, as tabulated; the slow motion has its own ones
+struct Roots {
+  Mode mode;
+  std::array<double, 2> fast, slow;    // frequency, decay
+};
+PARAMETER_TEST(
+    Modes, HaveTheRootsOfBothVelocities, Roots,
+    Values(
+        Roots{{2.2e8, 1e-2, "transfer aflip 1.0"}, {1842.0038, 44.120719}, {113.42695, 201.43777}},
+        Roots{{2.2e8, 1e-3, "transfer aflip 1.0"}, {1690.4476, 58.346773}, {0.0, 13.263593}},
+        Roots{{2.2e8, 1e-5, "transfer aflip 1.0"}, {1671.6909, 0.63573861}, {0.0, 0.13219773}},
+        Roots{{2.2e9, 1e-2, "transfer aflip 1.0"}, {5830.3905, 48.118564}, {119.94661, 197.43993}},
+        Roots{{2.2e9, 1e-3, "transfer aflip 1.0"}, {5589.5412, 313.72956}, {0.0, 13.556821}},
+        Roots{{2.2e9, 1e-5, "transfer aflip 1.0"}, {5229.2709, 6.7964008}, {0.0, 0.13510267}},
+        Roots{{2.2e8, 1e-3, ""}, {1690.4476, 58.346773}, {0.0, 13.263593}},
+        Roots{{2.2e9, 1e-2, ""}, {5830.3905, 48.118564}, {119.94661, 197.43993}},
+        Roots{{2.2e9, 1e-3, ""}, {5589.5412, 313.72956}, {0.0, 13.556821}}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto &[mode, fast, slow] = GetParam();
+  std::vector<double> t, y;
+  vibrate(mode, MOVES, 3.2, t, y);
+  const auto mine = frequency_and_decay(t, y), theory = frequency_and_decay(t, exact(mode, t));
+  EXPECT_NEAR(measured(strprintf("Kf %g, k %g, frequency", mode.K, mode.k), mine[0] / theory[0]),
+              1.0, 0.005);
+  EXPECT_NEAR(measured("decay", mine[1] / theory[1]), 1.0, 0.05);
+  // where the slow motion is a real root it is hardly there
+  if (slow[0] == 0.0) return;
+  const auto root = fast_mode(t, y, fast, slow);
+  EXPECT_NEAR(measured("fast root, frequency", root[0] / fast[0]), 1.0, 0.005);
+  EXPECT_NEAR(measured("decay", root[1] / fast[1]), 1.0, 0.05);
+}
+
+// u-p damps the same wave by its own root, -131 instead of -58
+SERIAL_TEST(Formulations, DifferInDamping)
+{
+  const Mode mode = {2.2e8, 1e-3, "transfer aflip 1.0"};
+  double decay[2];
+  for (const bool moves : {false, true}) {
+    std::vector<double> t, y;
+    vibrate(mode, moves ? MOVES : "", 3.2, t, y);
+    decay[moves] = frequency_and_decay(t, y)[1];
+    EXPECT_NEAR(decay[moves] / frequency_and_decay(t, exact(mode, t, moves))[1], 1.0, 0.05);
+  }
+  EXPECT_GT(measured("decay of u-p over that of u-v-p", decay[0] / decay[1]), 2.0);
+}
+
+// Terzaghi's column at T = 0.2, as without inertia
+SERIAL_TEST(Consolidation, Terzaghi)
+{
+  for (const double Kf : {2.2e8, 2.2e9}) {
+    const auto result = consolidate(20, MOVES + "yhi pressure 0", 1.0, 0.0, Kf);
+    EXPECT_LT(measured(strprintf("Kf %g, rms", Kf), result.rms), 0.01);
+    EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
+  }
+  const auto result = consolidate(20, MOVES + "free pressure 0", 1.2, 0.3, 2.2e9);
+  EXPECT_LT(measured("free, rms", result.rms), 0.01);
+  EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
+}
+
+// Where water has no time to flow through a cell, the pressure below the drained top is even
+SERIAL_TEST(Undrained, PressureIsEven)
+{
+  for (const double Kf : {2.2e8, 2.2e9})
+    for (const double k : {1e-3, 1e-4, 1e-6, 1e-8}) {
+      const int n = 20;
+      Scene run(
+          column(n,
+                 strprintf("%g 1000 9810 soil m 0.4 constant %g free pressure 0 ", Kf, k) + MOVES,
+                 SOIL) +
+          load(n, LOAD, 0.03));
+      Water water(run);
+      run_to(run, 0.06);
+      const double c = k / 9810.0 / (1.0 / MODULUS + 0.4 / Kf),
+                   p0 = LOAD / (1 + MODULUS * 0.4 / Kf);
+      const double *const p = water.pressures();
+      double sum = 0.0, square = 0.0, count = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double z = 1.0 - run.x()[i][1];
+        if (z < 3.0 / n) continue;
+        const double d = p[i] - p0 * terzaghi(z, 0.045 * c);
+        sum += d;
+        square += d * d;
+        count++;
+      }
+      const double mean = sum / count;
+      EXPECT_LT(measured(strprintf("Kf %g, k %g, scatter", Kf, k),
+                         std::sqrt(square / count - mean * mean) / LOAD),
+                0.01);
+    }
+}
+
+// what a sealed column under a load has in its water: p/q = (K/n)/(M + K/n)
+SERIAL_TEST(Undrained, StepLoad)
+{
+  for (const double Kf : {2.2e8, 2.2e9}) {
+    const int n = 20;
+    Scene run(column(n, strprintf("%g 1000 9810 soil m 0.4 constant 1e-8 ", Kf) + MOVES, SOIL) +
+              load(n, LOAD, 0.03) + "fix dt all mpm/dt 0.5\n");
+    Water water(run);
+    run.commands("run 600\n");
+    EXPECT_GT(run.time(), 0.001);
+    // waves that the load excites go on without drag
+    double sum = 0.0, all = 0.0;
+    while (run.time() < 0.1) {
+      run.commands("run 20\n");
+      if (run.time() < 0.03) continue;
+      const double window = std::pow(std::sin(PI * (run.time() - 0.03) / 0.07), 2);
+      sum += window * water.mean(0.0, 1.0) / LOAD;
+      all += window;
+    }
+    // the load is a quarter of a cell below the surface
+    EXPECT_NEAR(measured("p/q", sum / all / (1.0 - 0.25 / n)) * (1.0 + MODULUS * N / Kf), 1.0,
+                1e-3);
+  }
+}
+
+// what comes to points is what comes through the surface, as volume of water and as mass
+TEST(Water, IsKept)
+{
+  for (const char *drained : {"", "free pressure 0", "yhi pressure 100 free flux 1e-3"}) {
+    const bool face = drained[0] == 'y';
+    Scene run(column(10, std::string("2.2e9 1000 9810 soil m 0.4 kozeny 1e-2 ") + MOVES + drained,
+                     SOIL, face ? 1.0 : 1.2, 0.2) +
+              load(10, LOAD, 0.01));
+    Water water(run);
+    const double before = water.mass();
+    run.commands("timestep 1e-5\nrun 2000\n");
+    const double came = run.fix("water")->compute_scalar();
+    if (drained[0]) EXPECT_GT(std::fabs(came), 1e-7);
+    EXPECT_NEAR((water.mass() - before - 1000.0 * came) / before, 0.0, 1e-13);
+  }
+}
+
+// a wave in highly permeable soil gains no energy, and the ledger closes
+SERIAL_TEST(Energy, Wave)
+{
+  for (const double k : {1e-3, 1e-1}) {
+    Scene run(replaced(column(20, strprintf("2.2e8 1000 9810 soil m 0.4 constant %g ", k) + MOVES,
+                              "density 1990 linear 1e7 0.3", 1.0, 0.0, "ylo yhi"),
+                       "origin", "transfer aflip 1.0 gain error 0.01 origin"));
+    run.set_velocity([](const double *x, double *v) {
+      v[1] = 1e-2 * std::sin(PI * x[1]);
+    });
+    run.commands("compute e all mpm/energy\nfix dt all mpm/dt 0.1\nrun 0\n");
+    const double before = run.compute_scalar();
+    EXPECT_NEAR(before / (0.5 * 1990 * 1e-4 * 0.5 * 0.2), 1.0, 1e-2);
+    double most = 0.0, last = before;
+    for (int part = 0; part < 20; part++) {
+      run.commands("run 100\n");
+      const double now = run.compute_scalar();
+      most = std::max(most, (now - last) / before);
+      last = now;
+    }
+    EXPECT_LT(measured(strprintf("k %g, greatest gain in a while", k), most), 0.003);
+    EXPECT_LT(measured(strprintf("k %g, energy", k), last / before), 0.99);
+    EXPECT_NEAR(measured("residual", run.compute_vector()[10] / before), 0.0, 1e-12);
+  }
+}
+
+// flow through a column under its weight: flux, effective stress, and what the floor bears
+SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
+{
+  for (const double i : {0.9, -0.5}) {
+    const auto water = strprintf("2.2e8 1000 9810 soil m 0.4 constant 1e-2 ylo pressure v_bottom "
+                                 "free pressure 0 initial v_p ") +
+        MOVES;
+    Scene run(replaced(
+        replaced(
+            column(10, water, "density 1990 linear 1e7 0.3"), "fix water",
+            "fix g all gravity 9.81 vector 0 -1 0\nvariable p atom 9810*(1-y)\n" +
+                strprintf("variable bottom equal 9810*(1+%g*((time<0.1)*time/0.1+(time>=0.1)))\n",
+                          i) +
+                "fix water"),
+        "origin", "gain error 0.02 origin"));
+    run_to(run, 1.0);
+    const double *const flows = run.fix_vector("water", 7);
+    EXPECT_NEAR(measured(strprintf("gradient %g, flux", i), flows[2] / (0.4 * 1e-2 * i)), 1.0,
+                0.01);
+    EXPECT_NEAR(flows[6] / flows[2], -1.0, 1e-3);
+    double sum = 0.0, n = 0.0;
+    for (int k = 0; k < run.n(); k++) {
+      const double y = run.x()[k][1];
+      if (y < 0.2 || y > 0.8) continue;
+      double sigma[6];
+      run.points().cauchy(k, sigma);
+      sum -= sigma[1] / ((990.0 - 1000.0 * i) * 9.81 * (1.0 - y));
+      n++;
+    }
+    EXPECT_NEAR(measured("effective stress", sum / n), 1.0, 0.02);
+    // total weight, less the pressure at the floor that is outside
+    EXPECT_NEAR(measured("floor", -run.fix_vector("floor", 3)[1] / (0.4 * 1990.0 * 9.81)), 1.0,
+                0.02);
+  }
+}
+
+// Soil and water together keep their momentum: two blocks collide, and water flows in them. What water that goes from point to
+// point makes of it, which takes the velocity of where it comes to, is not part of the equations, and is counted here
+SERIAL_TEST(Momentum, IsKept)
+{
+  Scene run(blocks("initial v_p " + MOVES) + "compute w all mpm/atom flow_x flow_y\n");
+  std::map<tagint, double> mass;
+  double start[2], now[2], moved[2], carried[2] = {}, most = 0.0;
+  run.each_step([&](double **) {
+    auto *compute = run.lmp->modify->get_compute_by_id("w");
+    compute->compute_peratom();
+    for (int d = 0; d < 2; d++) {
+      now[d] = moved[d] = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double V = run.points().jacobian(i) * run.lmp->atom->vfrac[i];
+        const auto before = mass.find(run.lmp->atom->tag[i]);
+        if (before != mass.end()) carried[d] += (run.mass()[i] - before->second) * run.v()[i][d];
+        moved[d] += 0.5 * V * compute->array_atom[i][d];
+        now[d] += run.mass()[i] * run.v()[i][d];
+      }
+      now[d] += moved[d];
+      if (mass.empty()) start[d] = now[d];
+      most = std::max(most, std::fabs(now[d] - start[d] - carried[d]));
+    }
+    for (int i = 0; i < run.n(); i++) mass[run.lmp->atom->tag[i]] = run.mass()[i];
+  });
+  run.commands("run 400\n");
+  for (int d = 0; d < 2; d++) {
+    measured("momentum of the water's own motion", moved[d]);
+    measured("carried", carried[d]);
+  }
+  EXPECT_LT(measured("change", most), 1e-11);
+}
+
+// the time step is that of a wave in which water and soil move without drag, and it is stable just below
+SERIAL_TEST(TimeStep, IsThatOfTheFastWave)
+{
+  const double Kf = 2.2e8, E = MODULUS, S = N / Kf, rho = 1990.0, rhof = 1000.0;
+  const double a = rho * rhof / N - rhof * rhof,
+               b = (E + 1.0 / S) * rhof / N + rho / S - 2.0 * rhof / S;
+  const double c = std::sqrt((b + std::sqrt(b * b - 4.0 * a * E / S)) / (2.0 * a));
+  Scene run(replaced(column(20, "2.2e8 1000 9810 soil m 0.4 constant 1.0 " + MOVES,
+                            "density 1990 linear 1e7 0.3", 1.0, 0.0, "ylo yhi"),
+                     "origin", "transfer aflip 1.0 origin") +
+            "run 0\n");
+  EXPECT_NEAR(run.stable_dt() / (0.05 / c), 1.0, 1e-6);
+  // frequency of the mode without drag
+  EXPECT_NEAR(c * PI, 1842.0 * 1.01, 40.0);
+  run.set_velocity([](const double *x, double *v) {
+    v[1] = 1e-4 * std::sin(PI * x[1]) + 1e-5 * std::sin(17.0 * x[1] * x[1]);
+  });
+  run.commands("fix dt all mpm/dt 0.9\nrun 3000\n");
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++) most = std::max(most, std::fabs(run.v()[i][1]));
+  EXPECT_LT(measured("fastest", most), 2e-4);
+}
+
+TEST(Ranks, Agree)
+{
+  const std::string walls =
+      replaced(blocks(MOVES + "initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01"),
+               "boundary p p p", "boundary f f p") +
+      "fix b all mpm/boundary xlo xhi ylo yhi slip\n";
+  for (const auto &scene : {blocks("initial v_p " + MOVES), walls}) {
+    OnRanks run(scene + PORE, "run 300\n");
+    EXPECT_LT(run.difference(), 1e-11);
+    const auto one = pressures(run.serial), all = pressures(run.parallel);
+    ASSERT_EQ(one.size(), all.size());
+    double most = 0.0;
+    for (std::size_t k = 0; k < one.size(); k++)
+      most = std::max(most, std::fabs(one[k].p - all[k].p));
+    EXPECT_LT(measured("difference", most), 1e-10);
+    EXPECT_NEAR(run.serial.fix("water")->compute_scalar(),
+                run.parallel.fix("water")->compute_scalar(), 1e-12);
+  }
+}
+
+TEST(Restart, Continues)
+{
+  const std::string scene = blocks("free pressure 0 initial v_p " + MOVES);
+  const std::string tail = scene.substr(scene.find("fix m one"));
+  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n"
+                      "variable p atom 0.1*x\nvariable k atom 0.01*(1+y)\n";
+  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
+    end = tail.find('\n', at);
+    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
+  }
+  Continued run(scene + PORE, 60, fixes + PORE + "timestep 0.005\n", 60);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  const auto one = pressures(run.whole), two = pressures(run.again);
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
+  EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+}
+
+// level ground is at rest, with water that could move
+SERIAL_TEST(Geostatic, StaysAtRest)
+{
+  Scene run(replaced(column(20, "2.2e8 1000 9810 soil m 0.4 constant 1e-2 geostatic 0.5 1 " + MOVES,
+                            SOIL, 1.2, 0.3),
+                     "fix water", "fix g all gravity 9.81 vector 0 -1 0\nfix water") +
+            "timestep 4e-5\nrun 500\n");
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++) most = std::max(most, std::fabs(run.v()[i][1]));
+  EXPECT_LT(measured("velocity over that of free fall", most / (9.81 * 500 * 4e-5)), 1e-10);
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  const std::string scene = plane("si", "f p", "0 4 0 4", 1, 0.1) +
+      "fix grid all mpm 1.0 MPM_OPTIONS\n"
+      "create_points 1 box ppc 2\n"
+      "fix m all mpm/material density DENSITY linear 1e7 0.3\n"
+      "timestep 1e-5\nfix water all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-5 formulation "
+      "FORM\nrun 1\n";
+  const auto with = [&](const std::string &options, const std::string &density,
+                        const std::string &form) {
+    return replaced(replaced(replaced(scene, "MPM_OPTIONS", options), "DENSITY", density), "FORM",
+                    form);
+  };
+  expect_error(with("", "2000", "u-w"), "must be one of u-p u-v-p");
+  expect_error(with("", "2000", "u-v-p stages 5"), "is for formulation u-p");
+  expect_error(with("", "400", "u-v-p"), "that of saturated soil");
+  expect_error(with("transfer xpic 2", "2000", "u-v-p"), "use apic, aflip, or flip");
+}

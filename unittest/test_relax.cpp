@@ -1,0 +1,160 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// Fix mpm/relax: dynamic relaxation with kinetic damping.
+
+#include "mpm_lammps.h"
+
+#include "force.h"
+#include "update.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** A column of soil, 1 m high, of n cells, which gets its weight at once. */
+std::string column(int n, const std::string &options, const std::string &relax)
+{
+  const double h = 1.0 / n;
+  return plane("si", "p f", strprintf("0 %.17g 0 1.2", 4 * h), 1, 0.3 * h) +
+      "region soil block INF INF 0 1 INF INF\n" +
+      strprintf("create_points 1 region soil spacing %.17g\n", 0.5 * h) +
+      strprintf("fix grid all mpm %.17g ", h) + options +
+      "\nfix m all mpm/material density 1600 linear 1e7 0.3\n"
+      "fix floor all mpm/boundary ylo slip\nfix g all gravity 9.81 vector 0 -1 0\n"
+      "fix rest all mpm/relax " +
+      relax + strprintf("\ntimestep %g\n", 0.5 * h / 110.0);
+}
+constexpr double MODULUS = 1e7 * 0.7 / (1.3 * 0.4);
+
+double settlement(Scene &run, double h)
+{
+  double top = 0.0;
+  for (int i = 0; i < run.n(); i++) top = std::max(top, run.x()[i][1]);
+  return 1.0 - 0.25 * h - top;
+}
+
+/** A beam of length 1 and depth 0.1, clamped at x = 0, of n cells in its depth, under its weight. */
+std::string beam(int n, const std::string &relax)
+{
+  const double h = 0.1 / n;
+  return plane("si", "f f", "0 1.2 -0.3 0.4", 1, 0.3 * h) +
+      "region beam block 0 1 0 0.1 INF INF\n" +
+      strprintf("create_points 1 region beam spacing %.17g\n", 0.5 * h) +
+      strprintf("fix grid all mpm %.17g\n", h) +
+      "fix m all mpm/material density 1000 linear 1e8 0\nfix clamp all mpm/boundary xlo stick\n"
+      "fix g all gravity 1 vector 0 -1 0\nfix rest all mpm/relax " +
+      relax + strprintf("\ntimestep %g\n", 0.6 * h / 316.3);
+}
+
+}    // namespace
+
+// stress is the weight above, the settlement that of the elastic modulus; energy that is taken away is no numerical error
+SERIAL_TEST(Column, ComesToRest)
+{
+  for (const char *options :
+       {"gain error 0.01", "transfer flip 1.0 gain error 0.01", "scheme musl gain error 0.01",
+        "shape cubic gain error 0.01", "transfer polypic", "frame total"}) {
+    const int n = 20;
+    Scene run(column(n, options, "1e-8") +
+              "compute e all mpm/energy\nthermo_style custom step c_e\n"
+              "run 20000\n");
+    EXPECT_LT(measured(std::string(options) + ": steps", run.lmp->update->ntimestep), 2000);
+    EXPECT_LE(run.fix("rest")->compute_scalar(), 1e-8);
+    double most = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      for (int d = 0; d < 3; d++) EXPECT_EQ(run.v()[i][d], 0.0);
+      const double depth = 1.0 - run.x()[i][1];
+      double sigma[6];
+      run.points().cauchy(i, sigma);
+      if (depth > 0.1 && depth < 0.9)
+        most = std::max(most, std::fabs(sigma[1] + 1600 * 9.81 * depth));
+    }
+    EXPECT_LT(measured("stress over the weight of a cell", most * n / (1600 * 9.81)), 0.2);
+    EXPECT_NEAR(settlement(run, 1.0 / n) / (1600 * 9.81 / (2.0 * MODULUS)), 1.0, 3e-3);
+  }
+}
+
+// the slowest mode, that of bending, is found without a coefficient; at two resolutions
+SERIAL_TEST(Beam, BendsUnderItsWeight)
+{
+  const double inertia = 1e-3 / 12.0, weight = 1000 * 0.1,
+               tip = weight / (8.0 * 1e8 * inertia) + weight / (2.0 * 5.0 / 6.0 * 5e7 * 0.1);
+  double error[2];
+  for (const int n : {4, 8}) {
+    Scene run(beam(n, "1e-7") + "compute u all displace/atom\ncompute low all reduce min c_u[2]\n" +
+              "thermo_style custom step c_low\nrun 20000\n");
+    EXPECT_LE(run.fix("rest")->compute_scalar(), 1e-7);
+    auto *const low = run.lmp->modify->get_compute_by_id("low");
+    // of the last points, a quarter of a cell from the end
+    error[n / 8] = -low->compute_scalar() / (tip * (1.0 - 4.0 / 3.0 * 0.25 * 0.1 / n)) - 1.0;
+    measured(strprintf("%d cells", n), error[n / 8]);
+  }
+  EXPECT_LT(std::fabs(error[1]), 0.01);
+  EXPECT_GT(error[0] / error[1], 3.0);
+}
+
+// forces are those of LAMMPS's units: bodies in free fall, and under pressure
+SERIAL_TEST(Forces, HaveUnits)
+{
+  for (const char *units : {"si", "metal", "real", "lj"}) {
+    Scene run(
+        plane(units, "p p", "0 8 0 8", 1, 0.3) + "create_points 1 box spacing 0.5\n" +
+        "fix grid all mpm 1.0\nfix m all mpm/material density 2.0 eos ideal/gas 1.4 pressure 3\n"
+        "fix g all gravity 0.25 vector 0 -1 0\nfix rest all mpm/relax 1e-3 every 1\n"
+        "timestep 1e-6\nrun 1\n");
+    auto *const fix = run.fix("rest");
+    EXPECT_NEAR(fix->compute_vector(0) / (64.0 * 2.0 * 0.25), 1.0, 1e-9) << units;
+    EXPECT_NEAR(fix->compute_vector(1) * run.lmp->force->nktv2p / (64.0 * std::sqrt(3.0) * 3.0),
+                1.0, 1e-9)
+        << units;
+  }
+}
+
+// a run goes on with a new load, and does not stop when it shall not
+SERIAL_TEST(Column, GoesOn)
+{
+  Scene run(column(10, "", "1e-6") + "run 20000\n");
+  const double first = settlement(run, 0.1);
+  const auto step = run.lmp->update->ntimestep;
+  run.commands("run 20000\n");
+  EXPECT_LE(run.lmp->update->ntimestep - step, 25);    // in balance as before
+  EXPECT_NEAR(settlement(run, 0.1), first, 1e-5 * first);
+  run.commands("fix g all gravity 4.905 vector 0 -1 0\nrun 20000\n");
+  EXPECT_NEAR(settlement(run, 0.1) / first, 0.5, 1e-3);
+  run.commands("unfix rest\nfix rest all mpm/relax 1e-2 stop no\nrun 500\n");
+  EXPECT_LT(run.fix("rest")->compute_scalar(), 1e-9);
+}
+
+TEST(Column, RanksAndRestart)
+{
+  const auto scene = column(10, "", "1e-6");
+  OnRanks run(scene, "run 60\n");
+  EXPECT_LT(run.difference(), 1e-11);
+  const auto fixes = "neighbor 0.03 bin\n" + scene.substr(scene.find("fix grid"));
+  Continued again(scene, 20, fixes, 30);
+  EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+  for (int k = 0; k < 4; k++)
+    EXPECT_EQ(again.whole.fix("rest")->compute_vector(k),
+              again.again.fix("rest")->compute_vector(k));
+}
+
+SERIAL_TEST(Relax, BadInput)
+{
+  const auto plain = replaced(column(10, "", "1e-6"), "fix rest all mpm/relax 1e-6", "");
+  expect_refused(
+      plain,
+      {{"fix rest all mpm/relax", "missing argument"},
+       {"fix rest all mpm/relax 0", "ratio of forces"},
+       {"fix rest all mpm/relax nan", "nan"},
+       {"fix rest all mpm/relax 1e-6 every 0", "every"},
+       {"fix rest all mpm/relax 1e-6 stop perhaps", "perhaps"},
+       {"fix rest all mpm/relax 1e-6 damp 0.5", "damp"},
+       {"group some id 1\nfix rest some mpm/relax 1e-6", "use group all"},
+       {"fix rest all mpm/relax 1e-6\nfix more all mpm/relax 1e-6", "remove one"},
+       {"unfix floor\nunfix m\nunfix grid\nfix rest all mpm/relax 1e-6", "needs a fix mpm"}},
+      "run 1\n");
+}
