@@ -9,6 +9,8 @@
 
 #include "heat_testing.h"
 
+#include <map>
+
 using namespace MPM_TEST;
 
 namespace {
@@ -256,6 +258,26 @@ SERIAL_TEST(Radiation, SteadyState)
   EXPECT_NEAR(power[0] / power[1], -1.0, 1e-4);
 }
 
+// the same constant in all units with kelvins: a plate of 1000 K radiates 5.67e4 W/m^2
+PARAMETER_TEST(Radiation, InUnits, const char *,
+               Values("si", "cgs", "micro", "nano", "metal", "real", "electron"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  // energy/(time length^2) in SI units
+  const std::map<std::string, double> flux = {
+      {"si", 1.0},
+      {"cgs", 1e-3},
+      {"micro", 1e-15 / 1e-6 / 1e-12},
+      {"nano", 1e-21 / 1e-9 / 1e-18},
+      {"metal", 1.602176634e-19 / 1e-12 / 1e-20},
+      {"real", 6.9476954571e-21 / 1e-15 / 1e-20},
+      {"electron", 4.3597447222e-18 / 1e-15 / 2.80028520539e-21}};
+  Scene run(plane(GetParam(), "f p", "0 8 0 4", 1, 0.1) +
+            body("box", "density 1.0 eos linear 1e-6 thermal conducting 1e6 1000 1.0", "1.0") +
+            "fix heat all mpm/heat xhi radiation 1.0 0.0\ntimestep 1e-6\nrun 1\n");
+  EXPECT_NEAR(run.fix_vector("heat", 7)[1] * flux.at(GetParam()) / 4.0 / -5.670374419e4, 1.0, 1e-6);
+}
+
 // NAFEMS T3: T = 100 sin(pi t/40) at one end, 0 at the other one: 36.603 at 0.02 from the first one, after 32 s
 SERIAL_TEST(Ends, FollowAVariable)
 {
@@ -319,6 +341,89 @@ TEST(Source, IsOfPresentVolumes)
     least = std::min(least, before);
   }
   EXPECT_GT(measured("change of volume", most / least), 1.02);
+}
+
+namespace {
+
+/** A block of 1 x 1 or 1 x 1 x 1 with 10 cells along its sides, at 1, whose material touches all faces of the box; conductivity
+ *  1e-3, so that the rates of its conduction are some 0.1 to 1. */
+std::string block(int dim, double offset, const std::string &heat)
+{
+  const std::string at = strprintf(" %g", offset);
+  return (dim == 2 ? plane("lj", "f f", "0 1 0 1", 1, 0.02)
+                   : space("lj", "f f f", "0 1 0 1 0 1", 1, 0.02)) +
+      "create_points 1 box spacing 0.05\nfix grid all mpm 0.1 dtcheck no origin" + at + at +
+      (dim == 3 ? at : "") +
+      "\nfix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e-3\n"
+      "fix heat all mpm/heat " +
+      heat + "\n";
+}
+
+/** The longest step that a single stage may have. */
+double one_stage(const std::string &scene)
+{
+  double low = 0.1, high = 10.0;
+  while (high / low > 1.005) {
+    const double middle = std::sqrt(low * high);
+    (error_of(scene + strprintf("timestep %.17g\nrun 1\n", middle)).empty() ? low : high) = middle;
+  }
+  return low;
+}
+
+}    // namespace
+
+// convection on faces that meet at edges and a corner: steps just below the limit keep temperatures between those at the start
+// and outside
+SERIAL_TEST(Corner, IsStable)
+{
+  for (const int dim : {2, 3})
+    for (const double offset : {0.0, 0.025, 0.05})
+      for (const double H : {0.1, 1e3}) {
+        const std::string on = strprintf(" convection %g 0.0 ", H);
+        const std::string scene =
+            block(dim, offset, "stages 1 xlo" + on + "ylo" + on + (dim == 3 ? "zlo" + on : ""));
+        Scene run(scene +
+                  strprintf("timestep %.17g\n", 0.99 * measured("limit", one_stage(scene))));
+        for (int k = 0; k < 4; k++) {
+          run.commands("run 40\n");
+          Warm warm(run);
+          double least = 1.0, most = 0.0;
+          for (int i = 0; i < run.n(); i++) {
+            least = std::min(least, warm.T(i));
+            most = std::max(most, warm.T(i));
+          }
+          EXPECT_GT(least, 0.0) << dim << " " << offset << " " << H;
+          EXPECT_LT(most, 1.0 + 1e-12) << dim << " " << offset << " " << H;
+        }
+      }
+}
+
+// what is held there follows that outside in no time, and heat is what comes through the faces
+SERIAL_TEST(Corner, OfPerfectConvection)
+{
+  double heat[2];
+  for (const bool held : {false, true}) {
+    Scene run(block(2, 0.03,
+                    held ? "xlo temperature 0.0 ylo temperature 0.0"
+                         : "xlo convection 1e6 0.0 ylo convection 1e6 0.0"));
+    const double before = Warm(run).heat();
+    run_to(run, 40.0, 0.5);
+    heat[held] = measured("heat", Warm(run).heat());
+    EXPECT_NEAR((heat[held] - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
+  }
+  EXPECT_NEAR(heat[0] / heat[1], 1.0, 0.01);
+}
+
+// fix mpm/dt knows how fast heat comes through faces before the first step of each run, also if all stages are needed
+SERIAL_TEST(Corner, HasATimeStep)
+{
+  for (const char *kind : {"convection 1000.0 0.0", "convection v_H 0.0"}) {
+    const std::string on = std::string(" ") + kind + " ";
+    Scene run(replaced(block(2, 0.0, "stages 5 xlo" + on + "yhi" + on), "dtcheck no", "") +
+              "variable H equal 1000\nfix dt all mpm/dt 0.95\ntimestep 1e-3\n");
+    run.commands("run 20\nrun 20\n");
+    EXPECT_GT(measured("dt", run.lmp->update->dt), 1.0);
+  }
 }
 
 // Stefan: ice at its melting point, St = 1: the front is at 2 * 0.62006263 sqrt(t), and enthalpy is kept
@@ -459,6 +564,8 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"fix heat all mpm/heat xlo temperature v_none", "does not exist"},
                   {"fix heat all mpm/heat source 1.0", "must be a variable"},
                   {"fix heat all mpm/heat source v_none", "does not exist"},
+                  {"variable H equal -1.0\nfix heat all mpm/heat xlo convection v_H 0.0",
+                   "xlo: variable H = -1, but it must not be negative"},
                   {"fix heat all mpm/heat stages 0", "stages"},
                   {"fix heat all mpm/heat transfer flip", "must be one of relax pic affine"},
                   {"group a type 1\nfix heat a mpm/heat", "use group all"},

@@ -308,6 +308,8 @@ SERIAL_TEST(BadInput, IsRefused)
         "given twice"},
        {"fix heat all mpm/heat contact ga gx conductance 1.0", "define a fix mpm/contact ga gx"},
        {"fix heat all mpm/heat contact ga gb conductance v_none", "does not exist"},
+       {"variable H equal -1.0\nfix heat all mpm/heat contact ga gb conductance v_H",
+        "contact ga gb: variable H = -1, but it must not be negative"},
        {"unfix touch\nfix heat all mpm/heat contact ga gb conductance 1.0",
         "define a fix mpm/contact ga gb"},
        {"unfix ma\nfix ma a mpm/material density 1.0 eos linear 1.0\n"

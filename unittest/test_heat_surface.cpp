@@ -218,6 +218,36 @@ PARAMETER_TEST(Thin, IsSaid, const char *,
       }
 }
 
+// a layer of points that do not conduct, thinner than the gap that heat passes, at any place in a cell: what comes in
+// is what points have
+PARAMETER_TEST(Layer, LosesNoHeat, const char *,
+               Values("xlo flux 1.0", "xlo temperature 1.0", "xlo convection 5.0 1.0",
+                      "region wall flux 1.0", "region wall convection 1e9 1.0", "surface flux 1.0"))
+{
+  const std::string kind = GetParam();
+  const bool of_box = kind[0] == 'x';
+  for (int k = 1; k <= 10; k++)
+    for (const double thickness : {0.0, 0.12}) {
+      Scene run(
+          plane("lj", "f p", of_box ? "0 4 0 2" : "-2 4 0 2", 1, 0.1) +
+          "region body block 0 4 INF INF INF INF\nregion wall block -2 0 INF INF INF INF\n"
+          "create_points 1 region body spacing 0.125\n" +
+          strprintf("region skin block -1 %g INF INF INF INF\n", thickness) +
+          "group skin region skin\ngroup rest subtract all skin\n" +
+          strprintf("fix grid all mpm 0.5 origin %g 0\n", -0.05 * k) +
+          "fix m rest mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+          "fix n skin mpm/material density 1.0 eos linear 1e-6\n"
+          "fix heat all mpm/heat " +
+          kind + "\ntimestep 0.01\nrun 20\n");
+      const double heat = Warm(run).heat(), in = run.fix("heat")->compute_scalar();
+      const std::string where = strprintf("%g %g", 0.05 * k, thickness);
+      if (thickness > 0.0) EXPECT_GT(measured(where, in), 0.2);
+      if (thickness == 0.0 && kind.find("flux") != std::string::npos)
+        EXPECT_NEAR(in, 0.4, 0.004) << where;
+      EXPECT_NEAR(heat / in, 1.0, 1e-12) << where;
+    }
+}
+
 // corners, edges, faces of the box behind a layer, and small bodies as round as nodes can tell are not thin
 TEST(Thin, IsNotSaidOfCorners)
 {
@@ -264,6 +294,93 @@ TEST(Ranks, Agree)
   EXPECT_NEAR(run.parallel.fix("heat")->compute_scalar() / one, 1.0, 1e-11);
 }
 
+namespace {
+
+/** Two blocks of 4 x 4 that touch, with a free perimeter of 24. */
+std::string two_blocks(const std::string &heat, const std::string &grid = "")
+{
+  return plane("lj", "f f", "-1 9 -1 9", 2, 0.1) +
+      "region a block 0 4 0 4 INF INF\nregion b block 4 8 0 4 INF INF\n"
+      "create_points 1 region a spacing 0.125\ncreate_points 2 region b spacing 0.125\n"
+      "group a type 1\ngroup b type 2\nfix ga a mpm 0.25 " +
+      grid + "\nfix gb b mpm 0.25 " + grid +
+      "\nfix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+      "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+      "fix heat all mpm/heat " +
+      heat + "\ntimestep 0.001\n";
+}
+
+}    // namespace
+
+// bodies hide the surfaces where they touch if they have a contact, and only then
+PARAMETER_TEST(TwoBlocks, HideWhereTheyTouch, const char *,
+               Values("", "shape cubic", "origin 0.1 0.05"))
+{
+  for (const bool contact : {true, false}) {
+    Scene run(two_blocks("surface flux 1.0", GetParam()) +
+              (contact ? "fix touch all mpm/contact ga gb\n" : "") + "run 1\n");
+    // edges lose up to 0.4 cells each
+    const double perimeter = contact ? 24.0 : 32.0, edges = (contact ? 4.0 : 8.0) * 0.4 * 0.25;
+    const double power = measured("power", run.fix_vector("heat", 10)[9]);
+    EXPECT_LT(power, perimeter + 0.01);
+    EXPECT_GT(power, perimeter - edges);
+  }
+}
+
+// on ranks of which some know only one of the bodies
+TEST(Ranks, AgreeOnBodiesThatTouch)
+{
+  for (const char *layout : {"", "processors * 1 1\n", "processors 1 * 1\n"})
+    for (const char *contact : {"fix touch all mpm/contact ga gb\n", ""}) {
+      OnRanks run(two_blocks("surface flux 1.0") + contact, "run 1\n", layout);
+      const double one = run.serial.fix_vector("heat", 10)[9];
+      EXPECT_NEAR(run.parallel.fix_vector("heat", 10)[9] / one, 1.0, 1e-12) << layout << contact;
+    }
+}
+
+// a disk that slides on a block through periodic faces, with friction, contact, and free surfaces, while ranks are balanced
+TEST(Ranks, AgreeWhileBalanced)
+{
+  const std::string scene = plane("lj", "p f", "0 9 -1 9", 2, 0.1) +
+      "region a block 0 9 0 2.1 INF INF\nregion b sphere 6.95 4.12 0 2\n"
+      "create_points 1 region a spacing 0.125\ncreate_points 2 region b spacing 0.125\n"
+      "group a type 1\ngroup b type 2\nfix ga a mpm 0.25\nfix gb b mpm 0.25\n"
+      "fix ma a mpm/material density 1.0 neohookean 100.0 0.3 thermal conducting 1.0 0.0 1.0\n"
+      "fix mb b mpm/material density 1.0 neohookean 100.0 0.3 thermal conducting 1.0 1.0 4.0\n"
+      "fix touch all mpm/contact ga gb law coulomb 0.3 heat yes\n"
+      "fix heat all mpm/heat surface convection 1.0 0.0 contact ga gb conductance 50.0\n"
+      "velocity b set 2 -1 0\ntimestep 0.004\n";
+  OnRanks run(scene, "run 60\n", "comm_style tiled\nfix even all balance 10 1.0 rcb\n");
+  EXPECT_LT(run.difference(), 1e-11);
+  const double *const one = run.serial.fix_vector("heat", 11),
+                      *const all = run.parallel.fix_vector("heat", 11);
+  for (const int k : {7, 9, 10}) {
+    EXPECT_GT(std::fabs(one[k]), 1e-3) << k;
+    EXPECT_NEAR(all[k] / one[k], 1.0, 1e-9) << k;
+  }
+}
+
+// the area of a disk is the same wherever it crosses periodic faces, on any number of ranks
+TEST(Ranks, AgreeAcrossPeriodicFaces)
+{
+  double first = 0.0;
+  for (const double x : {0.0, 4.0, 4.5, 5.25, 5.5}) {
+    OnRanks run(
+        plane("lj", "p p", "0 8 0 8", 1, 0.1) +
+            "region disk sphere 4 4 0 1.5\ncreate_points 1 region disk spacing 0.125\n" +
+            strprintf("displace_atoms all move %g 5.5 0\n", x) +
+            "fix grid all mpm 0.25\n"
+            "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
+            "fix heat all mpm/heat surface flux 1.0\ntimestep 0.001\n",
+        "run 1\n");
+    const double one = run.serial.fix_vector("heat", 10)[9];
+    EXPECT_NEAR(run.parallel.fix_vector("heat", 10)[9] / one, 1.0, 1e-12) << x;
+    EXPECT_NEAR(measured("area", one / (3.0 * PI)), 1.0, 0.02) << x;
+    if (first == 0.0) first = one;
+    EXPECT_NEAR(one / first, 1.0, 1e-10) << x;
+  }
+}
+
 // a region that moves through a periodic block in 3d, with lines beyond the last nodes that points reach
 TEST(Ranks, AgreeOnMovingRegions)
 {
@@ -292,6 +409,10 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"fix heat all mpm/heat region wall convection -1.0 0.0", "not negative"},
                   {"fix heat all mpm/heat surface radiation 0.5 300", "use units si"},
                   {"fix heat all mpm/heat surface flux v_none", "does not exist"},
+                  {"variable H equal -1.0\nfix heat all mpm/heat surface convection v_H 0.0",
+                   "surface: variable H = -1, but it must not be negative"},
+                  {"variable H equal -1.0\nfix heat all mpm/heat region wall convection v_H 0.0",
+                   "region wall: variable H = -1, but it must not be negative"},
                   {"fix heat all mpm/heat surface flux 1.0 surface flux 2.0", "surface"},
                   {"fix heat all mpm/heat region wall flux 1 region wall flux 2", "given twice"},
                   {"region open block 1 2 INF INF INF INF open 1\n"

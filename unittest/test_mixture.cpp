@@ -370,17 +370,19 @@ SERIAL_TEST(Consolidation, FollowsTerzaghi)
 // Water flows up through a bed of soil that lies on a sieve, driven by a force in a loop (a periodic column): Darcy's
 // flow, gradient of the pressure, effective stress, and the gradient at which the bed is lifted. The force is uniform
 // in the water, and the soil weighs so much less that the difference is that of its weight under water.
-// A body elsewhere, in contact with the soil if it were here, changes nothing.
+// A body elsewhere, in contact with the soil if it were here, changes nothing, nor do walls at the sides, which hold soil
+// and water.
 struct Flow {
   double gradient;
-  std::string options;
-  bool with_third = false;
+  std::string options, with = "";
 };
 
 PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
                Values(Flow{0.5, "transfer apic smooth 0.9"}, Flow{0.9, "transfer apic smooth 0.9"},
                       Flow{0.9, "transfer apic"}, Flow{0.9, "transfer aflip 1.0 smooth 0.9"},
-                      Flow{0.9, "transfer apic smooth 0.9", true},
+                      Flow{0.9, "transfer apic smooth 0.9", "third"},
+                      Flow{0.9, "transfer apic smooth 0.9", "sides"},
+                      Flow{0.9, "transfer apic smooth 0.9", "sides of regions"},
                       Flow{0.96, "transfer apic smooth 0.9"},
                       Flow{1.02, "transfer apic smooth 0.9"}))
 {
@@ -397,10 +399,16 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
   c.options = GetParam().options;
   const double k = 0.005, gravity = WATER * G;
   c.drag = strprintf("darcy %.17g", k * 1.0e-3 / gravity);
-  Scene run(replaced(c.periodic(), "create_box 2", "create_box 3") +
+  const std::string with = GetParam().with;
+  const std::string base = replaced(c.periodic(), "create_box 2", "create_box 3");
+  Scene run((with == "sides" ? replaced(base, "boundary p p", "boundary f p") : base) +
             "fix step all mpm/dt 0.4\nregion sieve block INF INF 0 0.3 INF INF\n"
             "fix sieve all mpm/boundary region sieve separate field s\n");
-  if (GetParam().with_third)
+  if (with == "sides") run.commands("fix sides all mpm/boundary xlo xhi slip\n");
+  if (with == "sides of regions")
+    run.commands("region sides block -1 0.005 INF INF INF INF\n"
+                 "fix sides all mpm/boundary region sides slip\n");
+  if (with == "third")
     run.commands(strprintf("group third empty\nfix t third mpm %g %s\n", c.h, c.options.c_str()) +
                  "region far block INF INF 1.2 1.3 INF INF\n"
                  "create_points 3 region far ppc 2 fix t group third overlap yes\n"
@@ -445,7 +453,10 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
     run.commands("run 50\n");
     const double *const mix = run.fix_vector("mix", 6);
     forces += (mix[1] + mix[4] - weight) / times;
-    forces -= run.fix_vector("sieve", 3)[1] / times;
+    const double *const sieve = run.fix_vector("sieve", 6);
+    forces -= sieve[1] / times;
+    // nodes are at x = 0 and h, those at 2 h are images
+    if (with.empty()) EXPECT_NEAR(sieve[5], 0.5 * c.h * sieve[1], 1e-6 * c.h * weight);
     double n = 0.0, x = 0.0, xx = 0.0, p = 0.0, xp = 0.0;
     for (const auto &s : run.gather()) {
       if (s.type != 2) continue;
@@ -577,6 +588,34 @@ TEST(Slump, IsTheSameAcrossPeriodicFaces)
   for (int k = 0; k < 6; k++)
     EXPECT_NEAR(inside.fix_vector("mix", 6)[k], across.fix_vector("mix", 6)[k], 1.0e-9);
   EXPECT_NEAR(inside.fix("mix")->compute_scalar(), across.fix("mix")->compute_scalar(), 1.0e-9);
+}
+
+// While soil and water are apart, nodes are those of fields without a mixture; a block falls until it is in the water. The
+// ledger has long records all the time
+TEST(Apart, CostsNothingAndChangesNothing)
+{
+  const std::string fields = "fix s soil mpm 1.0\nfix w water mpm 1.0\n";
+  const std::string scene = box(2, "lj", "p f p", "0 8 0 24", 2, 0.3) +
+      "group soil empty\ngroup water empty\n" + fields +
+      "region heap block 2 5 18 20 INF INF\nregion pool block INF INF 0 2 INF INF\n"
+      "create_points 1 region heap ppc 2 fix s group soil\n"
+      "create_points 2 region pool ppc 2 fix w group water\nvelocity soil set 0 -5 0\n";
+  const std::string rest = replaced(stuff, "compute e all mpm/energy\n", "");
+  Twins late(scene + rest, 60, fields + rest, 120, 1.0e-9);
+  Twins early(scene + rest, 150, fields + rest, 30, 1.0e-9);
+  EXPECT_GT(fabs(late.whole.fix_vector("mix", 6)[4]), 1.0e-3);    // they have met
+  EXPECT_LT(difference(late.whole.gather(), early.whole.gather()), 1.0e-9);
+
+  OnRanks ledger(scene + stuff, "run 180\n");
+  EXPECT_LT(measured("difference", difference(ledger.parallel.gather(), late.whole.gather())),
+            1.0e-9);
+
+  Scene apart(scene + rest + "run 60\n");
+  EXPECT_EQ(apart.grid("s").nreal, 4);
+  EXPECT_EQ(apart.grid("w").nreal, 4);
+  apart.commands("run 120\n");
+  EXPECT_EQ(apart.grid("s").nreal, 8);
+  EXPECT_EQ(apart.grid("w").nreal, 8);
 }
 
 // Without a floor, momentum is that of gravity alone

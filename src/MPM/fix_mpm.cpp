@@ -214,11 +214,17 @@ void FixMPM::setup_pre_neighbor()
   }
   field->frame->setup();
   field->guard->check_places();
-  if (plan)
-    for (auto *physics : find_fixes<MPMPhysics>(lmp)) physics->setup_points();
-  MPMStages::give_initial_stress(*field);
-  field->map->sort();
-  field->map->valid = false;
+
+  // other physics may ask for the points of any field
+
+  const auto &all = field->plan->fields;
+  if (field.get() != all.back()) return;
+  for (auto *physics : find_fixes<MPMPhysics>(lmp)) physics->setup_points();
+  for (auto *one : all) {
+    MPMStages::give_initial_stress(*one);
+    one->map->sort();
+    one->map->valid = false;
+  }
 }
 
 void FixMPM::setup(int)

@@ -247,7 +247,7 @@ void FixMPMContact::init_action()
   FixMPMContact::init();
   std::vector<MPMField *> fields;
   for (const auto &body : bodies) fields.push_back(body.field);
-  heating->begin_run(*this, fields, true);
+  heating->begin_run(*this, fields);
   const auto musl = std::find_if(fields.begin(), fields.end(), [](const MPMField *field) {
     return field->options.scheme == MPMFieldOptions::MUSL;
   });
@@ -1110,7 +1110,7 @@ double FixMPMContact::heat_of(const Pair &pair, bool owned)
         (a.held >> d & 1 ? a.velocity[d] : pair.ra[4 + d]);
   }
   const double heat = heating->made(J, old, now, dim);
-  heating->between(pair.a, pair.ra, pair.b, pair.rb, heat, owned);
+  heating->between(pair.a, pair.ra, pair.b, pair.rb, pair.n, heat, owned);
   return heat;
 }
 

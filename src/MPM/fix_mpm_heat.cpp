@@ -206,7 +206,8 @@ double FixMPMHeat::sigma() const
                      {"micro", 1.0e-15, 1.0e-6, 1.0e-6},
                      {"nano", 1.0e-21, 1.0e-9, 1.0e-9},
                      {"metal", 1.602176634e-19, 1.0e-12, 1.0e-10},
-                     {"real", 4184.0 / 6.02214076e23, 1.0e-15, 1.0e-10}};
+                     {"real", 4184.0 / 6.02214076e23, 1.0e-15, 1.0e-10},
+                     {"electron", 4.3597447222071e-18, 1.0e-15, 0.529177210903e-10}};
   for (const auto &u : units)
     if (!strcmp(update->unit_style, u.name))
       return 5.670374419e-8 * u.time * u.length * u.length / u.energy;
@@ -266,7 +267,7 @@ void FixMPMHeat::check(MPMHeatCondition &c, const std::string &name)
   if (c.kind == MPMHeatCondition::RADIATION && sigma() == 0.0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/heat {} radiation needs temperatures in kelvins, which units {} do not "
-               "have: use units si, cgs, micro, nano, metal, or real",
+               "have: use units si, cgs, micro, nano, metal, real, or electron",
                name, update->unit_style);
   for (int k = 0; k < c.nvalue(); k++) find_variable(lmp, c.value[k], "fix mpm/heat " + name);
 }
@@ -295,7 +296,7 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
     }
     if (gradients) field->slopes.push_back(&gradients);
     fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
-    fields.back()->init(sigma());
+    fields.back()->init(sigma(), !surfaces.empty() || !pairs.empty());
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
   }
   init_contacts();
@@ -322,6 +323,24 @@ static bool conducts(const MPMField &field, MPI_Comm world)
   }
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
   return all;
+}
+
+/** Bodies that touch hide free surfaces of each other, also those that do not conduct. */
+void FixMPMHeat::find_neighbors()
+{
+  if (std::none_of(surfaces.begin(), surfaces.end(), [](const auto &s) {
+        return s.region.empty();
+      }))
+    return;
+  const auto contacts = find_fixes<FixMPMContact>(lmp);
+  for (auto &skin : skins)
+    for (auto &field : fields) {
+      const auto &mine = skin->body.field, &other = field->field;
+      if (std::any_of(contacts.begin(), contacts.end(), [&](auto *fix) {
+            return fix->couples(mine.id(), other.id());
+          }))
+        skin->neighbors.push_back(&body_of(other));
+    }
 }
 
 void FixMPMHeat::init_contacts()
@@ -355,12 +374,11 @@ void FixMPMHeat::init_contacts()
   bodies.clear();
   contacts.clear();
   skins.clear();
-  for (auto &field : fields) {
-    if (surfaces.empty()) break;
-    auto &body = body_of(field->field);    // those that do not conduct hide free surfaces
-    if (body.conduction)
-      skins.push_back(std::make_unique<MPMHeatSurfaces>(lmp, body, surfaces, sigma()));
-  }
+  for (auto &field : fields)
+    if (!surfaces.empty() && field->conducts())
+      skins.push_back(
+          std::make_unique<MPMHeatSurfaces>(lmp, body_of(field->field), surfaces, sigma()));
+  find_neighbors();
   for (auto &field : fields)
     if (field->conducts() && field->faces.any() && weighs_faces(field->field))
       body_of(field->field);
@@ -395,6 +413,14 @@ void FixMPMHeat::topology_changed(MPMField &field)
   for (auto &contact : contacts) contact->topology_changed();
 }
 
+/** Conduction alone takes from nodes what points reach; lines through surfaces have other nodes, too. */
+bool FixMPMHeat::looks_beyond_points() const
+{
+  return !bodies.empty() || std::any_of(fields.begin(), fields.end(), [](const auto &field) {
+    return field->conducts() && field->faces.any();
+  });
+}
+
 MPMConduction &FixMPMHeat::of(const MPMField &field) const
 {
   for (const auto &mine : fields)
@@ -413,6 +439,31 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 /* ---------------------------------------------------------------------- */
 
+/** What the input may not have as a number, variables may not have either. */
+void FixMPMHeat::check_values() const
+{
+  const auto refuse = [&](bool wrong, const std::string &where, const MPM_NS::NumberOrVariable &v,
+                          double now, const char *needed) {
+    if (wrong)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/heat {}: {} = {:.6g}, but it must {}", where,
+                 v.variable.empty() ? "the value" : "variable " + v.variable, now, needed);
+  };
+  const auto check = [&](const MPMHeatCondition &c, const std::string &where) {
+    if (c.kind < MPMHeatCondition::CONVECTION) return;
+    refuse(!(c.now[0] >= 0.0), where, c.value[0], c.now[0], "not be negative");
+    if (c.kind != MPMHeatCondition::RADIATION) return;
+    refuse(c.now[0] > 1.0, where, c.value[0], c.now[0], "not be above 1");
+    refuse(!(c.now[1] >= 0.0), where, c.value[1], c.now[1],
+           "be an absolute temperature, not below 0");
+  };
+  for (int face = 0; face < MPMHeatFaces::NFACE; face++) check(conditions[face], FACE_NAME[face]);
+  for (const auto &[region, c] : surfaces)
+    check(c, region.empty() ? "surface" : "region " + region);
+  for (const auto &p : pairs)
+    refuse(!(p.now >= 0.0), fmt::format("contact {} {}", p.field[0], p.field[1]), p.conductance,
+           p.now, "not be negative");
+}
+
 void FixMPMHeat::evaluate_variables()
 {
   bool any = !source.empty();
@@ -427,6 +478,7 @@ void FixMPMHeat::evaluate_variables()
     for (auto &[region, c] : surfaces)
       for (int k = 0; k < c.nvalue(); k++) c.now[k] = evaluate(lmp, c.value[k]);
     for (auto &p : pairs) p.now = evaluate(lmp, p.conductance);
+    check_values();
     if (source.empty()) return;
     source_values.resize(atom->nmax);
     if (input->variable->atomstyle(source_index))
@@ -456,9 +508,7 @@ void FixMPMHeat::find_surfaces()
       thin.looks((int) (surfaces.size() + contacts.size()));
   for (std::size_t k = 0; k < contacts.size(); k++)
     contacts[k]->find_contacts(looks ? &thin : nullptr, (int) (surfaces.size() + k));
-  std::vector<const MPMHeatBody *> all;
-  for (auto &body : bodies) all.push_back(body.get());
-  for (auto &skin : skins) skin->find_lines(all, looks ? &thin : nullptr);
+  for (auto &skin : skins) skin->find_lines(looks ? &thin : nullptr);
   if (looks) report_thin();
 }
 
@@ -482,41 +532,59 @@ void FixMPMHeat::report_thin()
                  id, what, found.x[0], found.x[1], found.x[2], update->ntimestep);
 }
 
+int FixMPMHeat::exchanges(const MPMConduction &of_field) const
+{
+  return (int) contacts.size() + !skins.empty() + of_field.faces.axes_that_follow();
+}
+
 /* ----------------------------------------------------------------------
    temperatures of nodes, and the stages that all fields need for their step
 ------------------------------------------------------------------------- */
 
 int FixMPMHeat::count_stages()
 {
-  std::vector<double> mine, all;
+  static constexpr int NRATE =
+      4;    // of a field: of its conduction, of its faces normal to each axis
+  std::vector<double> mine(NRATE * fields.size(), 0.0), all;
   find_surfaces();
-  for (auto &field : fields) {
-    const bool conducts = field->conducts();
-    static const std::vector<double> unknown;
-    mine.push_back(conducts ? field->points_to_nodes(gradients) : 0.0);
-    mine.push_back(conducts && field->faces.any()
-                       ? field->faces.begin_step(
-                             field->node_capacity(), field->node_volume(),
-                             weighs_faces(field->field) ? body_of(field->field).gradient : unknown,
-                             field->temperature)
-                       : 0.0);
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    auto &field = *fields[k];
+    if (!field.conducts()) continue;
+    mine[NRATE * k] = field.points_to_nodes(gradients);
+    if (field.faces.any())
+      field.faces.begin_step(field.node_capacity(), field.node_volume(),
+                             weighs_faces(field.field) ? &body_of(field.field) : nullptr,
+                             field.temperature, &mine[NRATE * k + 1]);
   }
   for (auto &contact : contacts) mine.push_back(contact->begin_step());
   for (auto &skin : skins) mine.push_back(skin->begin_step());
   all.resize(mine.size());
   MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_MAX, world);
   double greatest = 0.0;
-  for (std::size_t k = 0; k < fields.size(); k++)
-    greatest = std::max(greatest, fields[k]->greatest_rate(all[2 * k], all[2 * k + 1]));
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    fields[k]->keep_rate(all[NRATE * k]);
+    greatest = std::max(greatest, all[NRATE * k]);
+  }
 
-  // a node can be in contacts with several bodies, and at a surface; that of one field is not another's
-  const double dt = fields[0]->field.step_dt(), cap = std::max(greatest, 1.0 / dt);
-  const double *rates = all.data() + 2 * fields.size();
+  // a node can be at faces, in contacts with several bodies, and at a surface; that of one field is not another's. What
+  // costs no stage needs no limit
+  static constexpr double BELOW_ONE_STEP = 0.95;
+  int most_at_a_node = 0;
+  for (auto &field : fields) most_at_a_node = std::max(most_at_a_node, exchanges(*field));
+  const double dt = fields[0]->field.step_dt(),
+               cap = std::max(greatest, BELOW_ONE_STEP / (dt * std::max(most_at_a_node, 1)));
+  const double *rates = all.data() + NRATE * fields.size();
+  double most = 0.0;
+  for (std::size_t k = 0; k < fields.size(); k++) {
+    const double rate = fields[k]->faces.limit(cap, &all[NRATE * k + 1]);
+    most = std::max(most, rate);
+  }
+  greatest += most;
   for (auto &contact : contacts) {
     contact->limit(cap);
     greatest += std::min(cap, *rates++);
   }
-  double most = 0.0;
+  most = 0.0;
   for (auto &skin : skins) {
     skin->limit(cap);
     most = std::max(most, std::min(cap, *rates++));
@@ -541,7 +609,6 @@ void FixMPMHeat::find_rates()
     if (!field->conducts()) continue;
     field->find_rates(source.empty() ? nullptr : source_values.data(), present);
     field->faces.add_rates(field->temperature, field->rate, present);
-    field->faces.hold_rates(field->rate, present);
   }
   if (contacts.empty() && skins.empty()) return;
   for (auto &body : bodies)
@@ -584,10 +651,13 @@ void FixMPMHeat::conduct()
 
 double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
 {
-  // exchange is as fast as conduction at the most
-  const double stiff = (double) contacts.size() + (skins.empty() ? 0.0 : 1.0);
+  // other exchange is as fast as conduction at the most
+  const auto &conduction = of(field);
+  const double rate = conduction.greatest_rate_of_points(tag);
+  const double others = (double) contacts.size() + (skins.empty() ? 0.0 : 1.0);
   return MPMSuperStep::reach(most_stages) *
-      MPMSuperStep::explicit_limit((1.0 + stiff) * of(field).greatest_rate_of_points(tag));
+      MPMSuperStep::explicit_limit((1.0 + others) * rate +
+                                   conduction.faces.expected_rate(rate, conduction.least_capacity));
 }
 
 /* ----------------------------------------------------------------------

@@ -65,6 +65,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
+  bool looks_beyond_points() const override;
   double stable_dt(const MPMField &field, tagint &tag) const override;
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
@@ -109,13 +110,17 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
 
   double sigma() const;
   MPMHeatBody &body_of(const MPMField &);
+  void find_neighbors();
   void init_contacts();
   int places_of_surfaces() const { return GIVERS + NGIVER; }
   int places_of_contacts() const { return places_of_surfaces() + (int) surfaces.size(); }
   void find_surfaces();
   void report_thin();
   void check(MPMHeatCondition &, const std::string &name);
+  void check_values() const;
   void evaluate_variables();
+  /** Of how many kinds of exchange can a node of a field have a part? */
+  int exchanges(const MPMConduction &of_field) const;
   int count_stages();
   void find_rates();
   void conduct();

@@ -230,7 +230,6 @@ void FixMPMMixture::init_action()
           "these strain the water before the soil has moved: use usl or musl"},
          {o.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
           "use apic, aflip, or flip"}});
-    field->keep_old = true;
   }
   refuse_field(lmp, *this, *water.field,
                {{ow.averages_strain(), "locking fbar and both",
@@ -315,10 +314,18 @@ void FixMPMMixture::couple_topology()
   if (stale()) soil.field->map->valid = water.field->map->valid = false;
 }
 
+/** Forces and old velocities of nodes are needed where soil and water may meet: while they are apart, nodes are as they
+ *  would be without this fix. */
 void FixMPMMixture::blocks_found()
 {
   if (!stale()) return;
   for (auto *phase : {&soil, &water}) phase->reach.find(phase->field->grid, world);
+  boxes_meet = soil.reach.may_meet(water.reach);
+  for (auto *phase : {&soil, &water}) {
+    if (phase->field->keep_old_now == boxes_meet) continue;
+    phase->field->keep_old_now = boxes_meet;
+    phase->field->choose_kernels();
+  }
 }
 
 void FixMPMMixture::extend_topology(MPMField &field)
@@ -339,6 +346,9 @@ void FixMPMMixture::topology_changed(MPMField &field)
 void FixMPMMixture::list_blocks()
 {
   common.clear();
+  lists_valid = true;
+  may_meet = boxes_meet;
+  if (!boxes_meet) return;
   std::vector<std::array<int, 3>> keys;
   const Grid &grid = soil.field->grid;
   for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
@@ -353,7 +363,6 @@ void FixMPMMixture::list_blocks()
   int any = !common.empty(), all;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
   may_meet = all;
-  lists_valid = true;
 }
 
 void FixMPMMixture::find_near(Phase &phase, const std::vector<std::array<int, 3>> &keys) const
@@ -646,7 +655,7 @@ void FixMPMMixture::act(double dt, Stage stage)
       const double left = fade * before[d] + share * gain[d];
       node.impulse[d] = reduced * (before[d] + gain[d] - left);
       node.free_water[d] = at_water[d];
-      node.seen[d] = node.after_soil[d] = at_soil[d] += node.impulse[d] / at_soil[3];
+      node.seen[d] = at_soil[d] += node.impulse[d] / at_soil[3];
       node.after_water[d] = at_water[d] -= node.impulse[d] / at_water[3];
     }
   }
@@ -669,7 +678,7 @@ void FixMPMMixture::has_acted(MPMNodeAction &other, Stage stage)
       for (int d = 0; d < 3; d++) {
         node.free_water[d] += at_water[d] - node.after_water[d];
         node.after_water[d] = at_water[d];
-        node.seen[d] = node.after_soil[d] = at_soil[d];
+        node.seen[d] = at_soil[d];
       }
       continue;
     }
@@ -678,6 +687,7 @@ void FixMPMMixture::has_acted(MPMNodeAction &other, Stage stage)
     for (int d = 0; d < 3; d++) {
       push.change[d] = at_soil[d] - node.seen[d];
       node.seen[d] = at_soil[d];
+      node.held[d] = at_water[d] - node.after_water[d];
       any = any || push.change[d] != 0.0;
     }
     if (any && wall) pushes.push_back(push);
@@ -688,52 +698,42 @@ void FixMPMMixture::has_acted(MPMNodeAction &other, Stage stage)
    Where a wall has changed the velocity of the soil, but not that of the water, as a sieve does, what soil presses on it
    with would have been part of the acceleration a, and drag on the water. Along the impulse of the wall, which is its
    normal, soil there has the velocity that the wall leaves, as if it were infinitely heavy. The wall bears the
-   difference.
+   difference. Walls elsewhere may hold the water at the same node along other directions
 ------------------------------------------------------------------------- */
 
 void FixMPMMixture::correct_drag_at_walls()
 {
   if (drag == NO_DRAG || !meets) return;
-  const double dt = dt_last;
-  const int dim = soil.field->lattice.dim;
-  for (auto &node : nodes) {
-    if (node.water < 0) continue;
+  for (const auto &push : pushes) {
+    auto &node = nodes[push.node];
     const double *const at_soil = soil.field->grid.record(node.soil);
     double *const at_water = water.field->grid.record(node.water);
-    double normal[3] = {0.0, 0.0, 0.0};
-    bool water_is_held = false;
-    for (int d = 0; d < dim; d++) {
-      normal[d] = at_soil[d] - node.after_soil[d];
-      water_is_held = water_is_held || at_water[d] != node.after_water[d];
-    }
-    const double length = sqrt(dot(normal, normal));
-    if (water_is_held || !(length > 0.0)) continue;
-    for (double &c : normal) c /= length;
+    const double length = sqrt(dot(push.change, push.change));
+    if (!(length > 0.0)) continue;
+    double normal[3], bears[3] = {0.0, 0.0, 0.0};
+    for (int d = 0; d < 3; d++) normal[d] = push.change[d] / length;
+    if (is_held(node, normal)) continue;
     const double before = dot(normal, at_water + 4) - dot(normal, at_soil + 4);
     const double gain = dot(normal, node.free_water) - dot(normal, at_soil) - before;
-    const double x = dt * node.rate / at_water[3];
+    const double x = dt_last * node.rate / at_water[3];
     const double left = exp(-x) * before + mean_of_fading(x) * gain;
     const double change = dot(normal, at_soil) + left - dot(normal, at_water);
-    for (int d = 0; d < dim; d++) {
-      node.relief[d] = -at_water[3] * change * normal[d];
+    for (int d = 0; d < soil.field->lattice.dim; d++) {
+      bears[d] = at_water[3] * change * normal[d];
       at_water[d] += change * normal[d];
-      node.impulse[d] += node.relief[d];
+      node.impulse[d] -= bears[d];
     }
-  }
-
-  // each wall by its part in the change of the velocity
-
-  for (const auto &push : pushes) {
-    const auto &node = nodes[push.node];
-    const double *const at_soil = soil.field->grid.record(node.soil);
-    double all[3], bears[3];
-    for (int d = 0; d < 3; d++) all[d] = at_soil[d] - node.after_soil[d];
-    const double square = dot(all, all);
-    if (!(square > 0.0)) continue;
-    const double part = dot(push.change, all) / square;
-    for (int d = 0; d < 3; d++) bears[d] = -part * node.relief[d];
     push.wall->bear(*soil.field, node.soil, bears);
   }
+}
+
+/** Have walls changed the velocity of the water along this direction, by more than rounding? */
+bool FixMPMMixture::is_held(const Node &node, const double *normal) const
+{
+  constexpr double ACROSS = 1.0e-6, ROUNDING = 1.0e-12;
+  const double along = fabs(dot(normal, node.held));
+  return along > ACROSS * sqrt(dot(node.held, node.held)) &&
+      along > ROUNDING * sqrt(dot(node.after_water, node.after_water));
 }
 
 /* ----------------------------------------------------------------------

@@ -100,23 +100,23 @@ class FixMPMMixture :
     int slot_soil, slot_water;
     uint64_t canonical;
   };
-  struct Node {              // with soil near water
-    int64_t soil, water;     // water: -1 where there is none
-    double share;            // of the pressure that the soil bears
-    double here;             // porosity
-    double porosity;         // of the soil there, which may be more or less at the end of the soil
-    double filled;           // share of its pores
-    double volume;           // of this share of the soil
-    double wet;              // volume of water
-    double density;          // of the water
-    double force[3];         // on the soil, by the pressure of the water [mass*acceleration]
-    double on_water[3];      // more than by its own volume
-    double impulse[3];       // of drag on the soil
-    double rate;             // coefficient of drag [mass/time]
-    double free_water[3];    // velocity by all but drag and walls
-    double after_soil[3], after_water[3];    // velocities before walls act
-    double seen[3];                          // of the soil, before the next one of these does
-    double relief[3];                        // impulse on the soil that walls bear less
+  struct Node {               // with soil near water
+    int64_t soil, water;      // water: -1 where there is none
+    double share;             // of the pressure that the soil bears
+    double here;              // porosity
+    double porosity;          // of the soil there, which may be more or less at the end of the soil
+    double filled;            // share of its pores
+    double volume;            // of this share of the soil
+    double wet;               // volume of water
+    double density;           // of the water
+    double force[3];          // on the soil, by the pressure of the water [mass*acceleration]
+    double on_water[3];       // more than by its own volume
+    double impulse[3];        // of drag on the soil
+    double rate;              // coefficient of drag [mass/time]
+    double free_water[3];     // velocity by all but drag and walls
+    double after_water[3];    // before walls act
+    double held[3];           // change of it by walls
+    double seen[3];           // of the soil, before the next wall acts
     bool owned;
   };
   struct Push {    // of a wall on the soil
@@ -134,8 +134,9 @@ class FixMPMMixture :
   std::vector<double> flux, lead;    // [node][8] U at those of soil, U - u at those of water
   std::vector<double> rates;         // [n] div U at points of soil
   bool lists_valid = false;
-  bool may_meet = false;    // on any rank
-  bool meets = false;       // in this step
+  bool boxes_meet = false;    // boxes around both overlap
+  bool may_meet = false;      // on any rank
+  bool meets = false;         // in this step
   double dt_last = 0.0;
   double dissipated = 0.0;    // by drag so far, this rank's share
 
@@ -151,6 +152,7 @@ class FixMPMMixture :
   bool find_shares();
   void share_pressure();
   void correct_drag_at_walls();
+  bool is_held(const Node &, const double *normal) const;
   void share_strain();
   void account_for_work();
   bool shares_points(const class FixMPMMaterial &) const;

@@ -90,11 +90,11 @@ MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer
 
 /* ---------------------------------------------------------------------- */
 
-void MPMConduction::init(double sigma)
+void MPMConduction::init(double sigma, bool surfaces)
 {
   thermals.clear();
   slowest = std::numeric_limits<double>::max();
-  double least_capacity = slowest, greatest_capacity = 0.0;
+  double greatest_capacity = 0.0;
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
@@ -107,7 +107,7 @@ void MPMConduction::init(double sigma)
         : all.conductivity;
     const double capacity = material.density() * all.capacity;
     slowest = std::min(slowest, least / capacity);
-    least_capacity = std::min(least_capacity, capacity);
+    least_capacity = thermals.size() > 1 ? std::min(least_capacity, capacity) : capacity;
     greatest_capacity = std::max(greatest_capacity, capacity);
   }
   if (greatest_capacity > 0.0) slowest *= least_capacity / greatest_capacity;
@@ -126,10 +126,16 @@ void MPMConduction::init(double sigma)
       steepest = std::max(steepest, sum / (field.lattice.h * field.lattice.h));
     }
   }
-  conducted = exchanged = 0.0;
+  conducted = 0.0;
   init_layers();
   faces.init(sigma);
-  scalar.init(transfer.kind != MPMHeatTransfer::PIC, faces.any());
+  wants_volumes = faces.any() || (surfaces && conducts_in_part());
+  scalar.init(transfer.kind != MPMHeatTransfer::PIC, wants_volumes);
+}
+
+bool MPMConduction::conducts_in_part() const
+{
+  return conducts() && thermals.size() < field.materials.size();
 }
 
 void MPMConduction::find_points(bool may_rest)
@@ -166,7 +172,7 @@ void MPMConduction::init_layers()
   greatest = 0.0;
   if (total || steepest == 0.0) return;
   bool differ = false;
-  double least_capacity = std::numeric_limits<double>::max(), fastest = 0.0;
+  double fastest = 0.0;
   for (const auto &t : thermals) {
     if (t.all.orthotropic) return;
     differ = differ ||
@@ -174,7 +180,6 @@ void MPMConduction::init_layers()
          (t.varies || t.all.conductivity != thermals.front().all.conductivity));
     const double capacity = t.fix->material->density() * t.all.capacity;
     greatest = std::max(greatest, t.all.conductivity);
-    least_capacity = std::min(least_capacity, capacity);
     fastest = std::max(fastest, t.all.conductivity / capacity);
   }
   if (!differ) return;
@@ -202,6 +207,19 @@ static void rotation(const double *F, double R[3][3])
   }
 }
 
+void LAMMPS_NS::principal_conductivities(const Conduction &c, const double *F, double k[3],
+                                         double n[3][3])
+{
+  k[0] = c.conductivity;
+  for (int a = 1; a < 3; a++) k[a] = c.orthotropic ? c.across[a - 1] : c.conductivity;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) n[a][b] = a == b;
+  if (!c.orthotropic) return;
+  double R[3][3];
+  rotation(F, R);
+  MathExtra::times3_transpose(c.axis, R, n);
+}
+
 /* ----------------------------------------------------------------------
    conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
 ------------------------------------------------------------------------- */
@@ -213,13 +231,12 @@ void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) k[a][b] = a == b ? c.conductivity : 0.0;
   if (c.orthotropic) {
-    double R[3][3], n[3][3];
-    rotation(field.points->F[i], R);
-    MathExtra::times3_transpose(c.axis, R, n);    // axes in rows
+    double along[3], n[3][3];
+    principal_conductivities(c, field.points->F[i], along, n);
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++)
-        k[a][b] = c.conductivity * n[0][a] * n[0][b] + c.across[0] * n[1][a] * n[1][b] +
-            c.across[1] * n[2][a] * n[2][b];
+        k[a][b] = along[0] * n[0][a] * n[0][b] + along[1] * n[1][a] * n[1][b] +
+            along[2] * n[2][a] * n[2][b];
   }
   if (!total) return;
   double F[3][3], inverse[3][3], half[3][3];
@@ -326,7 +343,7 @@ static void copy_rows(int dim, int n, const double *from, int width, double *to,
 double MPMConduction::points_to_nodes(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
-  const bool simple = !total && steepest > 0.0, wants_volumes = faces.any();
+  const bool simple = !total && steepest > 0.0;
   double most = 0.0;
   volumes.resize(atom->nmax);
   if (layers)
@@ -451,13 +468,6 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMConduction::greatest_rate(double conduction, double exchange)
-{
-  conducted = conduction;
-  exchanged = exchange;
-  return conducted + exchanged;
-}
-
 /** Functions that points alone do not bound, and domains, have the bound of the last step, and before the first one
  *  what they have inside of a body that is not deformed. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
@@ -491,7 +501,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     most = here;
     tag = atom->tag[i];
   }
-  return (bounded || conducted == 0.0 ? most : conducted) + exchanged;
+  return bounded || conducted == 0.0 ? most : conducted;
 }
 
 double MPMConduction::memory_usage() const

@@ -46,15 +46,14 @@ class MPMConduction : protected Pointers {
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
-  /** Start of a run. */
-  void init(double sigma);
+  /** Start of a run. surfaces: heat comes through surfaces other than faces of the box, too. */
+  void init(double sigma, bool surfaces);
 
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
    *  the transfer pic. Returns the bound of the rates of conduction of this rank [1/time]. */
   double points_to_nodes(const MPMRows &gradients);
-  /** A bound of the eigenvalues of minus the rates [1/time], from those of conduction and of exchange through faces on
-   *  all ranks. */
-  double greatest_rate(double conduction, double exchange);
+  /** The bound of the rates of conduction on all ranks. */
+  void keep_rate(double conduction) { conducted = conduction; }
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. */
   void find_rates(const double *source, Heats &power);
@@ -66,12 +65,15 @@ class MPMConduction : protected Pointers {
   /** Of nodes, see MPMSuperStep. */
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
-  /** Bound of the eigenvalues for this rank's points [1/time]; tag: the point that limits it. */
+  double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
+  /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. */
   double greatest_rate_of_points(tagint &tag) const;
   /** The points are known. Without any that conduct, on any rank, there is nothing to do if it may rest. Collective. */
   void find_points(bool may_rest);
   /** A material of the field conducts. */
   bool conducts() const { return active; }
+  /** A material of the field conducts, and another one does not. */
+  bool conducts_in_part() const;
   double memory_usage() const;
 
  private:
@@ -91,10 +93,11 @@ class MPMConduction : protected Pointers {
 
   const MPMHeatTransfer &transfer;
   std::vector<Thermal> thermals;
+  bool wants_volumes = false;
   double slowest = 0.0;    // smallest diffusivity of a material, by the ratio of capacities
   double steepest =
       0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
-  double conducted = 0.0, exchanged = 0.0;    // limits of the last step
+  double conducted = 0.0;    // limit of the last step
   bool total = false, active = false;
 
   std::vector<double> volumes;    // [n] of points in this step
@@ -112,6 +115,11 @@ class MPMConduction : protected Pointers {
   double row_bound(double usual);
   void init_layers();
 };
+
+/** Conductivities of a material along the axes of a point with the deformation gradient F, which are the rows of n, unit
+ *  vectors in space; all the same if the material is isotropic. */
+void principal_conductivities(const MPM_NS::Conduction &, const double *F, double k[3],
+                              double n[3][3]);
 
 }    // namespace LAMMPS_NS
 #endif

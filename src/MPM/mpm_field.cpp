@@ -138,7 +138,7 @@ void MPMField::check_box()
 void MPMField::init(MPMPlan *plan_of_all)
 {
   plan = plan_of_all;
-  running = time_limit->watch_volume = keep_old = false;
+  running = time_limit->watch_volume = keep_old = keep_old_now = false;
   check_box();
   frame->check();
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();
@@ -199,8 +199,8 @@ static bool is_in_contact(const MPMField &field)
 
 void MPMField::choose_kernels()
 {
-  const bool split = ledger.on || keep_old || options.heat || options.stress_before() ||
-      (options.axisymmetric && options.scheme != Options::USL) ||
+  const bool split = ledger.on || keep_old || keep_old_now || options.heat ||
+      options.stress_before() || (options.axisymmetric && options.scheme != Options::USL) ||
       (has_domain(options.shape) && options.stress_after());
   kernel = frame->kernels(options.transfer, split);
   if (options.strains_by_gradient()) {

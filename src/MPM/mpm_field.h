@@ -76,6 +76,8 @@ class MPMField : protected Pointers {
   MPMLedger ledger;
   /** A node action reads what nodes had before the momentum equation; set by its init_action(). */
   bool keep_old = false;
+  /** The same until the blocks are renewed: set by its blocks_found(), followed by choose_kernels(). */
+  bool keep_old_now = false;
   bool running = false;    ///< between the set-up and the end of a run
   double last_dt = 0.0;    ///< duration of the last step of the cycle; 0: none so far
 

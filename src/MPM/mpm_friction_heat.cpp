@@ -18,6 +18,7 @@
 #include "mpm_friction_heat.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "fix_mpm_heat.h"
@@ -54,7 +55,7 @@ MPMFrictionHeat::MPMFrictionHeat(LAMMPS *lmp, const MPMFrictionHeatOptions &opti
 
 /* ---------------------------------------------------------------------- */
 
-void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &fields, bool shared)
+void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &fields)
 {
   const auto heats = modify->get_fix_by_style("^mpm/heat$");
   if (heats.empty())
@@ -67,7 +68,7 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
   bodies.clear();
   bool any = false, points = false;
   for (auto *field : fields) {
-    Body body = {field, nullptr, false, 0.0, {}};
+    Body body = {field, nullptr, false, false, 0.0, {}};
     std::vector<int> mine(field->materials.size(), 0), here(mine.size());    // of its points
     for (int i = 0; i < atom->nlocal; i++)
       for (std::size_t k = 0; k < mine.size(); k++)
@@ -81,16 +82,12 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
       const auto &material = *field->materials[k]->material;
       if (!material.conducts()) continue;
       const Conduction c = material.conduction(nullptr);
-      if (c.orthotropic && shared && options.kind == MPMFrictionHeatOptions::YES)
-        error->all(FLERR, Error::NOLASTLINE,
-                   "Fix {} {} heat yes: bodies share the heat by their conductivities, but that of "
-                   "fix mpm/material {} is orthotropic: tell the share by 'heat share S'",
-                   user.style, user.id, field->materials[k]->id);
       nconducting++;
+      body.orthotropic = body.orthotropic || c.orthotropic;
       body.mixed = body.mixed || material.conduction_varies();
       body.effusivity = std::sqrt(c.conductivity * material.density() * c.capacity);
     }
-    body.mixed = nconducting > 0 && (body.mixed || nhere > 1);
+    body.mixed = nconducting > 0 && (body.mixed || body.orthotropic || nhere > 1);
     any = any || nconducting > 0;
     field->keep_old = true;
     bodies.push_back(body);
@@ -108,17 +105,22 @@ void MPMFrictionHeat::begin_step()
   for (auto &body : bodies) {
     auto &conduction = heat->of(*body.field);
     body.conduction = conduction.conducts() ? &conduction : nullptr;
-    if (body.mixed) map_effusivity(body);
+    if (body.orthotropic)
+      map_tensor(body);
+    else if (body.mixed)
+      map_effusivity(body);
   }
 }
 
-/** Means over points, weighted with their volumes; points that do not conduct count as 0. */
-void MPMFrictionHeat::map_effusivity(Body &body)
+/** Means over points, weighted with their volumes, of numbers that value(i, c, values) gives for a point and what it conducts;
+ *  points that do not conduct count as 0. To at_node, of so many reals, from one of them on. */
+template <class F>
+void MPMFrictionHeat::map_means(Body &body, int first, int nvalue, int width, const F &value)
 {
   MPMField &field = *body.field;
   const auto &pic = field.pic;
   const std::size_t nmax = atom->nmax;
-  values.resize(3 * nmax);
+  values.assign(3 * nmax, 0.0);
   weights.resize(nmax);
   const PointRows r = field.rows_at_rest(values.data(), weights.data());
   const TransferStep still = field.step_data(0.0);
@@ -126,30 +128,74 @@ void MPMFrictionHeat::map_effusivity(Body &body)
   points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
     for (int i = run.first; i < run.last; i++) {
       weights[i] = atom->vfrac[i] * field.points->jacobian(i);
-      values[3 * (std::size_t) i] = 0.0;
-      if (!run.material || !run.material->material->conducts()) continue;
-      const Conduction c = run.material->material->conduction(run.material->history[i]);
-      values[3 * (std::size_t) i] =
-          std::sqrt(c.conductivity * atom->rmass[i] / weights[i] * c.capacity);
+      if (run.material && run.material->material->conducts())
+        value(i, run.material->material->conduction(run.material->history[i]),
+              &values[3 * (std::size_t) i]);
     }
     pic.p2g_momentum(r, still, run.first, run.last, base, field.map->tile, box);
   });
   field.nodes.sum(nodes.data(), pic.nreal, 0, 4);
-  body.at_node.resize(field.grid.nnodes());
+  body.at_node.resize(width * field.grid.nnodes());
   const double *node = nodes.data();
-  for (double &e : body.at_node) {
-    e = node[3] > 0.0 ? node[0] / node[3] : 0.0;
-    node += pic.nreal;
-  }
+  for (std::size_t n = 0; n < (std::size_t) field.grid.nnodes(); n++, node += pic.nreal)
+    for (int k = 0; k < nvalue; k++)
+      body.at_node[width * n + first + k] = node[3] > 0.0 ? node[k] / node[3] : 0.0;
+}
+
+void MPMFrictionHeat::map_effusivity(Body &body)
+{
+  map_means(body, 0, 1, 1, [&](int i, const Conduction &c, double *e) {
+    *e = std::sqrt(c.conductivity * atom->rmass[i] / weights[i] * c.capacity);
+  });
+}
+
+/** Rows and columns of the components of a symmetric tensor, those in the plane of 2d first. */
+static constexpr int ROW[2][6] = {{0, 1, 0}, {0, 1, 2, 0, 0, 1}};
+static constexpr int COLUMN[2][6] = {{0, 1, 1}, {0, 1, 2, 1, 2, 2}};
+
+/** The square roots of the tensors K rho c: with their mean E the effusivity along a normal is |E n|, which is sqrt(n.K.n rho c) for a
+ *  single material, and the mean of sqrt(K rho c) for several isotropic ones. */
+void MPMFrictionHeat::map_tensor(Body &body)
+{
+  const int dim = domain->dimension, width = dim == 3 ? 6 : 3;
+  for (int first = 0; first < width; first += dim)
+    map_means(body, first, std::min(dim, width - first), width,
+              [&](int i, const Conduction &c, double *e) {
+                double k[3], n[3][3];
+                principal_conductivities(c, body.field->points->F[i], k, n);
+                for (int j = 0; j < dim && first + j < width; j++)
+                  for (int a = 0; a < 3; a++)
+                    e[j] += std::sqrt(k[a] * atom->rmass[i] / weights[i] * c.capacity) *
+                        n[a][ROW[dim - 2][first + j]] * n[a][COLUMN[dim - 2][first + j]];
+              });
 }
 
 /* ---------------------------------------------------------------------- */
 
-double MPMFrictionHeat::effusivity(const Body &body, const double *record) const
+std::size_t MPMFrictionHeat::node_of(const Body &body, const double *record) const
 {
   const Grid &grid = body.field->grid;
-  return body.mixed ? body.at_node[(record - body.field->grid.nodes()) / grid.nreal]
-                    : body.effusivity;
+  return (record - body.field->grid.nodes()) / grid.nreal;
+}
+
+/** Along a unit normal; without one, something that is 0 only if nothing conducts there. */
+double MPMFrictionHeat::effusivity(const Body &body, const double *record,
+                                   const double *normal) const
+{
+  if (!body.mixed) return body.effusivity;
+  const std::size_t node = node_of(body, record);
+  if (!body.orthotropic) return body.at_node[node];
+  const int dim = domain->dimension, width = dim == 3 ? 6 : 3;
+  const double *const e = &body.at_node[width * node];
+  if (!normal) return e[0];
+  double en[3] = {0.0, 0.0, 0.0}, sum = 0.0;
+  for (int j = 0; j < width; j++) {
+    const int a = ROW[dim - 2][j], b = COLUMN[dim - 2][j];
+    en[a] += e[j] * normal[b];
+    if (a != b) en[b] += e[j] * normal[a];
+  }
+  for (const double x : en) sum += x * x;
+  return std::sqrt(sum);
 }
 
 double MPMFrictionHeat::made(const double *J, const double *old, const double *now, int dim) const
@@ -162,20 +208,20 @@ double MPMFrictionHeat::made(const double *J, const double *old, const double *n
 void MPMFrictionHeat::give(Body &body, const double *record, double energy, bool owned)
 {
   // among points of several materials a node may have none that conducts
-  if (!body.conduction || energy == 0.0 || effusivity(body, record) == 0.0) return;
+  if (!body.conduction || energy == 0.0 || effusivity(body, record, nullptr) == 0.0) return;
   auto &given = body.conduction->given;
   Grid &grid = body.field->grid;
   if (given.empty()) given.resize(grid.nnodes(), 0.0);
-  given[(record - grid.nodes()) / grid.nreal] += energy;
+  given[node_of(body, record)] += energy;
   if (owned) heat->book(FixMPMHeat::FRICTION, energy);
 }
 
-void MPMFrictionHeat::between(int a, const double *ra, int b, const double *rb, double energy,
-                              bool owned)
+void MPMFrictionHeat::between(int a, const double *ra, int b, const double *rb,
+                              const double *normal, double energy, bool owned)
 {
   double share = options.share;
   if (options.kind == MPMFrictionHeatOptions::YES) {
-    const double ea = effusivity(bodies[a], ra), eb = effusivity(bodies[b], rb);
+    const double ea = effusivity(bodies[a], ra, normal), eb = effusivity(bodies[b], rb, normal);
     share = ea + eb > 0.0 ? ea / (ea + eb) : 0.0;
   }
   give(bodies[a], ra, share * energy, owned);

@@ -40,17 +40,18 @@ class MPMFrictionHeat : protected Pointers {
  public:
   MPMFrictionHeat(class LAMMPS *, const MPMFrictionHeatOptions &);
 
-  /** Start of a run, in init_action(): stops with an error when nothing can take up the heat, or when
-   *  bodies that share it, by between(), have no effusivity. Fields keep the old velocities of their nodes
-   *  from now on. */
-  void begin_run(const Fix &user, const std::vector<MPMField *> &, bool shared = false);
+  /** Start of a run, in init_action(): stops with an error when nothing can take up the heat. Fields keep
+   *  the old velocities of their nodes from now on. */
+  void begin_run(const Fix &user, const std::vector<MPMField *> &);
   /** Collective, in each step before heat is given, with the nodes of this step. */
   void begin_step();
 
-  /** Heat [energy] at a node of two bodies, with its record in the field of each. By default bodies whose
-   *  surfaces have the same temperature share it as q_a : q_b = e_a : e_b with the effusivities
-   *  e = sqrt(k rho c) (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids (1959), 2.15). */
-  void between(int a, const double *ra, int b, const double *rb, double heat, bool owned);
+  /** Heat [energy] at a node of two bodies, with its record in the field of each and the unit normal of their surface. By
+   *  default bodies whose surfaces have the same temperature share it as q_a : q_b = e_a : e_b with the effusivities
+   *  e = sqrt(k rho c) (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids (1959), 2.15), where k is the
+   *  conductivity along the normal. */
+  void between(int a, const double *ra, int b, const double *rb, const double *normal, double heat,
+               bool owned);
   /** Heat [energy] at a node of a wall, which takes what the share leaves. What comes to material that does
    *  not conduct is lost. */
   void at_wall(int field, const double *record, double heat, bool owned);
@@ -65,18 +66,22 @@ class MPMFrictionHeat : protected Pointers {
  private:
   struct Body {
     MPMField *field;
-    MPMConduction *conduction;    // null: its materials do not conduct
-    bool mixed;                   // effusivities differ from point to point
-    double effusivity;            // unless mixed
-    std::vector<double> at_node;
+    MPMConduction *conduction;      // null: its materials do not conduct
+    bool mixed;                     // effusivities differ from point to point
+    bool orthotropic;               // and with the direction
+    double effusivity;              // unless mixed
+    std::vector<double> at_node;    // one number, or those of a symmetric tensor, see map_tensor()
   };
   const MPMFrictionHeatOptions &options;
   FixMPMHeat *heat = nullptr;
   std::vector<Body> bodies;
   std::vector<double> values, weights;    // of points
 
+  template <class F> void map_means(Body &, int first, int nvalue, int width, const F &);
   void map_effusivity(Body &);
-  double effusivity(const Body &, const double *record) const;
+  void map_tensor(Body &);
+  std::size_t node_of(const Body &, const double *record) const;
+  double effusivity(const Body &, const double *record, const double *normal) const;
   void give(Body &, const double *record, double heat, bool owned);
 };
 

@@ -18,6 +18,10 @@
    instead, nodes next to it got up to a tenth of the heat too much or too little. As |G|^2 <= C_i sum_p V_p^2 |grad N|^2/(N C_p), the
    response of the temperature of the surface, sum_i w_i T_i with w_i = n.G_i/sum n.G, to heat is bounded, too.
 
+   The sums are over all points of the field. Where some of them do not conduct, a node may have next to no capacity: |G|^2 is
+   at most what is above with V_i = sum_p V_p N instead of C_i, and with the factor min(1, 2 f) of the share f of V_i that conducts,
+   w^2/C_i is bounded again. What these factors leave of the weights is the share of the area through which heat goes.
+
    The area of a line is that of the whole line where the body fills all that is behind its surface, and less at the sides of
    the body and of the box. The sum of n.G has the noise of sums over points that are no integrals.
 
@@ -33,6 +37,7 @@
 #include "math_special.h"
 #include "mpm_conduction.h"
 #include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_node_sums.h"
 #include "mpm_stencil.h"
 
@@ -45,6 +50,7 @@ using MathSpecial::square;
 
 static constexpr double LEAST =
     0.01;    // weights of a line that has a surface, as a share of a full one
+static constexpr double ENOUGH = 0.5;    // of the volume of a node, that conducts, for its weight
 // sums over points are not exactly integrals: a line from here on is full, and what is between
 static constexpr double FULL = 0.95, NOT_FULL = 0.8;
 
@@ -142,14 +148,24 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *
   return true;
 }
 
+double MPMHeatBody::conducting(int64_t node) const
+{
+  if (!conduction->conducts_in_part()) return 1.0;
+  const double all = share[node] * field.lattice.cell_volume() *
+      field.frame->node_circle((int) (node / NODES_PER_BLOCK), (int) (node % NODES_PER_BLOCK));
+  return all > 0.0 ? std::min(1.0, conduction->node_volume()[node] / (ENOUGH * all)) : 0.0;
+}
+
 bool MPMHeatBody::find_response(Line &line) const
 {
-  line.response = 0.0;
+  line.response = line.conducting = 0.0;
+  for (int k = 0; k < line.n; k++)
+    if (line.weight[k] > 0.0) line.conducting += line.weight[k] *= conducting(line.node[k]);
+  if (!(line.conducting > LEAST)) return false;
   for (int k = 0; k < line.n; k++) {
-    if (!(line.weight[k] > 0.0)) continue;
-    const double C = conduction->node_capacity()[line.node[k]];
-    if (!(C > 0.0)) return false;
-    line.response += square(line.weight[k]) / C;
+    line.weight[k] /= line.conducting;
+    if (line.weight[k] > 0.0)
+      line.response += square(line.weight[k]) / conduction->node_capacity()[line.node[k]];
   }
   return true;
 }

@@ -33,6 +33,7 @@ class MPMHeatBody : protected Pointers {
     double area;            ///< of the surface that belongs to the line, as seen along the axis
     double place;           ///< of that surface on the line, in node spacings
     double response;        ///< of the temperature there to heat: sum of weight^2/capacity
+    double conducting;      ///< share of it where there is material that conducts
   };
 
   MPMField &field;
@@ -57,8 +58,11 @@ class MPMHeatBody : protected Pointers {
   /** The line along an axis through a place on it (in node spacings), base: a node of it; into: the unit normal
    *  into the body. False if there is no surface, or this rank does not have all nodes. */
   bool make_line(int axis, const int *base, double at, const double *into, Line &) const;
-  /** Its response, when capacities are known. False if a node has none. */
+  /** Its response, and weights without nodes that do not conduct, when capacities are known. False if none conducts. */
   bool find_response(Line &) const;
+  /** What the weight of a node counts, as material there conducts: 1 down to half of its volume, and in proportion below, so
+   *  that no node gets heat that it has no capacity for. */
+  double conducting(int64_t node) const;
   double temperature(const Line &) const;
   /** Rate of this temperature by all other heat. */
   double drift(const Line &) const;

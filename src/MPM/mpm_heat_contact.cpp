@@ -189,6 +189,9 @@ double MPMHeatContact::begin_step()
   for (auto &place : places) {
     place.rate = 0.0;
     if (!body[0]->find_response(place.line[0]) || !body[1]->find_response(place.line[1])) continue;
+    const double conducting = std::min(place.line[0].conducting, place.line[1].conducting);
+    place.area *= conducting;
+    place.share *= conducting;
     place.response = place.line[0].response + place.line[1].response;
     place.rate = pair.now * place.area * place.response / place.share;
     most = std::max(most, place.rate);

@@ -19,6 +19,12 @@
    capacity. Hence the weight of a node counts in full only if half of the volume is there that it has where
    material fills the box, and in proportion to it below.
 
+   Convection and radiation: the temperature at a face follows that outside with the rate r = R dP/dT of a line, with its
+   response R and the power P. As at other surfaces (mpm_heat_surface.cpp) this rate is limited to l. Lines of faces normal to
+   several axes take turns, each with the rates that the one before has left: (1 - (1 - l/r_1) Pi_1) (1 - (1 - l/r_2) Pi_2)
+   in terms of the projections to their temperatures, which commute at the edges and corners of a block. What
+   follows there is at most as fast as the sum of the rates of all axes.
+
    How near is material? Along a line, sum_k w_k V_k over what it is where material fills the box up to the
    face, is 1 without a gap, 0.7 with one of a quarter of a cell, and 0.46 with half a cell (quadratic). At the
    sides of a body, lines have points on one side only; the fullest of the nodes of a line tells how many.
@@ -30,6 +36,7 @@
 #include "math_special.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_heat_body.h"
 #include "mpm_stencil.h"
 
 #include <algorithm>
@@ -63,6 +70,7 @@ static int weights_at(const MPMField &field, const MPMStencil &stencil, double t
 void MPMHeatFaces::init(double sigma_of_units)
 {
   sigma = sigma_of_units;
+  std::fill_n(last, 3, 0.0);
   faces.clear();
   const MPMStencil stencil(field);
   const auto &lattice = field.lattice;
@@ -92,6 +100,41 @@ void MPMHeatFaces::init(double sigma_of_units)
     faces.push_back(f);
   }
   crossing = (held & (held - 1)) != 0;
+}
+
+double MPMHeatFaces::limit(double cap, const double rates[3])
+{
+  fastest = cap;
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; axis++) sum += std::min(cap, last[axis] = rates[axis]);
+  return sum;
+}
+
+/** Where material fills the box, the response of a line times its area and h is up to 1.9/capacity, and up to twice that in lines
+ *  whose nodes have only half of their volume. A rate that is not known is the limit. */
+double MPMHeatFaces::expected_rate(double cap, double capacity) const
+{
+  static constexpr double MOST = 5.0;
+  double rates[3] = {0.0, 0.0, 0.0};
+  for (const auto &face : faces) {
+    const auto &condition = conditions[face.face];
+    if (condition.kind <= MPMHeatCondition::FLUX) continue;
+    const auto &H = condition.value[0];
+    const bool known =
+        condition.kind == MPMHeatCondition::CONVECTION && H.variable.empty() && capacity > 0.0;
+    const double rate =
+        known ? std::max(last[face.axis], MOST * H.value / (capacity * field.lattice.h)) : cap;
+    rates[face.axis] = std::max(rates[face.axis], std::min(cap, rate));
+  }
+  return rates[0] + rates[1] + rates[2];
+}
+
+int MPMHeatFaces::axes_that_follow() const
+{
+  bool follows[3] = {false, false, false};
+  for (const auto &face : faces)
+    if (conditions[face.face].kind > MPMHeatCondition::FLUX) follows[face.axis] = true;
+  return follows[0] + follows[1] + follows[2];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -147,8 +190,7 @@ double MPMHeatFaces::circle(int64_t node) const
 /* ---------------------------------------------------------------------- */
 
 void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<double> &capacity,
-                           const std::vector<double> &volume,
-                           const std::vector<double> &surface) const
+                           const std::vector<double> &volume, const MPMHeatBody *body) const
 {
   const Grid &grid = field.grid;
   const double cell = grid.lattice.cell_volume();
@@ -171,7 +213,7 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
   line.area = std::min(1.0, aside) * cell / grid.lattice.h *
       (face.axis ? circle(line.node[0]) : field.frame->circle(face.x)) *
       std::min(1.0, (near - TOUCHES) / (IS_AT_FACE - TOUCHES));
-  if (!weigh_by_surface(face, line, surface)) {
+  if (!weigh_by_surface(face, line, body)) {
     double sum = 0.0;
     for (int k = 0; k < face.n; k++) {
       line.weight[k] = face.weight[k] * std::min(1.0, part[k] / (ENOUGH * most));
@@ -192,14 +234,13 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
    that is in equilibrium. Where material is too thin, that of the other side of it reduces these sums.
 ------------------------------------------------------------------------- */
 
-bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line,
-                                    const std::vector<double> &surface) const
+bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line, const MPMHeatBody *body) const
 {
-  if (surface.empty()) return false;
+  if (!body) return false;
   double weight[MOST], sum = 0.0;
   for (int k = 0; k < face.n; k++) {
-    const double G = surface[3 * line.node[k] + face.axis] / circle(line.node[k]);
-    weight[k] = std::max(0.0, face.face % 2 ? G : -G);
+    const double G = body->gradient[3 * line.node[k] + face.axis] / circle(line.node[k]);
+    weight[k] = std::max(0.0, face.face % 2 ? G : -G) * body->conducting(line.node[k]);
     sum += weight[k];
   }
   const double length = face.axis ? circle(line.node[0]) : field.frame->circle(face.x);
@@ -215,24 +256,22 @@ void MPMHeatFaces::mark_near(std::vector<char> &near) const
       for (int k = 0; k < face.n; k++) near[line.node[k] / NODES_PER_BLOCK] = 1;
 }
 
-double MPMHeatFaces::begin_step(const std::vector<double> &capacity,
-                                const std::vector<double> &volume,
-                                const std::vector<double> &surface,
-                                const std::vector<double> &temperature)
+void MPMHeatFaces::begin_step(const std::vector<double> &capacity,
+                              const std::vector<double> &volume, const MPMHeatBody *body,
+                              const std::vector<double> &temperature, double rates[3])
 {
-  double fastest = 0.0;
   for (auto &face : faces) {
     const auto &condition = conditions[face.face];
     for (auto &line : face.lines) {
-      line.response = line.area = 0.0;
-      prepare(face, line, capacity, volume, surface);
+      line.response = line.area = line.rate = 0.0;
+      prepare(face, line, capacity, volume, body);
       if (condition.kind <= MPMHeatCondition::FLUX) continue;
       double T = 0.0;
       for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
-      fastest = std::max(fastest, line.area * line.response * condition.slope(T, sigma));
+      line.rate = line.area * line.response * condition.slope(T, sigma);
+      rates[face.axis] = std::max(rates[face.axis], line.rate);
     }
   }
-  return fastest;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -280,18 +319,39 @@ void MPMHeatFaces::hold(std::vector<double> &temperature, Heats &heat) const
 void MPMHeatFaces::add_rates(const std::vector<double> &temperature, std::vector<double> &rate,
                              Heats &power) const
 {
-  for (const auto &face : faces) {
-    const auto &condition = conditions[face.face];
-    if (condition.kind == MPMHeatCondition::TEMPERATURE) continue;
-    for (const auto &line : face.lines) {
-      if (!(line.area > 0.0)) continue;
-      double T = 0.0;
-      for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
-      const double more = line.area * condition.flux(T, sigma);
-      for (int k = 0; k < face.n; k++) rate[line.node[k]] += more * line.change[k];
-      power[face.face] += more * line.owned;
+  const auto visit = [&](bool follows, const auto &power_of) {
+    bool any = false;
+    for (const auto &face : faces) {
+      const auto &condition = conditions[face.face];
+      if (condition.kind == MPMHeatCondition::TEMPERATURE ||
+          (condition.kind != MPMHeatCondition::FLUX) != follows)
+        continue;
+      any = true;
+      for (const auto &line : face.lines) {
+        if (!(line.area > 0.0)) continue;
+        const double more = power_of(condition, line, face.n);
+        for (int k = 0; k < face.n; k++) rate[line.node[k]] += more * line.change[k];
+        power[face.face] += more * line.owned;
+      }
     }
-  }
+    return any;
+  };
+  visit(false, [&](const auto &condition, const Line &line, int) {
+    return line.area * condition.flux(0.0, sigma);
+  });
+  hold_rates(rate, power);
+  const bool any = visit(true, [&](const auto &condition, const Line &line, int n) {
+    double T = 0.0, drift = 0.0;
+    for (int k = 0; k < n; k++) {
+      T += line.weight[k] * temperature[line.node[k]];
+      drift += line.weight[k] * rate[line.node[k]];
+    }
+    const double P = line.area * condition.flux(T, sigma);
+    if (line.rate <= fastest) return P;
+    const double slower = fastest / line.rate;
+    return slower * P - (1.0 - slower) * drift / line.response;
+  });
+  if (any) hold_rates(rate, power);
 }
 
 void MPMHeatFaces::hold_rates(std::vector<double> &rate, Heats &power) const

@@ -17,6 +17,7 @@
 
 namespace LAMMPS_NS {
 class MPMField;
+class MPMHeatBody;
 
 /** What a face of the box does to the heat of what touches it. */
 struct MPMHeatCondition {
@@ -53,20 +54,28 @@ class MPMHeatFaces : protected Pointers {
   void init(double sigma);
   /** Is there a face that is not insulated? */
   bool any() const { return !faces.empty(); }
+  /** Number of axes with faces whose temperature follows that outside. */
+  int axes_that_follow() const;
   /** A rank that has a node of a line needs all of them. */
   void extend_topology();
   void topology_changed();
 
   /** Marks blocks [slot] with nodes of lines. */
   void mark_near(std::vector<char> &near) const;
-  /** Lines that touch material in this step, from the capacities, volumes, and surfaces (MPMHeatBody, or empty) of nodes. Returns
-   *  the largest rate at which temperatures at faces follow those outside, for stability. */
-  double begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
-                    const std::vector<double> &surface, const std::vector<double> &temperature);
+  /** Lines that touch material in this step, from the capacities and volumes of nodes. body: null, or its surface.
+   *  rates: raised to the largest rates of this rank at which temperatures at the faces of each axis follow those
+   *  outside [1/time]. */
+  void begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
+                  const MPMHeatBody *body, const std::vector<double> &temperature, double rates[3]);
+  /** They follow with this rate at the most. rates: those of all ranks. Returns a bound for nodes at edges and corners. */
+  double limit(double cap, const double rates[3]);
+  /** Such a bound also before the first step, for this limit and the least capacity per volume [1/time]. */
+  double expected_rate(double cap, double capacity) const;
   /** Give the faces with a temperature theirs, by the smallest change in the norm of capacities; adds the heat
    *  of nodes that this rank owns. */
   void hold(std::vector<double> &temperature, Heats &) const;
-  /** Add what comes through faces to the rates of temperatures; adds the power. */
+  /** Add what comes through faces to the rates of temperatures, which have all other heat of the field already, and hold
+   *  those that are prescribed; adds the power. */
   void add_rates(const std::vector<double> &temperature, std::vector<double> &rate, Heats &) const;
   /** Change the rates so that temperatures that are prescribed stay; adds the power. */
   void hold_rates(std::vector<double> &rate, Heats &) const;
@@ -82,6 +91,7 @@ class MPMHeatFaces : protected Pointers {
     double owned;           // sum of the weights of nodes that this rank owns
     double response;        // of the temperature at the face to heat: sum of weight * change
     double area;            // of the material that touches the face
+    double rate;            // at which the temperature at the face follows that outside
   };
   struct Face {
     int face, axis, first, n;    // n nodes from the first one on
@@ -95,11 +105,13 @@ class MPMHeatFaces : protected Pointers {
   double sigma = 0.0;
   std::vector<Face> faces;
   bool crossing = false;    // prescribed temperatures at faces normal to several axes
+  double fastest = 0.0;     // limit of the rates
+  double last[3] = {};      // rates of the last step
 
   void prepare(const Face &, Line &, const std::vector<double> &capacity,
-               const std::vector<double> &volume, const std::vector<double> &surface) const;
+               const std::vector<double> &volume, const MPMHeatBody *) const;
   double circle(int64_t node) const;
-  bool weigh_by_surface(const Face &, Line &, const std::vector<double> &surface) const;
+  bool weigh_by_surface(const Face &, Line &, const MPMHeatBody *) const;
   template <class F> void visit_held(const F &) const;
 };
 

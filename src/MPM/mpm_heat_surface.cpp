@@ -142,7 +142,7 @@ void MPMHeatSurfaces::mark_near()
 }
 
 /* ----------------------------------------------------------------------
-   calls f(axis, index, node, next) for pairs of neighbors; next: -1 if it has no block
+   calls f(axis, index, node, next) for pairs of neighbors, none of them a periodic image; next: -1 if it has no block
 ------------------------------------------------------------------------- */
 
 template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
@@ -156,9 +156,10 @@ template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
       int index[3];
       grid.node_index(block, n, index);
       for (int a = 0; a < grid.lattice.dim; a++) {
-        index[a]++;
-        const int64_t next = grid.locate_near(block, index);
-        index[a]--;
+        const int here = index[a];
+        index[a] = grid.lattice.wrap(a, here + 1);
+        const int64_t next = index[a] > here ? grid.locate_near(block, index) : grid.locate(index);
+        index[a] = here;
         f(a, index, (int64_t) (slot * NODES_PER_BLOCK + n), next);
       }
     }
@@ -205,51 +206,84 @@ void MPMHeatSurfaces::look_behind(MPMHeatThin &thin, const Place &place, const i
   thin.take(place.condition, body, at, into, place.area);
 }
 
-/** Share of the room of a node that others fill. */
-double MPMHeatSurfaces::hidden(const int *index,
-                               const std::vector<const MPMHeatBody *> &others) const
+/** What fixed faces of the box leave of the volume of a node, as a share of it. */
+double MPMHeatSurfaces::room(int64_t node) const
 {
-  double sum = 0.0, room = 1.0;
+  int index[3];
+  body.field.grid.node_index(node, index);
+  double room = 1.0;
   for (int d = 0; d < body.field.lattice.dim; d++) room *= body.room(d, index[d]);
-  for (const auto *other : others) {
-    const auto &theirs = other->field.lattice;
-    if (other == &body || !(room > 0.0) || theirs.h != body.field.lattice.h ||
-        !std::equal(theirs.origin, theirs.origin + 3, body.field.lattice.origin))
-      continue;
-    const int64_t node = other->field.grid.locate(index);
-    if (node >= 0) sum += other->share[node] / room;
+  return room;
+}
+
+void MPMHeatSurfaces::find_filled()
+{
+  const int64_t nnodes = body.field.grid.nnodes();
+  filled.assign(nnodes, 0.0);
+  for (int64_t node = 0; node < nnodes; node++) {
+    if (!(body.share[node] > 0.0)) continue;
+    const double all = room(node);
+    filled[node] = all > 0.0 ? body.share[node] / all : 0.0;
   }
-  return sum;
+  body.field.nodes.complete(filled.data(), 1, 1);
+}
+
+/* ----------------------------------------------------------------------
+   The rank that counts a node of a neighbor has points of it there, and hence, in reach of this body, the node of this body,
+   too. Other ranks may have the latter alone: what the neighbor has there comes from that rank.
+------------------------------------------------------------------------- */
+
+void MPMHeatSurfaces::find_covered()
+{
+  if (neighbors.empty()) return;
+  const Grid &grid = body.field.grid;
+  covered.assign(grid.nnodes(), 0.0);
+  for (const auto *other : neighbors) {
+    const Grid &theirs = other->field.grid;
+    for (std::size_t slot = 0; slot < theirs.blocks.size(); slot++) {
+      const auto &block = theirs.blocks[slot];
+      const int64_t mine = grid.find(block.b);
+      for (int n = 0; mine >= 0 && block.owned && n < NODES_PER_BLOCK; n++)
+        if (block.owned >> n & 1)
+          covered[mine * NODES_PER_BLOCK + n] += other->share[slot * NODES_PER_BLOCK + n];
+    }
+  }
+  body.field.nodes.sum(covered.data(), 1, 0, 1);
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    if (covered[node] == 0.0) continue;
+    const double all = body.share[node] > 0.0 ? room(node) : 0.0;
+    covered[node] = all > 0.0 ? covered[node] / all : 0.0;
+  }
+  body.field.nodes.complete(covered.data(), 1, 1);
 }
 
 /* ----------------------------------------------------------------------
    free surfaces: where half of the volume of a node that is inside of the box is filled
 ------------------------------------------------------------------------- */
 
-void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBody *> &others,
-                                MPMHeatThin *thin)
+void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
 {
   const Grid &grid = body.field.grid;
   const auto &lattice = grid.lattice;
   const int dim = lattice.dim;
   const double h = lattice.h;
-  const int64_t nnodes = grid.nnodes();
-  filled.assign(nnodes, 0.0);
-  for (int64_t node = 0; node < nnodes; node++) {
-    if (!(body.share[node] > 0.0)) continue;
-    int index[3];
-    grid.node_index(node, index);
-    double room = 1.0;
-    for (int d = 0; d < dim; d++) room *= body.room(d, index[d]);
-    filled[node] = room > 0.0 ? body.share[node] / room : 0.0;
-  }
-  body.field.nodes.complete(filled.data(), 1, 1);
+  find_filled();
+  find_covered();
+  bool known =
+      true;    // nodes that were looked at; a rank with points next to a surface knows them all
   const auto at = [&](const int *index) {
-    const int64_t node = grid.locate(index);
+    int64_t node = grid.locate(index);
+    if (node < 0) {
+      int inside[3];
+      for (int d = 0; d < 3; d++) inside[d] = lattice.wrap(d, index[d]);
+      node = grid.locate(inside);
+    }
+    known = known && (node >= 0 || body.knows_all());
     return node < 0 ? 0.0 : filled[node];
   };
   each_pair([&](int a, const int *index, int64_t node, int64_t next) {
     const double here = filled[node], there = next < 0 ? 0.0 : filled[next];
+    known = next >= 0 || body.knows_all();
     // lines at the side of a body have only a part of the volume, also inside of it: each node is compared with the
     // fullest of those further inside
     const int inward = here < there ? 1 : -1;
@@ -294,7 +328,7 @@ void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBo
       }
     }
     const double length = MathExtra::len3(into);
-    if (!(length > 0.0)) return;
+    if (!known || !(length > 0.0)) return;
     for (double &component : into) component /= length;
     Place place;
     place.share = heat_share_of_axis(into, dim, a);
@@ -302,10 +336,10 @@ void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBo
 
     for (const auto &wall : walls)
       if (std::fabs(wall.surface.distance(x, FAR * h)) < COVERED * h) return;
-    int after[3] = {index[0], index[1], index[2]};
-    after[a] = lattice.wrap(a, after[a] + 1);
-    const double others_share = (1.0 - part) * hidden(index, others) + part * hidden(after, others);
-    const double open = std::min(1.0, (HIDDEN - others_share) / (HIDDEN - OPEN));
+    double hidden = 0.0;
+    if (!neighbors.empty())
+      hidden = (1.0 - part) * covered[node] + (next < 0 ? 0.0 : part * covered[next]);
+    const double open = std::min(1.0, (HIDDEN - hidden) / (HIDDEN - OPEN));
     if (!(open > 0.0) || !body.make_line(a, index, index[a] + part, into, place.line)) return;
     place.share *= open;
     place.area = place.share * most * side * lattice.cell_volume() / (h * std::fabs(into[a]));
@@ -318,7 +352,7 @@ void MPMHeatSurfaces::find_free(int condition, const std::vector<const MPMHeatBo
 
 /* ---------------------------------------------------------------------- */
 
-void MPMHeatSurfaces::find_lines(const std::vector<const MPMHeatBody *> &others, MPMHeatThin *thin)
+void MPMHeatSurfaces::find_lines(MPMHeatThin *thin)
 {
   places.clear();
   for (auto &wall : walls)
@@ -327,7 +361,7 @@ void MPMHeatSurfaces::find_lines(const std::vector<const MPMHeatBody *> &others,
     if (conditions[k].condition.kind == MPMHeatCondition::INSULATED) continue;
     const std::size_t begin = places.size();
     if (wall_of[k] < 0)
-      find_free(k, others, thin);
+      find_free(k, thin);
     else
       find_wall(k, walls[wall_of[k]], thin);
     if (comm->nprocs == 1) continue;
@@ -350,6 +384,8 @@ double MPMHeatSurfaces::begin_step()
       place.share = place.area = 0.0;
       continue;
     }
+    place.share *= place.line.conducting;
+    place.area *= place.line.conducting;
     place.rate = condition.kind == MPMHeatCondition::TEMPERATURE
         ? std::numeric_limits<double>::max()
         : condition.slope(body.temperature(place.line), sigma) * place.area / place.share *
@@ -381,7 +417,8 @@ void MPMHeatSurfaces::exchange(double *power) const
 
 double MPMHeatSurfaces::memory_usage() const
 {
-  double bytes = places.capacity() * sizeof(Place) + filled.capacity() * sizeof(double);
+  double bytes =
+      places.capacity() * sizeof(Place) + (filled.capacity() + covered.capacity()) * sizeof(double);
   for (const auto &wall : walls) bytes += wall.distance.capacity() * sizeof(double);
   return bytes;
 }

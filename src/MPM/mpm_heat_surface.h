@@ -33,6 +33,9 @@ struct MPMHeatSurfaceCondition {
 class MPMHeatSurfaces : protected Pointers {
  public:
   MPMHeatBody &body;
+  /** Bodies that hide free surfaces of this one: their fields have a fix mpm/contact with it, by which all ranks know the
+   *  nodes of both where they may meet. */
+  std::vector<const MPMHeatBody *> neighbors;
 
   using Conditions = std::vector<MPMHeatSurfaceCondition>;
   /** sigma: the constant of Stefan and Boltzmann. */
@@ -43,9 +46,9 @@ class MPMHeatSurfaces : protected Pointers {
   void topology_changed();
   /** Marks blocks with surfaces. */
   void mark_near();
-  /** Where surfaces are in this step, when that of the body is known. others: bodies that hide free surfaces; thin: null, or
-   *  gets all places, with the condition as entry. Collective. */
-  void find_lines(const std::vector<const MPMHeatBody *> &others, MPMHeatThin *thin);
+  /** Where surfaces are in this step, when those of this body and its neighbors are known. thin: null, or gets all places,
+   *  with the condition as entry. Collective. */
+  void find_lines(MPMHeatThin *thin);
   /** What the capacities and temperatures of nodes make of them. Returns the largest rate of this rank at which temperatures
    *  follow those outside [1/time]. */
   double begin_step();
@@ -79,17 +82,20 @@ class MPMHeatSurfaces : protected Pointers {
   std::vector<Wall> walls;
   std::vector<int> wall_of;    // of each condition, -1: free surface
   bool has_free = false;
-  std::vector<double> filled;    // share of the room of a node that the body fills
+  /** Share of the room of a node that the body fills, and that its neighbors fill, this at nodes that the body reaches. */
+  std::vector<double> filled, covered;
   std::vector<Place> places;
   MPMHeatShares shares;
 
   bool near_wall(Wall &, const int *block) const;
   template <class F> void each_pair(const F &f) const;
   void find_wall(int condition, Wall &, MPMHeatThin *);
-  void find_free(int condition, const std::vector<const MPMHeatBody *> &others, MPMHeatThin *);
+  void find_filled();
+  void find_covered();
+  void find_free(int condition, MPMHeatThin *);
   void look_behind(MPMHeatThin &, const Place &, const int *index, double part,
                    const double *into) const;
-  double hidden(const int *index, const std::vector<const MPMHeatBody *> &others) const;
+  double room(int64_t node) const;
 };
 
 }    // namespace LAMMPS_NS

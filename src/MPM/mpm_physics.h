@@ -33,14 +33,16 @@ class MPMPhysics {
   /** Append the stages for a place in the step to the plan (MPMPlan::each, MPMPlan::together). */
   virtual void add_stages(MPMPlan &, MPMPlan::Place) = 0;
 
-  /** Setup of a run, before points without stress get one: what points have at first. Places of points are
-   *  known, nodes are not. */
+  /** Setup of a run, before points without stress get one: what points have at first. Places of the points of all fields
+   *  are known, nodes are not. */
   virtual void setup_points() {}
 
   /** The blocks in reach of the points of a field are known: activate others that are needed, and, when
    *  all are known, make lists of nodes; slots are valid until the next call. */
   virtual void extend_topology(MPMField &) {}
   virtual void topology_changed(MPMField &) {}
+  /** Does it look at nodes that no point reaches, or at their periodic images? All ranks keep their values then. */
+  virtual bool looks_beyond_points() const { return true; }
 
   /** Largest stable time step of this rank's points of a field; tag: of the point that limits it. */
   virtual double stable_dt(const MPMField &, tagint & /*tag*/) const

@@ -134,19 +134,27 @@ void MPMPlan::find_blocks()
     if (field->boxes) field->boxes->update();
 }
 
-/** Other physics may look at any node, as node actions do that do not tell. */
+bool MPMPlan::physics_looks_beyond() const
+{
+  return std::any_of(physics.begin(), physics.end(), [](const auto *other) {
+    return other->looks_beyond_points();
+  });
+}
+
 bool MPMPlan::keeps_all_images() const
 {
-  return !physics.empty() || std::any_of(actions.begin(), actions.end(), [](const auto *action) {
-    return action->looks_beyond_points();
-  });
+  return physics_looks_beyond() ||
+      std::any_of(actions.begin(), actions.end(), [](const auto *action) {
+           return action->looks_beyond_points();
+         });
 }
 
 bool MPMPlan::looks_at_all(const MPMField &field, const MPM_NS::Grid::Block &block) const
 {
-  return !physics.empty() || std::any_of(actions.begin(), actions.end(), [&](const auto *action) {
-    return action->looks_at_all(field, block);
-  });
+  return physics_looks_beyond() ||
+      std::any_of(actions.begin(), actions.end(), [&](const auto *action) {
+           return action->looks_at_all(field, block);
+         });
 }
 
 void MPMPlan::find_blocks_now()

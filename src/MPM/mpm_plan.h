@@ -87,6 +87,7 @@ class MPMPlan : protected Pointers {
     double time;    // [ns] per step and point of one process
   };
   std::vector<Stage> stages;
+  bool physics_looks_beyond() const;
   std::vector<Cost> costs(const MPMField &, double scale) const;
   double wall_start = 0.0, cpu_start = 0.0;    // of the run [s]
 };

@@ -51,3 +51,11 @@ void MPMReach::activate_those_of(const MPMReach &other, Grid &grid) const
     if (inside) grid.activate(b.data());
   }
 }
+
+bool MPMReach::may_meet(const MPMReach &other) const
+{
+  bool meets = true;
+  for (int d = 0; d < 3; d++)
+    meets = meets && extent[d] <= -other.extent[3 + d] && other.extent[d] <= -extent[3 + d];
+  return meets;
+}

@@ -27,6 +27,8 @@ struct MPMReach {
   void find(const MPM_NS::Grid &, MPI_Comm);
   /** Activate in the grid of this field the blocks of another one that are in its range. */
   void activate_those_of(const MPMReach &other, MPM_NS::Grid &) const;
+  /** Do the ranges of both overlap, so that they may have blocks in common? The same on all ranks. */
+  bool may_meet(const MPMReach &other) const;
 };
 
 /** The canonical block that has a corner of this block, which periodic axes repeat. */
