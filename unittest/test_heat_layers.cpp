@@ -89,6 +89,20 @@ SERIAL_TEST(Layers, ThinOneInSeries)
     }
 }
 
+// the steady state does not depend on capacities
+SERIAL_TEST(Layers, OfDifferentCapacity)
+{
+  for (const int n : {12, 24}) {
+    Scene run(plate(n,
+                    {{"block 0 0.25 INF INF INF INF", 100.0, 100.0},
+                     {"block 0.25 0.5 INF INF INF INF", 1.0, 1.0},
+                     {"block 0.5 1 INF INF INF INF", 100.0, 100.0}},
+                    4.0 / n, 0.0));
+    const double q = power(run, 5.0 / (n * n), 60.0) * n / 4.0 * (0.75 / 100.0 + 0.25);
+    EXPECT_NEAR(measured(strprintf("%d cells", n), q), 1.0, 0.03);
+  }
+}
+
 // layers beside each other let through what each of them does, also those that have so little capacity that the mean
 // of conductivities would be too fast for them
 SERIAL_TEST(Layers, InParallel)

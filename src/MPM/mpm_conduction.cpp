@@ -27,7 +27,9 @@
    not see of the temperatures of points goes, by conduction, in about the time h^2 rho c/k in which heat crosses a
    cell: with relax a share 1 - e of it, e = exp(-R dt k/(rho c h^2)), goes in a step, so that what this smoothes does
    not depend on the time step and is of second order. e is that of the material that conducts least: only if it is the
-   same for all points is heat kept.
+   same for all points is heat kept. Nodes next to an interface have the temperature of points with much capacity, to
+   which others would be pulled, at a rate that is not that of their conduction: with 100 times the capacity on one side 30 % more heat
+   went through a layer of 3 cells. R is made smaller by the ratio of the capacities.
 
    Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, that of capacities of
    C_p diag(N); the greatest eigenvalue of the sum is not above the greatest of the parts,
@@ -92,6 +94,7 @@ void MPMConduction::init(double sigma, bool surfaces)
 {
   thermals.clear();
   slowest = std::numeric_limits<double>::max();
+  double greatest_capacity = 0.0;
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
@@ -105,7 +108,9 @@ void MPMConduction::init(double sigma, bool surfaces)
     const double capacity = material.density() * all.capacity;
     slowest = std::min(slowest, least / capacity);
     least_capacity = thermals.size() > 1 ? std::min(least_capacity, capacity) : capacity;
+    greatest_capacity = std::max(greatest_capacity, capacity);
   }
+  if (greatest_capacity > 0.0) slowest *= least_capacity / greatest_capacity;
   active = !thermals.empty();
   total = field.frame->is_total();
   steepest = 0.0;
@@ -167,7 +172,7 @@ void MPMConduction::init_layers()
   greatest = 0.0;
   if (total || steepest == 0.0) return;
   bool differ = false;
-  double least_capacity = std::numeric_limits<double>::max(), fastest = 0.0;
+  double fastest = 0.0;
   for (const auto &t : thermals) {
     if (t.all.orthotropic) return;
     differ = differ ||
@@ -175,7 +180,6 @@ void MPMConduction::init_layers()
          (t.varies || t.all.conductivity != thermals.front().all.conductivity));
     const double capacity = t.fix->material->density() * t.all.capacity;
     greatest = std::max(greatest, t.all.conductivity);
-    least_capacity = std::min(least_capacity, capacity);
     fastest = std::max(fastest, t.all.conductivity / capacity);
   }
   if (!differ) return;

@@ -94,7 +94,7 @@ class MPMConduction : protected Pointers {
   const MPMHeatTransfer &transfer;
   std::vector<Thermal> thermals;
   bool wants_volumes = false;
-  double slowest = 0.0;    // smallest diffusivity of a material
+  double slowest = 0.0;    // smallest diffusivity of a material, by the ratio of capacities
   double steepest =
       0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
   double conducted = 0.0;    // limit of the last step
