@@ -143,13 +143,13 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
         if (!s) return false;
         double *const C = capacity.data() + first, *const K = conductance.data() + first;
         double most = fastest, room[BATCH];
-        const double *const J = field.jacobians.get(field, first, n, room);
+        const double *const ratios = field.jacobians.get(field, first, n, room);
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          const double V = J[p] * atom->vfrac[i];
-          C[p] = V * s->of.storage_at(J[p], water);
-          K[p] = V * mobility(*s, i, J[p], formula);
-          in_forces[i] = s->of.biot * J[p];
+          const double J = ratios[p], V = J * atom->vfrac[i];
+          C[p] = V * s->of.storage_at(J, water);
+          K[p] = V * mobility(*s, i, J, formula);
+          in_forces[i] = s->of.biot * J;
           if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
           points.volume[p] = K[p];
           points.capacity[p] = C[p];
@@ -230,10 +230,10 @@ void MPMPore::take_motion()
     if (!s) return;
     field.kernel.g2p_gradient(rows, step, first, first + n, base, field.map->tile_load, L);
     double room[BATCH];
-    const double *const J = field.jacobians.get(field, first, n, room);
+    const double *const ratios = field.jacobians.get(field, first, n, room);
     for (int p = 0; p < n; p++) {
       const int i = first + p;
-      const double V = J[p] * atom->vfrac[i];
+      const double V = ratios[p] * atom->vfrac[i];
       squeezed[i] = -s->of.biot * V * field.frame->volume_change(i, L + nL * p, dt) / dt;
     }
   });
