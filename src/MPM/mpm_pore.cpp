@@ -183,20 +183,19 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
         if (!s) return false;
         double *const C = capacity.data() + first, *const K = conductance.data() + first;
         double most = fastest, room[BATCH];
-        const double *const J = field.jacobians.get(field, first, n, room);
+        const double *const ratios = field.jacobians.get(field, first, n, room);
         for (int p = 0; p < n; p++) {
           const int i = first + p;
-          const double V = J[p] * atom->vfrac[i];
-          C[p] = V * s->of.storage_at(J[p], water);
-          const double k = mobility(*s, i, J[p], formula);
+          const double J = ratios[p], V = J * atom->vfrac[i];
+          C[p] = V * s->of.storage_at(J, water);
+          const double k = mobility(*s, i, J, formula);
           K[p] = V * k;
-          in_forces[i] = s->of.biot * J[p];
+          in_forces[i] = s->of.biot * J;
           const double *const mine = state[i];
-          if (suction) suction->begin_point(i, s->of, J[p], V, mine[0], C[p], K[p], in_forces[i]);
+          if (suction) suction->begin_point(i, s->of, J, V, mine[0], C[p], K[p], in_forces[i]);
           if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
-          if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J[p], density);
-          if (surface.any())
-            points.volume[p] = suction ? K[p] : V * at_surface(*s, i, J[p], k, mine);
+          if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J, density);
+          if (surface.any()) points.volume[p] = suction ? K[p] : V * at_surface(*s, i, J, k, mine);
           points.capacity[p] = C[p];
           points.row[p][3] = mine[0];
           points.row[p][0] = mine[1];
@@ -331,10 +330,10 @@ void MPMPore::take_motion()
     if (!s) return;
     field.kernel.g2p_gradient(rows, step, first, first + n, base, field.map->tile_load, L);
     double room[BATCH];
-    const double *const J = field.jacobians.get(field, first, n, room);
+    const double *const ratios = field.jacobians.get(field, first, n, room);
     for (int p = 0; p < n; p++) {
       const int i = first + p;
-      const double V = J[p] * atom->vfrac[i];
+      const double V = ratios[p] * atom->vfrac[i];
       const double change = field.frame->volume_change(i, L + nL * p, dt);
       squeezed[i] = -s->of.biot * V * change / dt;
       if (suction) squeezed[i] *= suction->take_motion(i, V * change, dt);
