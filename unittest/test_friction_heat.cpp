@@ -343,7 +343,8 @@ PARAMETER_TEST(Wall, IsInsulator, const char *,
 }
 
 // A block hits a wall at an angle: what it loses of its motion along the wall is heat, what nodes lose as they meet the wall
-// is none
+// is none. Friction at its lower face also turns and shears the block, which takes 3.6 to 3.8 % of that with 4, 8, and 16 cells in its height
+// and steps of half the length: no error that would become less
 PARAMETER_TEST(Impact, OfThePushIsNoHeat, const char *, Values("ylo", "region below"))
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
