@@ -154,6 +154,9 @@ SERIAL_TEST(Relax, BadInput)
        {"fix rest all mpm/relax 1e-6 stop perhaps", "perhaps"},
        {"fix rest all mpm/relax 1e-6 damp 0.5", "damp"},
        {"group some id 1\nfix rest some mpm/relax 1e-6", "use group all"},
+       {"fix rest all mpm/relax 1e-6\nfix water all mpm/pore 2e7 500 9810 soil m 0.4 constant "
+        "1e-3 formulation u-v-p",
+        "use formulation u-p"},
        {"fix rest all mpm/relax 1e-6\nfix more all mpm/relax 1e-6", "remove one"},
        {"unfix floor\nunfix m\nunfix grid\nfix rest all mpm/relax 1e-6", "needs a fix mpm"}},
       "run 1\n");
