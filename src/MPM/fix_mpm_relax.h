@@ -40,7 +40,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   void setup(int) override;
   void end_of_step() override;
   void post_run() override;
-  double compute_scalar() override { return ratio; }
+  double compute_scalar() override { return ratio < 1.0 ? ratio : 1.0; }
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
