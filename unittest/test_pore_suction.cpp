@@ -551,10 +551,12 @@ SERIAL_TEST(BadInput, IsRefused)
        {soil + "retention gardner 1e-4 relative power -1", "e"},
        {soil + "retention gardner 1e-4 biot 0.9 1e10", "needs rigid grains"},
        {soil + "suction 100", "needs geostatic"},
+       {soil + "geostatic 0.5 1 suction 100", "suction needs a soil with retention"},
        {soil + "xlo rain -1e-3", "must not be negative"},
        {soil + "xlo seepage 0", "seepage"},
        {"fix water all mpm/pore 2e7 6000 9810 soil m 0.4 constant 1e-5 retention gardner 1e-4",
         "below that of the water in its pores"},
-       {soil + "retention gardner 1e-3 initial -1e3 xlo flux -1000", "flows out of point"}},
+       {soil + "retention gardner 1e-3 initial -1e3 xlo flux -1000",
+        "use a smaller time step (fix mpm/dt), or, where a flux"}},
       "run 100\n");
 }

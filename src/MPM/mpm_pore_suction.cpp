@@ -234,8 +234,9 @@ double MPMPoreSuction::take_water(int i, const MPMPoreSoil &soil, double before,
   if (before >= 0.0 && guess >= 0.0) return guess;
   if (!(content[i] >= -UNDERSHOOT * of[i].full))
     error->one(FLERR, Error::NOLASTLINE,
-               "More water flows out of point {} of soil {} than it has: a flux takes water from "
-               "soil that is dry; give its suction by pressure in place of flux",
+               "More water flows out of point {} of soil {} than it has: use a smaller time step "
+               "(fix mpm/dt), or, where a flux takes water from dry soil, give its suction by "
+               "pressure",
                atom->tag[i], soil.material);
   return MPMPoreMoisture::pressure(soil, content[i] / of[i].full, before, guess, water);
 }
