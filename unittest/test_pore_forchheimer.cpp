@@ -56,6 +56,34 @@ SERIAL_TEST(Steady, IsTheRoot)
       }
 }
 
+// a soil that can dry and touches no face changes nothing; at the sides of a body a part of the area is missing
+SERIAL_TEST(Steady, BesideSoilThatDries)
+{
+  for (const double b : {1e8, 1e10}) {
+    double in[2], out[2];
+    for (const bool other : {false, true}) {
+      const std::string dry = "soil o 0.4 constant 1e-3 retention vangenuchten 1e-4 1.6 ";
+      Scene run(plane("si", "p f", "0 1.2 0 1", 1, 0.03) +
+                "region soil block 0 0.4 0 1 INF INF\nregion other block 0.7 0.9 0.3 0.7 INF INF\n"
+                "create_points 1 region soil spacing 0.05\ngroup soil region soil\n"
+                "create_points 1 region other spacing 0.05\ngroup other region other\n"
+                "fix grid all mpm 0.1\nfix m soil mpm/material density 2e16 linear 1e12 0.0\n"
+                "fix o other mpm/material density 2e16 linear 1e12 0.0\n"
+                "fix floor all mpm/boundary ylo yhi slip\n" +
+                strprintf("fix water all mpm/pore 2.2e7 1000 1e4 soil m 0.4 constant 1e-3 "
+                          "forchheimer number %g ",
+                          b) +
+                (other ? dry : "") + "yhi pressure 0 ylo pressure 1e4\ntimestep 4e-4\nrun 4000\n");
+      const double *const flows = run.fix_vector("water", 7);
+      in[other] = flows[2];
+      out[other] = flows[3];
+    }
+    EXPECT_NEAR(measured(strprintf("b %g, flow", b), in[1] / (0.4 * flow_by(1e4, b))), 1.0, 0.01);
+    EXPECT_NEAR(measured("in, over that without", in[1] / in[0]), 1.0, 1e-6);
+    EXPECT_NEAR(measured("out, over that without", out[1] / out[0]), 1.0, 1e-6);
+  }
+}
+
 // the coefficient of Ergun's law is that of the drag on spheres in fix mpm/mixture and mpm/immersed
 SERIAL_TEST(Steady, Ergun)
 {

@@ -284,6 +284,53 @@ SERIAL_TEST(Geostatic, SuctionAboveTheTable)
   EXPECT_LT(measured("with less suction, force over weight", fall(dry, dt)), 0.05);
 }
 
+// friction of walls is that of grains: a block slides by its weight without what its water bears at the floor, where pores
+// are full with the saturation Ss, partly full, or full below a water table in the block
+SERIAL_TEST(Walls, FrictionIsThatOfGrains)
+{
+  const double mu = 0.3, H = 0.4, T = 0.05;
+  for (const char *bishop : {"saturation", "effective"})
+    for (const auto &[Ss, table] :
+         {std::pair{0.7, 0.4}, std::pair{1.0, 0.4}, std::pair{0.7, -0.2}, std::pair{0.7, 0.17}}) {
+      const auto effective = [](double p) {
+        return std::pow(1.0 + std::pow(3e-4 * std::max(0.0, -p), 1.6), 1.0 / 1.6 - 1.0);
+      };
+      double m = 0.0;    // over the area, by fine steps
+      for (int k = 0; k < 4000; k++) {
+        const double p = WEIGHT * (table - H * (k + 0.5) / 4000);
+        m += H / 4000 * (1600.0 + 400.0 * (0.1 + (Ss - 0.1) * effective(p)));
+      }
+      const double p0 = WEIGHT * table, Se = effective(p0);
+      const double chi = bishop[0] == 'e' ? Se : 0.1 + (Ss - 0.1) * Se;
+      const double slower = mu * (9.81 * m - chi * p0) / m;
+      // what suction pulls with at the top counts for the floor where the top is within four nodes
+      const bool full = table == H;
+      for (const double h : {full ? 0.1 : 0.05, full ? 0.05 : 0.025}) {
+        Scene run(
+            plane("si", "p f", strprintf("0 %.17g 0 0.8", 8 * h), 1, 0.3 * h) +
+            strprintf("region soil block 0 %.17g 0 %g INF INF\n", 8 * h, H) +
+            strprintf("create_points 1 region soil spacing %g\nfix grid all mpm %g\n", 0.5 * h, h) +
+            "fix m all mpm/material density 2000 linear 1e7 0.3\n"
+            "fix floor all mpm/boundary ylo slip friction 0.3\n"
+            "fix g all gravity 9.81 vector 0 -1 0\n" +
+            strprintf("fix water all mpm/pore 1e7 1000 9810 soil m 0.4 constant 1e-9 retention "
+                      "vangenuchten 3e-4 1.6 saturation 0.1 %g bishop %s geostatic 0.5 %g\n",
+                      Ss, bishop, table) +
+            "velocity all set 5 0 0\n");
+        run_to(run, T);
+        double v = 0.0, all = 0.0;
+        for (int i = 0; i < run.n(); i++) {
+          v += run.mass()[i] * run.v()[i][0];
+          all += run.mass()[i];
+        }
+        EXPECT_NEAR(measured(strprintf("%s, Ss %g, table %g, spacing %g: over %.4f m/s^2", bishop,
+                                       Ss, table, h, slower),
+                             (5.0 - v / all) / (T * slower)),
+                    1.0, 0.01);
+      }
+    }
+}
+
 // soil whose pores stay full is that without retention, to the last bit
 SERIAL_TEST(FullPores, AreAsWithoutRetention)
 {
@@ -504,10 +551,12 @@ SERIAL_TEST(BadInput, IsRefused)
        {soil + "retention gardner 1e-4 relative power -1", "e"},
        {soil + "retention gardner 1e-4 biot 0.9 1e10", "needs rigid grains"},
        {soil + "suction 100", "needs geostatic"},
+       {soil + "geostatic 0.5 1 suction 100", "suction needs a soil with retention"},
        {soil + "xlo rain -1e-3", "must not be negative"},
        {soil + "xlo seepage 0", "seepage"},
        {"fix water all mpm/pore 2e7 6000 9810 soil m 0.4 constant 1e-5 retention gardner 1e-4",
         "below that of the water in its pores"},
-       {soil + "retention gardner 1e-3 initial -1e3 xlo flux -1000", "flows out of point"}},
+       {soil + "retention gardner 1e-3 initial -1e3 xlo flux -1000",
+        "use a smaller time step (fix mpm/dt), or, where a flux"}},
       "run 100\n");
 }

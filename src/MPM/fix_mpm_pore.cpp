@@ -227,6 +227,9 @@ Options MPMPoreOptions::declare(int dim)
                 "cross a cell")});
   o.add("stages", {integer(most_stages, "N", POSITIVE, "most stages of the flow in a time step")});
   o.refuse([=] {
+    const bool dries = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
+      return soil.retention.can_dry();
+    });
     OptionRules rules = {{biot_alone, "biot", "needs a soil before it"},
                          {forchheimer_alone, "forchheimer", "needs a soil before it"},
                          {formulation == U_V_P, "stages",
@@ -234,6 +237,7 @@ Options MPMPoreOptions::declare(int dim)
                          {geostatic && initial != "0.0", "geostatic",
                           "gives points their pressure: leave out initial"},
                          {most_suction >= 0.0 && !geostatic, "suction", "needs geostatic"},
+                         {most_suction >= 0.0 && !dries, "suction", "needs a soil with retention"},
                          {!without_soil.empty(), without_soil, "needs a soil before it"},
                          {!without_retention.empty(), without_retention,
                           "needs the retention of the soil before it"}};

@@ -192,10 +192,12 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           K[p] = V * k;
           in_forces[i] = s->of.biot * J;
           const double *const mine = state[i];
-          if (suction) suction->begin_point(i, s->of, J, V, mine[0], C[p], K[p], in_forces[i]);
-          if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
           if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J, density);
-          if (surface.any()) points.volume[p] = suction ? K[p] : V * at_surface(*s, i, J, k, mine);
+          double through = surface.any() ? V * at_surface(*s, i, J, k, mine) : 0.0;
+          if (suction)
+            suction->begin_point(i, s->of, J, V, mine[0], C[p], K[p], through, in_forces[i]);
+          if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
+          if (surface.any()) points.volume[p] = through;
           points.capacity[p] = C[p];
           points.row[p][3] = mine[0];
           points.row[p][0] = mine[1];

@@ -153,12 +153,13 @@ void MPMPoreSuction::begin(int nmax, double usual_rate, double rate_of_waves)
 }
 
 void MPMPoreSuction::begin_point(int i, const MPMPoreSoil &soil, double J, double V, double p,
-                                 double &capacity, double &conductance, double &in_forces)
+                                 double &capacity, double &conductance, double &through,
+                                 double &in_forces)
 {
   weigh(i, soil, p);
   Point &point = of[i];
   point.most = capacity;
-  point.conductance = conductance;
+  point.conductance = through;
   point.keep = usual;
   point.filling = 1.0;
   point.full = soil.pores_at(J) * V;
@@ -170,6 +171,7 @@ void MPMPoreSuction::begin_point(int i, const MPMPoreSoil &soil, double J, doubl
       const double h = field.lattice.h;
       capacity = V * state.storage;
       conductance *= state.relative;
+      through *= state.relative;
       point.keep = conductance / (capacity * h * h) + waves * point.most / capacity;
     }
   }
@@ -232,8 +234,9 @@ double MPMPoreSuction::take_water(int i, const MPMPoreSoil &soil, double before,
   if (before >= 0.0 && guess >= 0.0) return guess;
   if (!(content[i] >= -UNDERSHOOT * of[i].full))
     error->one(FLERR, Error::NOLASTLINE,
-               "More water flows out of point {} of soil {} than it has: a flux takes water from "
-               "soil that is dry; give its suction by pressure in place of flux",
+               "More water flows out of point {} of soil {} than it has: use a smaller time step "
+               "(fix mpm/dt), or, where a flux takes water from dry soil, give its suction by "
+               "pressure",
                atom->tag[i], soil.material);
   return MPMPoreMoisture::pressure(soil, content[i] / of[i].full, before, guess, water);
 }

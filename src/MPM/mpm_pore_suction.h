@@ -55,10 +55,10 @@ class MPMPoreSuction : protected Pointers {
   /** A step, or one more sum over points. Rates at which points with full pores take the pressure of nodes [1/time]: usual, of
    *  which waves make this part. */
   void begin(int nmax, double usual, double waves);
-  /** For all points of soils: capacity, conductance, and what forces have of the pressure in full pores become those at p. V:
-   *  volume of the point. */
+  /** For all points of soils: capacity, conductance, that through the surface (which differs from it where drag has the
+   *  square of the flow), and what forces have of the pressure in full pores become those at p. V: volume of the point. */
   void begin_point(int i, const MPMPoreSoil &, double J, double V, double p, double &capacity,
-                   double &conductance, double &in_forces);
+                   double &conductance, double &through, double &in_forces);
   /** The pressure of point i is this much above that of the nodes. */
   void set_lag(int i, double lag) { of[i].lag = lag; }
   /** At surfaces: sums of the soil at nodes, by the permeability that it has with the pressure outside. */
@@ -96,7 +96,7 @@ class MPMPoreSuction : protected Pointers {
     double keep;             // rate, and then factor of the lag in this step
     double lag;
     double capacity;
-    double most, conductance;    // capacity and conductance of full pores
+    double most, conductance;    // capacity of full pores, and conductance through the surface
   };
   static constexpr double MOST_FLOW = 0.2;
   MPMField &field;

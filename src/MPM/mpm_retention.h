@@ -44,11 +44,13 @@ struct MPMRetention {
     double bishop;      ///< share of the pressure in the effective stress
   };
   State at(double p) const;
-  /** Change of the pressure in the effective stress with that of the water, d(chi p)/dp. */
+  /** Change of the pressure in the effective stress with that of the water, d(chi p)/dp. With full pores it is chi, which
+   *  is S_s where Bishop's coefficient is the saturation. */
   double borne(double p) const
   {
-    if (!can_dry() || p >= 0.0) return 1.0;
+    if (!can_dry()) return 1.0;
     const State now = at(p);
+    if (p >= 0.0) return now.bishop;
     return now.bishop + p * now.slope / (bishop_effective ? most - least : 1.0);
   }
 };
