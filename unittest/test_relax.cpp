@@ -129,6 +129,21 @@ SERIAL_TEST(Column, GoesOn)
   EXPECT_LT(run.fix("rest")->compute_scalar(), 1e-9);
 }
 
+// what relaxation takes and what water stores are each counted once, in either order
+SERIAL_TEST(Column, EnergiesOfTwoPhysics)
+{
+  const auto rest = column(10, "", "1e-5");
+  const std::string water = "fix water all mpm/pore 2e7 500 9810 soil m 0.4 constant 1e-9\n";
+  std::vector<std::string> said[2];
+  for (const bool first : {true, false}) {
+    said[first] = lines_that_say(
+        (first ? replaced(rest, "fix rest", water + "fix rest") : rest + water) + "run 1000\n",
+        "energy at the end");
+    ASSERT_EQ(said[first].size(), 1u);
+  }
+  EXPECT_EQ(said[0], said[1]);
+}
+
 TEST(Column, RanksAndRestart)
 {
   const auto scene = column(10, "", "1e-6");
@@ -154,6 +169,9 @@ SERIAL_TEST(Relax, BadInput)
        {"fix rest all mpm/relax 1e-6 stop perhaps", "perhaps"},
        {"fix rest all mpm/relax 1e-6 damp 0.5", "damp"},
        {"group some id 1\nfix rest some mpm/relax 1e-6", "use group all"},
+       {"fix rest all mpm/relax 1e-6\nfix water all mpm/pore 2e7 500 9810 soil m 0.4 constant "
+        "1e-3 formulation u-v-p",
+        "use formulation u-p"},
        {"fix rest all mpm/relax 1e-6\nfix more all mpm/relax 1e-6", "remove one"},
        {"unfix floor\nunfix m\nunfix grid\nfix rest all mpm/relax 1e-6", "needs a fix mpm"}},
       "run 1\n");

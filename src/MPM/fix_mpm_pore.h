@@ -99,6 +99,8 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
 
+  /** Has the water inertia of its own (formulation u-v-p)? */
+  bool moves() const { return formulation == U_V_P; }
   /** Has it water in the pores of this material (ID of a fix mpm/material)? */
   bool has(const std::string &material) const
   {

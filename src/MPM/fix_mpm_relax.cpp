@@ -7,17 +7,19 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   A body that is released from a state out of equilibrium turns the energy that it has too much into motion. Where this is greatest it
-   passes through equilibrium of its slowest mode; taking the motion away there takes that energy out, and what is left is that of the other
-   modes. No coefficient has to be chosen, and where the energy does not fall nothing is done.
+   A body that is released from a state out of equilibrium turns the energy that it has too much into
+   motion. Where this is greatest it passes through equilibrium of its slowest mode; taking the motion away
+   there takes that energy out, and what is left is that of the other modes. No coefficient has to be
+   chosen, and where the energy does not fall nothing is done.
 
-   Forces on a node are balanced if its velocity does not change: m dv/dt, with the reactions of walls and contacts, which have changed velocities
-   in the same step. They are compared with the forces that the stress of points brings to nodes, sum_p V_p |sigma_p|/h, which
-   cancel in equilibrium.
+   Forces on a node are balanced if its velocity does not change: m dv/dt, with the reactions of walls and
+   contacts, which have changed velocities in the same step. They are compared with the forces that the
+   stress of points brings to nodes, sum_p V_p |sigma_p|/h, which cancel in equilibrium.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_relax.h"
 
+#include "fix_mpm_pore.h"
 #include "mpm_affine.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
@@ -83,6 +85,13 @@ void FixMPMRelax::init()
 void FixMPMRelax::init_physics(MPMPlan &plan)
 {
   fields = plan.fields;
+  for (const auto *pore : find_fixes<FixMPMPore>(lmp))
+    if (pore->moves())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/relax cannot bring water with inertia to rest: use formulation u-p of fix "
+          "{} {} until bodies are at rest",
+          pore->style, pore->id);
   for (auto *field : fields) field->keep_old = true;
 }
 
@@ -158,8 +167,8 @@ double FixMPMRelax::force_of_stress() const
 }
 
 /* ----------------------------------------------------------------------
-   What points lose is not lost by transfers. The work of forces is counted with the velocities of points at the start of each step
-   (MPMEnergyWatch), and so a step late: that of the last step would not be
+   What points lose is not lost by transfers. The work of forces is counted with the velocities of points
+   at the start of each step (MPMEnergyWatch), and so a step late: that of the last step would not be
 ------------------------------------------------------------------------- */
 
 void FixMPMRelax::rest()
@@ -185,7 +194,8 @@ void FixMPMRelax::rest()
 }
 
 /* ----------------------------------------------------------------------
-   the run ends as with fix halt, a step after it is known that it does, so that there is thermodynamic output of the last one
+   the run ends as with fix halt, a step after it is known that it does, so that there is thermodynamic
+   output of the last one
 ------------------------------------------------------------------------- */
 
 void FixMPMRelax::end_of_step()
@@ -210,12 +220,14 @@ void FixMPMRelax::post_run()
     if (comm->me == 0)
       utils::logmesg(lmp, "Fix mpm/relax {}: forces are balanced to {:.3g} after {:.0f} rests\n",
                      id, ratio, nrests);
-  } else if (comm->me == 0 && update->nsteps > 0 && stops)
+  } else if (comm->me == 0 && update->nsteps > 0 && stops) {
+    const bool nearly = state == LAST_STEP;
     error->warning(
         FLERR,
-        "Fix mpm/relax {}: the run has ended with a ratio of forces of {:.3g}, above {:.3g}: run "
-        "more steps",
-        id, ratio, tolerance);
+        "Fix mpm/relax {}: the run has ended {} (ratio of forces {:.3g}, tolerance {:.3g}): "
+        "run more steps",
+        id, nearly ? "just before the last rest" : "before forces are balanced", ratio, tolerance);
+  }
 }
 
 double FixMPMRelax::compute_vector(int k)

@@ -29,9 +29,9 @@ struct MPMRelaxOptions {
   MPM_NS::Options declare();
 };
 
-/** Brings all material points to rest in equilibrium: dynamic relaxation with kinetic damping. Velocities are set to zero whenever
- *  the kinetic energy has passed a maximum, until forces on the nodes are balanced (P.A. Cundall, 1976; M.R. Barnes,
- *  Computers and Structures 30, 685-695, 1988). */
+/** Brings all material points to rest in equilibrium: dynamic relaxation with kinetic damping. Velocities are
+ *  set to zero whenever the kinetic energy has passed a maximum, until forces on the nodes are balanced
+ *  (P.A. Cundall, 1976; M.R. Barnes, Computers and Structures 30, 685-695, 1988). */
 class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
  public:
   FixMPMRelax(class LAMMPS *, int, char **);
@@ -40,7 +40,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   void setup(int) override;
   void end_of_step() override;
   void post_run() override;
-  double compute_scalar() override { return ratio; }
+  double compute_scalar() override { return ratio < 1.0 ? ratio : 1.0; }
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -53,7 +53,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   }
   void account(double *values) const override
   {
-    for (int k = 0; k < 2; k++) values[k] = -taken[k];
+    for (int k = 0; k < 2; k++) values[k] -= taken[k];
   }
 
  private:
@@ -64,7 +64,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   double ratio = 0.0;         // of these; UNKNOWN before the first look
   double nrests = 0.0;        // how often velocities were set to zero
   double nsteps = 0.0;        // of the cycle
-  // energy so far, this rank's share, in restart files that of all ranks: kinetic, and work of forces in a step
+  // energy so far, this rank's share, in restart files that of all ranks: kinetic, and work in a step
   double taken[2] = {0.0, 0.0};
   bool falls = false;    // the kinetic energy, in this step
   std::vector<MPMField *> fields;

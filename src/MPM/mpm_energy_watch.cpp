@@ -163,7 +163,7 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
   std::vector<double> values;
   for (const auto *other : fields[0]->plan->physics) {
     const auto accounts = other->accounts();
-    values.resize(accounts.size());
+    values.assign(accounts.size(), 0.0);
     other->account(values.data());
     for (std::size_t k = 0; k < accounts.size(); k++)
       (accounts[k].stored ? mine.stored : mine.work) += values[k];

@@ -81,7 +81,7 @@ class MPMPhysics {
     bool in_integration = false;
   };
   virtual std::vector<Account> accounts() const { return {}; }
-  virtual void account(double * /*values*/) const {}
+  virtual void account(double * /*values*/) const {}    ///< adds to what is there
 
  protected:
   ~MPMPhysics() = default;    // owned and deleted as a Fix

@@ -160,6 +160,7 @@ namespace {
     for (int i = 0; i < b.n; i++) {
       guess[i] = D[i];
       open[i] = D[i] > 0.0 ? 1.0 : 0.0;
+      yield[i] = start[i];    // of points that do not yield, whose work is this times zero
     }
     if constexpr (Flow::estimates)
       solve_quickly<true>(b, flow, history, trial, stiff, start, yield, D, open);
