@@ -666,7 +666,8 @@ double FixMPMPore::compute_vector(int i)
 }
 
 /* ----------------------------------------------------------------------
-   what the water stores, and its kinetic energy, as far as mass and velocity of points do not have it, for compute mpm/energy and the energy watch
+   what the water stores, and its kinetic energy, as far as mass and velocity of points do not have it, for
+   compute mpm/energy and the energy watch
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::account(double *values) const

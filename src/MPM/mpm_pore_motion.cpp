@@ -7,45 +7,50 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Soil (velocity v, acceleration a) and pore water (velocity v + w/n) as one set of points (u-v-p; O.C. Zienkiewicz,
-   T. Shiomi, Int. J. Numer. Anal. Methods Geomech. 8 (1984) 71, without convective terms). With the density rho of both and R the
-   resistance to the flow w,
+   Soil (velocity v, acceleration a) and pore water (velocity v + w/n) as one set of points (u-v-p; O.C.
+   Zienkiewicz, T. Shiomi, Int. J. Numer. Anal. Methods Geomech. 8 (1984) 71, without convective terms). With
+   the density rho of both and R the resistance to the flow w,
 
      rho a + rho_f dw/dt = div(sigma' - alpha p I) + rho g
      rho_f/n dw/dt       = - grad p + rho_f (g - a) - R w
      S dp/dt             = - alpha div v - div w
 
-   Unknowns are the velocity of the soil on nodes, as without water, the pressure on nodes (mpm_pore.cpp), and w in
-   points. With w in points no boundary condition for it is needed at walls, which may be anywhere in a cell: where
-   no water goes through is where the weak form of div w ends; the places of points do not lose w to the lattice in transfers; and where drag
-   rules, the equations on nodes become those of u-p. The alternative, a velocity of the water on nodes of its own, needs
-   a second set of walls, and damps what transfers do not see.
+   Unknowns are the velocity of the soil on nodes, as without water, the pressure on nodes (mpm_pore.cpp), and
+   w in points. With w in points no boundary condition for it is needed at walls, which may be anywhere in a
+   cell: where no water goes through is where the weak form of div w ends; the places of points do not lose w
+   to the lattice in transfers; and where drag rules, the equations on nodes become those of u-p. The
+   alternative, a velocity of the water on nodes of its own, needs a second set of walls, and damps what
+   transfers do not see.
 
-   Drag. In a step with the duration t all but w is constant, and w is integrated exactly: with the rate of drag r = n R/rho_f and the mean
-   f = (1 - exp(-r t))/(r t) of its decay,
+   Drag. In a step with the duration t all but w is constant, and w is integrated exactly: with the rate of
+   drag r = n R/rho_f and the mean f = (1 - exp(-r t))/(r t) of its decay,
 
      w' = w + t f n (A - a),    A = g - (grad p + R w)/rho_f.
 
-   That is a fading difference without acceleration, and Darcy's law where r t is large, so that drag does not limit the step: leapfrog of waves
-   with this factor is stable up to 2/omega of the waves without drag (f < (1 + exp(-r t))/2).
+   That is a fading difference without acceleration, and Darcy's law where r t is large, so that drag does not
+   limit the step: leapfrog of waves with this factor is stable up to 2/omega of the waves without drag
+   (f < (1 + exp(-r t))/2).
 
-   Inertia. A point gives rho_f V dw/dt = mu (A - a) to the water, where mu = f n rho_f V is the mass that moves by itself. On
-   nodes, with sums of mu_p N_ip as with masses,
+   Inertia. A point gives rho_f V dw/dt = mu (A - a) to the water, where mu = f n rho_f V is the mass that
+   moves by itself. On nodes, with sums of mu_p N_ip as with masses,
 
      (m_i - mu_i) a_i = F_i - sum_p mu_p N_ip A_p,    a_p = sum_i N_ip a_i,
 
-   so that both unknowns are solved at once, node by node. What walls and contact do to the node they do to the mass m_i - mu_i,
-   which is what they feel. Momentum is kept to round-off, as mu_i is the sum of mu_p N_ip; the inverse of the mass
-   matrix, (1/s, -N^T/s; -N/s, n/(rho_f V) + N N^T/s) with s = m_i - mu_i, is symmetric and positive, as soil is
-   heavier than its water: waves have an energy which this integration keeps bounded.
+   so that both unknowns are solved at once, node by node. What walls and contact do to the node they do to
+   the mass m_i - mu_i, which is what they feel. Momentum is kept to round-off, as mu_i is the sum of mu_p
+   N_ip; the inverse of the mass matrix, (1/s, -N^T/s; -N/s, n/(rho_f V) + N N^T/s) with s = m_i - mu_i, is
+   symmetric and positive, as soil is heavier than its water: waves have an energy which this integration
+   keeps bounded.
 
-   Surface. Where the pressure p_s outside is given, the flow out of an area A with the normal m is that of the points next to
-   it, Q = A m . <w>, and by the same weights c_p of this mean what is left of the pressure difference drives these points,
-   with A m c_p (p - p_s)/V_p beside - grad p. This is how the weak form of the second equation has a given
-   pressure, and as what it takes from the flow is what comes to the pressure, it is part of the same symmetric system as all else. One
-   pressure makes no flow: one that rises to the surface with just the gradient of its own push, for which nodes beyond the surface give room. So
-   there flows what a step would make of p - p_s from rest, too. A linear pressure is a solution, and whatever flows is bounded by the
-   resistance: a surface that is loaded faster than water can leave does not make pressures oscillate.
+   Surface. Where the pressure p_s outside is given, the flow out of an area A with the normal m is that of
+   the points next to it, Q = A m . <w>, and by the same weights c_p of this mean what is left of the pressure
+   difference drives these points, with A m c_p (p - p_s)/V_p beside - grad p. This is how the weak form of
+   the second equation has a given pressure, and as what it takes from the flow is what comes to the pressure,
+   it is part of the same symmetric system as all else. One pressure makes no flow: one that rises to the
+   surface with just the gradient of its own push, for which nodes beyond the surface give room. So there
+   flows what a step would make of p - p_s from rest, too. A linear pressure is a solution, and whatever flows
+   is bounded by the resistance: a surface that is loaded faster than water can leave does not make pressures
+   oscillate.
 
    A resistance that depends on w (Forchheimer) is taken at the flow w* that an implicit step would leave,
    |w*| (1 + t n/rho_f (R_0 + R_1 |w*|)) = |w + t n/rho_f (rho_f g - grad p)|: steady flow is exact.
@@ -213,8 +218,8 @@ void MPMPoreMotion::take_off()
 }
 
 /* ----------------------------------------------------------------------
-   Also the ledger, which has seen nodes without the mass that moves by itself: to the soil, the inertia of the water
-   is a force, whose work is like that of the pressure
+   Also the ledger, which has seen nodes without the mass that moves by itself: to the soil, the inertia of
+   the water is a force, whose work is like that of the pressure
 ------------------------------------------------------------------------- */
 
 void MPMPoreMotion::move()

@@ -18,12 +18,13 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Pore water with a velocity of its own in the points of one field (u-v-p): its inertia in the momentum equation of
- *  soil and water, and its motion relative to the soil.
+/** Pore water with a velocity of its own in the points of one field (u-v-p): its inertia in the momentum
+ *  equation of soil and water, and its motion relative to the soil.
  *
- *  Points keep rows of dim reals: J times the flow w, the volume of water that goes through an area of the soil for
- *  each time [velocity], with the ratio J of volumes. Mass times velocity of a point, plus the density of the water times
- *  the initial volume of the point times this row, is the momentum of its soil and water together. */
+ *  Points keep rows of dim reals: J times the flow w, the volume of water that goes through an area of the
+ *  soil for each time [velocity], with the ratio J of volumes. Mass times velocity of a point, plus the
+ *  density of the water times the initial volume of the point times this row, is the momentum of its soil and
+ *  water together. */
 class MPMPoreMotion : protected Pointers {
  public:
   /** Is a block looked at? Null: all are. */
@@ -45,11 +46,12 @@ class MPMPoreMotion : protected Pointers {
   void begin_step(const MPMRows &flow);
   /** Gradient of the pressure in a point. */
   void set_gradient(int i, const double *gradient);
-  /** Nodes have mass. [node][8] gradients of pressure that drive the water to the surface, 0. Before begin_point(). */
+  /** Nodes have mass. [node][8] gradients of pressure that drive the water to the surface, 0. Before
+   *  begin_point(). */
   void add_gradients(std::vector<double> &of_nodes, const Wanted &);
   void begin_point(int i, const Pores &);
-  /** Flow per gradient of pressure that a step makes in point i from rest: the mobility, or less where there is no time
-   *  to speed up. */
+  /** Flow per gradient of pressure that a step makes in point i from rest: the mobility, or less where there
+   *  is no time to speed up. */
   double response(int i, const Pores &) const;
   /** Nodes have mass, momentum, and forces, summed over ranks: takes off them what moves by itself. */
   void take_off();
@@ -60,8 +62,8 @@ class MPMPoreMotion : protected Pointers {
   /** [node][8] sums of volume times flow, 0, and of the volume. */
   void flow_at_nodes(const Wanted &, std::vector<double> &of_nodes);
 
-  /** Speed of the fastest wave in a material whose own wave speed is c: both phases move, without drag. biot, storage [1/pressure]:
-   *  of the soil; of_both: density of soil and water. */
+  /** Speed of the fastest wave in a material whose own wave speed is c: both phases move, without drag. biot,
+   *  storage [1/pressure]: of the soil; of_both: density of soil and water. */
   double wave_speed(double c, double of_both, double biot, double storage, double porosity) const;
   double memory_usage() const;
 

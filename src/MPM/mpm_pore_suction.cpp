@@ -7,35 +7,40 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Partly saturated soil, with the saturation S(p), Bishop's coefficient chi, and the relative permeability k_r:
+   Partly saturated soil, with the saturation S(p), Bishop's coefficient chi, and the relative
+   permeability k_r:
 
      rho dv/dt = div(sigma' - chi p I) + rho g,   rho = (1 - n) rho_s + n w rho_f,
      n dw/dp dp/dt = - w div v - div q,   q = - k k_r (grad p - rho_f g)/G,   w = S exp(p/K),
 
    so that the storage is n (dS/dp + S/K) as far as p is small beside K. Grains are rigid.
 
-   The water of a point is what flow has brought to it: its volume W is a state of the point, and what W grows by goes to the mass
-   of the point, too. The pressure follows from w = W/(volume of pores), the mixed form (M.A. Celia, E.T. Bouloutas, R.L.
-   Zarba, Water Resour. Res. 26 (1990) 1483): a step is linear in p, with the capacity at its start, and what this would get wrong
-   where the capacity changes by orders of magnitude, at fronts and the water table, is no error in the mass of water
-   but one of the time at which it comes. The volume of pores is that after the motion of the step, so that a closed
-   body of any motion keeps both W and the relation of p and W. Only where pores are full before and after the step p is what
-   the step makes it, as 1e-16 of W are 1e-7 Pa of water, and as in soil that is always full.
+   The water of a point is what flow has brought to it: its volume W is a state of the point, and what W grows
+   by goes to the mass of the point, too. The pressure follows from w = W/(volume of pores), the mixed form
+   (M.A. Celia, E.T. Bouloutas, R.L. Zarba, Water Resour. Res. 26 (1990) 1483): a step is linear in p, with
+   the capacity at its start, and what this would get wrong where the capacity changes by orders of magnitude,
+   at fronts and the water table, is no error in the mass of water but one of the time at which it comes. The
+   volume of pores is that after the motion of the step, so that a closed body of any motion keeps both W and
+   the relation of p and W. Only where pores are full before and after the step p is what the step makes it,
+   as 1e-16 of W are 1e-7 Pa of water, and as in soil that is always full.
 
-   Lag. What nodes do not see of the pressures of points, p_p - sum_i N_ip p_i, goes at the rate k/(G C h^2) in which flow crosses a
-   cell and, in full pores, in some crossings of waves (mpm_pore.cpp). In dry soil flow takes 1e5 times as long, and at the rate
-   of full pores points would have the pressure of nodes after each step, which is a diffusion of its own: the share of
-   waves falls as the storage grows. With factors e_p of a step that differ from point to point the sum of C_p e_p (p_p - ...) is
-   not zero, and water would be lost. Hence nodes get the rate C_p (e - e_p) (p_p - ...)/dt, with the greatest factor e: with the
-   weights N_ip, of which the sum is one, what all points and nodes have together is kept, and in full pores nothing changes.
+   Lag. What nodes do not see of the pressures of points, p_p - sum_i N_ip p_i, goes at the rate k/(G C h^2)
+   in which flow crosses a cell and, in full pores, in some crossings of waves (mpm_pore.cpp). In dry soil
+   flow takes 1e5 times as long, and at the rate of full pores points would have the pressure of nodes after
+   each step, which is a diffusion of its own: the share of waves falls as the storage grows. With factors e_p
+   of a step that differ from point to point the sum of C_p e_p (p_p - ...) is not zero, and water would be
+   lost. Hence nodes get the rate C_p (e - e_p) (p_p - ...)/dt, with the greatest factor e: with the weights
+   N_ip, of which the sum is one, what all points and nodes have together is kept, and in full pores nothing
+   changes.
 
-   Full pores next to very dry soil. The conductance is that at the start of a step, while the capacity of full pores is next to
-   nothing: in one step more water would leave them than they have. Hence a flow of more than a fifth of the water of a point through a cell in a step
-   is held at that; where pores are full on both sides, flow is never so fast but in steps much too long for the scene.
+   Full pores next to very dry soil. The conductance is that at the start of a step, while the capacity of
+   full pores is next to nothing: in one step more water would leave them than they have. Hence a flow of more
+   than a fifth of the water of a point through a cell in a step is held at that; where pores are full on both
+   sides, flow is never so fast but in steps much too long for the scene.
 
    Surface. Through half a cell next to the surface, water comes in with the mean of the permeabilities at the
-   pressure outside and inside: rain on dry soil would otherwise not get in. It leaves with that inside: what leaves the nodes at the surface must
-   be able to come to them, or their pressure would fall without bound.
+   pressure outside and inside: rain on dry soil would otherwise not get in. It leaves with that inside: what
+   leaves the nodes at the surface must be able to come to them, or their pressure would fall without bound.
 ------------------------------------------------------------------------- */
 
 #include "mpm_pore_suction.h"

@@ -34,29 +34,31 @@ struct MPMPoreMoisture {
   double bishop;      ///< share of the pressure in the effective stress
 
   static MPMPoreMoisture at(const MPMPoreSoil &, double J, double p, const MPMPoreWater &);
-  /** The pressure of water that fills the pores so far. before: the last one; guess: near it. Soil that has less water than
-   *  at 100/alpha has that suction, or what it had before. */
+  /** The pressure of water that fills the pores so far. before: the last one; guess: near it. Soil that has
+   *  less water than at 100/alpha has that suction, or what it had before. */
   static double pressure(const MPMPoreSoil &, double filling, double before, double guess,
                          const MPMPoreWater &);
   /** What a volume of soil stores: the integral of p times its storage, from zero [pressure]. */
   static double energy(const MPMPoreSoil &, double J, double p, const MPMPoreWater &);
 };
 
-/** Partly saturated soil in one field: what points have of water besides its pressure, and what this changes in the sums over
- *  points. See mpm_pore_suction.cpp. */
+/** Partly saturated soil in one field: what points have of water besides its pressure, and what this changes
+ *  in the sums over points. See mpm_pore_suction.cpp. */
 class MPMPoreSuction : protected Pointers {
  public:
   /** content: [n] volume of water of each point, negative where it is not yet known. */
   MPMPoreSuction(class LAMMPS *, MPMField &, const MPMPoreWater &, double *const &content);
 
-  /** Points whose water is not yet known get it from their pressure, and lose the mass of what is missing in their pores. */
+  /** Points whose water is not yet known get it from their pressure, and lose the mass of what is missing in
+   *  their pores. */
   void weigh(int i, const MPMPoreSoil &, double p) const;
 
-  /** A step, or one more sum over points. Rates at which points with full pores take the pressure of nodes [1/time]: usual, of
-   *  which waves make this part. */
+  /** A step, or one more sum over points. Rates at which points with full pores take the pressure of nodes
+   *  [1/time]: usual, of which waves make this part. */
   void begin(int nmax, double usual, double waves);
-  /** For all points of soils: capacity, conductance, that through the surface (which differs from it where drag has the
-   *  square of the flow), and what forces have of the pressure in full pores become those at p. V: volume of the point. */
+  /** For all points of soils: capacity, conductance, that through the surface (which differs from it where
+   *  drag has the square of the flow), and what forces have of the pressure in full pores become those at p.
+   *  V: volume of the point. */
   void begin_point(int i, const MPMPoreSoil &, double J, double V, double p, double &capacity,
                    double &conductance, double &through, double &in_forces);
   /** The pressure of point i is this much above that of the nodes. */
@@ -75,8 +77,8 @@ class MPMPoreSuction : protected Pointers {
   {
     return capacity * (longest - of[i].keep) * of[i].lag / dt;
   }
-  /** Not more flows than a share of the water of the point through a cell in a step. flow: of the point, volume times
-   *  velocity; speed: of a cell in a step. */
+  /** Not more flows than a share of the water of the point through a cell in a step. flow: of the point,
+   *  volume times velocity; speed: of a cell in a step. */
   void limit_flow(int i, double speed, double *flow) const
   {
     const double most = MOST_FLOW * of[i].filling * of[i].full * speed;
@@ -85,7 +87,8 @@ class MPMPoreSuction : protected Pointers {
     for (int d = 0; d < 3; d++) flow[d] *= most / sqrt(square);
   }
   double kept_lag(int i) const { return of[i].keep * of[i].lag; }
-  /** Point i has got a volume of water. guess: its pressure if its capacity had not changed. Returns its pressure. */
+  /** Point i has got a volume of water. guess: its pressure if its capacity had not changed. Returns its
+   *  pressure. */
   double take_water(int i, const MPMPoreSoil &, double before, double guess, double more);
 
   double memory_usage() const;

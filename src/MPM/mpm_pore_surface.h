@@ -23,8 +23,9 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** What pore water has outside of a face of the box, or of the free surface of the soil. Where there is air (SEEPAGE, RAIN, and HEAD
- *  above the table of soils that can dry) water leaves by its pressure, but none comes in, or not more than falls there. */
+/** What pore water has outside of a face of the box, or of the free surface of the soil. Where there is air
+ *  (SEEPAGE, RAIN, and HEAD above the table of soils that can dry) water leaves by its pressure, but none
+ *  comes in, or not more than falls there. */
 struct MPMPoreCondition {
   enum Kind { CLOSED, PRESSURE, HEAD, FLUX, SEEPAGE, RAIN };
 
@@ -36,16 +37,17 @@ struct MPMPoreCondition {
 
 /** Water through the surface of the soil in one field: at faces of the box, and where it is free.
  *
- *  Each node next to the surface stands for a share of its area. Water flows out there as it is driven by the difference
- *  of the pressure half a node spacing below the surface from that at the surface. */
+ *  Each node next to the surface stands for a share of its area. Water flows out there as it is driven by the
+ *  difference of the pressure half a node spacing below the surface from that at the surface. */
 class MPMPoreSurface : protected Pointers {
  public:
   static constexpr int NFACE = 6, FREE = 6, NPART = 7;    ///< parts: xlo ... zhi, free surface
   static constexpr int ENERGY = NPART;    ///< place of the energy of water behind them
   using Conditions = std::array<MPMPoreCondition, NPART>;
 
-  /** Of each node, of soils that can dry: sums over points of the capacity that full pores have, and of the conductance, by the
-   *  permeabilities at the pressure zero, and for parts that have a suction outside at that. */
+  /** Of each node, of soils that can dry: sums over points of the capacity that full pores have, and of the
+   *  conductance, by the permeabilities at the pressure zero, and for parts that have a suction outside at
+   *  that. */
   struct Wet {
     std::vector<double> capacity;
     std::array<std::vector<double>, 1 + NPART> conductance;
@@ -64,20 +66,21 @@ class MPMPoreSurface : protected Pointers {
   void find_places();
   /** The pressure outside of a part where it is given and below that of the air; otherwise zero. */
   double suction_outside(int part) const;
-  /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest of a soil;
-   *  wet: of soils that can dry, or null. Returns a bound of the rates of exchange at this rank's
+  /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest
+   *  of a soil; wet: of soils that can dry, or null. Returns a bound of the rates of exchange at this rank's
    *  nodes [1/time]. Collective. */
   double prepare(const MPMNodeScalar &, double least_storage, const Wet *wet);
   /** For water with inertia, after prepare(): which nodes the surface belongs to. Collective. */
   void share_area(const MPMNodeScalar &);
-  /** Water with inertia: [node][8] what drives it, gradients of pressure, by pressures of nodes. For MPMPoreMotion. */
+  /** Water with inertia: [node][8] what drives it, gradients of pressure, by pressures of nodes. For
+   *  MPMPoreMotion. */
   void find_push(const MPMNodeScalar &, std::vector<double> &of_nodes) const;
   /** What then flows out, [node][8]: sums of volume times flow, instead of what pressures drive. */
   void take_flow(const std::vector<double> &of_nodes);
   /** Can points of a block have to do with the surface? */
   bool is_near(int slot) const;
-  /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in for each
-   *  time, with the energy that this brings. */
+  /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in
+   *  for each time, with the energy that this brings. */
   void add_rates(MPMNodeScalar &, std::vector<double> &inflow) const;
 
   double memory_usage() const;

@@ -11,8 +11,8 @@
 
 namespace LAMMPS_NS {
 
-/** How much water the pores of a soil keep, and let flow, when its pressure p is below that of the air. With the effective
- *  saturation S_e = (S - S_r)/(S_s - S_r), which is one for p >= 0,
+/** How much water the pores of a soil keep, and let flow, when its pressure p is below that of the air. With
+ *  the effective saturation S_e = (S - S_r)/(S_s - S_r), which is one for p >= 0,
  *
  *    S_e = (1 + (-alpha p)^n)^-m, m = 1 - 1/n   (M.T. van Genuchten, Soil Sci. Soc. Am. J. 44 (1980) 892)
  *    S_e = exp(alpha p)                         (W.R. Gardner, Soil Sci. 85 (1958) 228)
@@ -44,8 +44,8 @@ struct MPMRetention {
     double bishop;      ///< share of the pressure in the effective stress
   };
   State at(double p) const;
-  /** Change of the pressure in the effective stress with that of the water, d(chi p)/dp. With full pores it is chi, which
-   *  is S_s where Bishop's coefficient is the saturation. */
+  /** Change of the pressure in the effective stress with that of the water, d(chi p)/dp. With full pores it
+   *  is chi, which is S_s where Bishop's coefficient is the saturation. */
   double borne(double p) const
   {
     if (!can_dry()) return 1.0;
