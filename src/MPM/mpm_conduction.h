@@ -72,7 +72,7 @@ class MPMConduction : protected Pointers {
   void find_points(bool may_rest);
   /** A material of the field conducts. */
   bool conducts() const { return active; }
-  /** A material of the field conducts, and another one does not. */
+  /** Points of the field, on any rank, are of a material that conducts, and others of one that does not. */
   bool conducts_in_part() const;
   double memory_usage() const;
 
@@ -107,7 +107,11 @@ class MPMConduction : protected Pointers {
   std::vector<double>
       shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
 
+  std::vector<signed char> present;    // [materials of the field]: has points here, on any rank
   const Thermal *thermal(const FixMPMMaterial *) const;
+  std::size_t index_of(const FixMPMMaterial *) const;
+  bool is_present(const Thermal &) const;
+  void keep_present(const std::vector<signed char> &mine);
   double volume_of(int i) const;
   void tensor(const Thermal &, int i, double k[3][3]) const;
   double bound(const Thermal &, int i, double volume) const;
