@@ -199,6 +199,22 @@ TEST(Unused, ChangesNothing)
   }
 }
 
+// fix mpm/dt knows conductivities that temperatures have raised far above those of the input, also in what is next to them
+SERIAL_TEST(Vary, HasATimeStep)
+{
+  for (const double capacity : {0.25, 1.0}) {
+    Scene run(replaced(plate(12,
+                             {{"block 0 0.5 INF INF INF INF", 1.0, capacity},
+                              {"block 0.5 1 INF INF INF INF", 1.0}},
+                             4.0 / 12, 0.3, "stages 1"),
+                       "1 0.5 1\nfix heat",
+                       "1 0.5 1 vary thermal.K table 0.0 1.0 0.4 20.0\nfix heat") +
+              "fix dt all mpm/dt 0.9\nrun 20\n");
+    // not far below the limit of quadratic functions, 0.33 h^2 rho c/K
+    EXPECT_GT(measured("dt", run.lmp->update->dt), 0.9 * 0.1 * capacity / (20.0 * 144.0));
+  }
+}
+
 // no means across interfaces of orthotropic materials: this is said where conductivities differ
 SERIAL_TEST(Orthotropic, IsWarnedOf)
 {

@@ -519,6 +519,22 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
+/** Of all conductivities, also those that points have at present by their temperature or a random field. */
+double MPMConduction::greatest_possible() const
+{
+  if (std::none_of(thermals.begin(), thermals.end(), [this](const Thermal &t) {
+        return t.varies && is_present(t);
+      }))
+    return greatest;
+  double mine = greatest, all;
+  Conduction room;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const Thermal *const t = field.is_point(i) ? thermal(field.material_of(i)) : nullptr)
+      mine = std::max(mine, t->at(i, room).conductivity);
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
 /** Functions that points alone do not bound, and domains, have the bound of the last step, and before the first one
  *  what they have inside of a body that is not deformed. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
@@ -528,6 +544,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
   const int dim = field.lattice.dim;
   const bool bounded = steepest > 0.0 || field.boxes;
   double most = 0.0;
+  const double possible = layers ? greatest_possible() : 0.0;
   Conduction room;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
@@ -537,7 +554,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     if (bounded) {
       here = bound(*t, i, volume_of(i));
       // of interfaces what is possible, and not what is there at present: the same after a restart
-      if (layers) here *= layers->most_over_own(greatest / t->at(i, room).conductivity);
+      if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
     } else if (conducted == 0.0) {
       double k[3][3], x[24], least = 1.0;
       tensor(*t, i, k);

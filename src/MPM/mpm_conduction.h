@@ -66,7 +66,7 @@ class MPMConduction : protected Pointers {
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
   double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
-  /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. */
+  /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. Collective. */
   double greatest_rate_of_points(tagint &tag) const;
   /** The points are known. Without any that conduct, on any rank, there is nothing to do if it may rest. Collective. */
   void find_points(bool may_rest);
@@ -114,6 +114,7 @@ class MPMConduction : protected Pointers {
   void keep_present(const std::vector<signed char> &mine);
   double volume_of(int i) const;
   void tensor(const Thermal &, int i, double k[3][3]) const;
+  double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;
   double steepness(int i) const;
   double row_bound(double usual);
