@@ -417,7 +417,7 @@ void FixMPMHeat::topology_changed(MPMField &field)
 bool FixMPMHeat::looks_beyond_points() const
 {
   return !bodies.empty() || std::any_of(fields.begin(), fields.end(), [](const auto &field) {
-    return field->conducts() && field->faces.any();
+    return field->has_materials() && field->faces.any();
   });
 }
 

@@ -70,6 +70,8 @@ class MPMConduction : protected Pointers {
   double greatest_rate_of_points(tagint &tag) const;
   /** The points are known. Without any that conduct, on any rank, there is nothing to do if it may rest. Collective. */
   void find_points(bool may_rest);
+  /** Is there a material that conducts, whether or not the field has points of it now? */
+  bool has_materials() const { return !thermals.empty(); }
   /** A material of the field conducts. */
   bool conducts() const { return active; }
   /** Points of the field, on any rank, are of a material that conducts, and others of one that does not. */
