@@ -398,6 +398,62 @@ SERIAL_TEST(Corner, IsStable)
       }
 }
 
+// a square in a room, with a source: in the steady state each face has a quarter of the heat, whatever the time step is, although
+// rates at the faces are limited in longer steps
+PARAMETER_TEST(Corner, HasItsSteadyState, double, Values(0.25, 1.0, 2.0))
+{
+  for (const double H : {1.0, 1e4}) {
+    const std::string on = strprintf(" convection %g 0.0 ", H);
+    Scene run(
+        replaced(block(2, 0.0,
+                       "xlo" + on + "xhi" + on + "ylo" + on + "yhi" + on + "source v_q stages 9"),
+                 "1.0 1.0 1e-3", "1.0 1.0 1e-2") +
+        "variable q equal 0.05\n");
+    run_to(run, 400.0, GetParam());
+    const double *const flows = run.fix_vector("heat", 4);
+    for (int face = 0; face < 4; face++) EXPECT_NEAR(flows[face] / -0.0125, 1.0, 1e-7) << H;
+    EXPECT_NEAR(measured("of x, and of y", flows[0] / flows[2]), 1.0, 1e-10);
+  }
+}
+
+// faces next to each other at different temperatures: what comes in at one goes out at the other, also where the condition of
+// one is held
+SERIAL_TEST(Corner, OfTwoTemperatures)
+{
+  for (const char *x : {"convection 1e3 0.0", "temperature 0.0"}) {
+    double flow[2];
+    for (const bool is_long : {false, true}) {
+      const double dt = is_long ? 2.0 : 0.25;
+      Scene run(replaced(block(2, 0.0,
+                               std::string("xlo ") + x +
+                                   " ylo convection 1 1.0 xhi convection 0.01 0.5 yhi convection "
+                                   "0.01 0.5 stages 9"),
+                         "1.0 1.0 1e-3", "1.0 1.0 1e-2"));
+      run_to(run, 600.0, dt);
+      const double *const flows = run.fix_vector("heat", 4);
+      EXPECT_NEAR(flows[0] + flows[1] + flows[2] + flows[3], 0.0, 1e-6);
+      flow[is_long] = measured("flow", flows[2]);
+    }
+    EXPECT_NEAR(flow[0] / flow[1], 1.0, 0.03);
+  }
+}
+
+// perfect convection on both does not let through at the edge what conduction does not
+SERIAL_TEST(Corner, HasAFiniteFlow)
+{
+  double flow[2];
+  for (const bool perfect : {false, true}) {
+    const std::string H = perfect ? "1e8" : "1e3";
+    Scene run(replaced(block(2, 0.0,
+                             "xlo convection " + H + " 0.0 ylo convection " + H +
+                                 " 1.0 xhi convection 0.01 0.5 yhi convection 0.01 0.5 stages 9"),
+                       "1.0 1.0 1e-3", "1.0 1.0 1e-2"));
+    run_to(run, 600.0, 2.0);
+    flow[perfect] = measured("flow", run.fix_vector("heat", 4)[2]);
+  }
+  EXPECT_NEAR(flow[1] / flow[0], 1.0, 0.01);
+}
+
 // what is held there follows that outside in no time, and heat is what comes through the faces
 SERIAL_TEST(Corner, OfPerfectConvection)
 {

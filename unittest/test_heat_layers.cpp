@@ -172,6 +172,62 @@ SERIAL_TEST(Layers, KeepHeat)
   }
 }
 
+// a material without points in this field changes no bit, and no time step; here it is that of another field, whose conductivities
+// would need 100 times shorter steps, differ along axes, or are not there
+TEST(Unused, ChangesNothing)
+{
+  const std::string scene =
+      replaced(plate(12,
+                     {{"block 0 0.5 INF INF INF INF", 1.0}, {"block 0.5 1 INF INF INF INF", 0.1}},
+                     4.0 / 12, 0.3, "xlo temperature 1.0 xhi convection 2.0 0.0 stages 5"),
+               "fix grid all", "group points type 1 2\ngroup none empty\nfix grid points") +
+      "fix dt all mpm/dt 0.9\n";
+  Scene plain(scene + "run 30\n");
+  for (const std::string other :
+       {"conducting 1.0 0.5 100.0", "conducting 1.0 0.5 1.0 orthotropic 2.0 3.0", ""}) {
+    Scene run(replaced(scene, "fix heat all",
+                       "fix m3 none mpm/material density 0.1 eos linear 1e-6 " +
+                           (other.empty() ? "" : "thermal " + other) + "\nfix heat all") +
+              "run 30\n");
+    EXPECT_EQ(run.lmp->update->dt, plain.lmp->update->dt) << other;
+    ASSERT_EQ(run.n(), plain.n());
+    for (const char *m : {"m1", "m2"}) {
+      Warm a(plain, m), b(run, m);
+      for (int i = 0; i < run.n(); i++)
+        if (b.has(i)) ASSERT_EQ(b.T(i), a.T(i)) << other;
+    }
+  }
+}
+
+// fix mpm/dt knows conductivities that temperatures have raised far above those of the input, also in what is next to them
+SERIAL_TEST(Vary, HasATimeStep)
+{
+  for (const double capacity : {0.25, 1.0}) {
+    Scene run(replaced(plate(12,
+                             {{"block 0 0.5 INF INF INF INF", 1.0, capacity},
+                              {"block 0.5 1 INF INF INF INF", 1.0}},
+                             4.0 / 12, 0.3, "stages 1"),
+                       "1 0.5 1\nfix heat",
+                       "1 0.5 1 vary thermal.K table 0.0 1.0 0.4 20.0\nfix heat") +
+              "fix dt all mpm/dt 0.9\nrun 20\n");
+    // not far below the limit of quadratic functions, 0.33 h^2 rho c/K
+    EXPECT_GT(measured("dt", run.lmp->update->dt), 0.9 * 0.1 * capacity / (20.0 * 144.0));
+  }
+}
+
+// no means across interfaces of orthotropic materials: this is said where conductivities differ
+SERIAL_TEST(Orthotropic, IsWarnedOf)
+{
+  for (const bool orthotropic : {false, true}) {
+    const std::string scene = replaced(
+        plate(12, {{"block 0 0.5 INF INF INF INF", 1.0}, {"block 0.5 1 INF INF INF INF", 0.1}},
+              4.0 / 12, 0.0),
+        "0.5 0.1\n", orthotropic ? "0.5 0.1 orthotropic 0.2 0.3\n" : "0.5 0.1\n");
+    EXPECT_EQ(lines_that_say(scene + "timestep 1e-3\nrun 1\n", "one of them is orthotropic").size(),
+              orthotropic ? 1u : 0u);
+  }
+}
+
 TEST(Ranks, Agree)
 {
   const std::string scene =

@@ -417,7 +417,7 @@ void FixMPMHeat::topology_changed(MPMField &field)
 bool FixMPMHeat::looks_beyond_points() const
 {
   return !bodies.empty() || std::any_of(fields.begin(), fields.end(), [](const auto &field) {
-    return field->conducts() && field->faces.any();
+    return field->has_materials() && field->faces.any();
   });
 }
 
@@ -576,7 +576,7 @@ int FixMPMHeat::count_stages()
   const double *rates = all.data() + NRATE * fields.size();
   double most = 0.0;
   for (std::size_t k = 0; k < fields.size(); k++) {
-    const double rate = fields[k]->faces.limit(cap, &all[NRATE * k + 1]);
+    const double rate = fields[k]->faces.limit(cap, all[NRATE * k], &all[NRATE * k + 1]);
     most = std::max(most, rate);
   }
   greatest += most;

@@ -64,6 +64,8 @@
 #include "mpm_conduction.h"
 
 #include "atom.h"
+#include "comm.h"
+#include "error.h"
 #include "math_extra.h"
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
@@ -93,24 +95,13 @@ MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer
 void MPMConduction::init(double sigma, bool surfaces)
 {
   thermals.clear();
-  slowest = std::numeric_limits<double>::max();
-  double greatest_capacity = 0.0;
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
     const int T = fix->find_history("temperature"), molten = fix->find_history("molten");
-    const bool varies = material.conduction_varies();
-    const Conduction all = material.conduction(nullptr);
-    thermals.push_back({fix, T, molten, varies, all});
-    const double least = all.orthotropic
-        ? std::min(all.conductivity, std::min(all.across[0], all.across[1]))
-        : all.conductivity;
-    const double capacity = material.density() * all.capacity;
-    slowest = std::min(slowest, least / capacity);
-    least_capacity = thermals.size() > 1 ? std::min(least_capacity, capacity) : capacity;
-    greatest_capacity = std::max(greatest_capacity, capacity);
+    thermals.push_back(
+        {fix, T, molten, material.conduction_varies(), material.conduction(nullptr)});
   }
-  if (greatest_capacity > 0.0) slowest *= least_capacity / greatest_capacity;
   active = !thermals.empty();
   total = field.frame->is_total();
   steepest = 0.0;
@@ -127,21 +118,70 @@ void MPMConduction::init(double sigma, bool surfaces)
     }
   }
   conducted = 0.0;
-  init_layers();
+  present.clear();
+  std::vector<signed char> mine(field.materials.size(), 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const auto *const fix = field.is_point(i) ? field.material_of(i) : nullptr)
+      mine[index_of(fix)] = 1;
+  keep_present(mine);
   faces.init(sigma);
-  wants_volumes = faces.any() || (surfaces && conducts_in_part());
+  wants_volumes = faces.any() || (surfaces && thermals.size() < field.materials.size());
   scalar.init(transfer.kind != MPMHeatTransfer::PIC, wants_volumes);
+}
+
+std::size_t MPMConduction::index_of(const FixMPMMaterial *fix) const
+{
+  return std::find(field.materials.begin(), field.materials.end(), fix) - field.materials.begin();
+}
+
+bool MPMConduction::is_present(const Thermal &t) const
+{
+  return present[index_of(t.fix)];
+}
+
+/** Materials of which this rank has points: what depends on those of all ranks. Materials of other fields, and those that are
+ *  not used at all, change nothing. Collective. */
+void MPMConduction::keep_present(const std::vector<signed char> &mine)
+{
+  std::vector<signed char> all(mine.size());
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
+  if (all == present) return;
+  present = all;
+  slowest = std::numeric_limits<double>::max();
+  least_capacity = 0.0;
+  double greatest_capacity = 0.0;
+  for (const auto &t : thermals) {
+    if (!is_present(t)) continue;
+    const double least = t.all.orthotropic
+        ? std::min(t.all.conductivity, std::min(t.all.across[0], t.all.across[1]))
+        : t.all.conductivity;
+    const double capacity = t.fix->material->density() * t.all.capacity;
+    slowest = std::min(slowest, least / capacity);
+    least_capacity = greatest_capacity > 0.0 ? std::min(least_capacity, capacity) : capacity;
+    greatest_capacity = std::max(greatest_capacity, capacity);
+  }
+  if (greatest_capacity > 0.0) slowest *= least_capacity / greatest_capacity;
+  init_layers();
 }
 
 bool MPMConduction::conducts_in_part() const
 {
-  return conducts() && thermals.size() < field.materials.size();
+  if (!conducts()) return false;
+  for (std::size_t k = 0; k < present.size(); k++)
+    if (present[k] && !thermal(field.materials[k])) return true;
+  return false;
 }
 
 void MPMConduction::find_points(bool may_rest)
 {
-  int any = 0, all = !thermals.empty();
-  for (const auto &run : field.map->runs) any |= thermal(run.material) != nullptr;
+  if (thermals.empty()) return;
+  int any = 0, all = 1;
+  std::vector<signed char> mine(field.materials.size(), 0);
+  for (const auto &run : field.map->runs) {
+    any |= thermal(run.material) != nullptr;
+    if (run.material) mine[index_of(run.material)] = 1;
+  }
+  if (field.materials.size() > 1) keep_present(mine);
   if (any) field.jacobians.ask();
   if (all && may_rest) MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
   active = all;
@@ -171,17 +211,28 @@ void MPMConduction::init_layers()
   layers.reset();
   greatest = 0.0;
   if (total || steepest == 0.0) return;
-  bool differ = false;
+  bool differ = false, orthotropic = false;
   double fastest = 0.0;
+  const Thermal *first = nullptr;
   for (const auto &t : thermals) {
-    if (t.all.orthotropic) return;
-    differ = differ ||
-        (thermals.size() > 1 &&
-         (t.varies || t.all.conductivity != thermals.front().all.conductivity));
+    if (!is_present(t)) continue;
+    orthotropic = orthotropic || t.all.orthotropic;
+    if (!first)
+      first = &t;
+    else
+      differ = differ || t.varies || first->varies || t.all.orthotropic != first->all.orthotropic ||
+          t.all.conductivity != first->all.conductivity;
     const double capacity = t.fix->material->density() * t.all.capacity;
     greatest = std::max(greatest, t.all.conductivity);
     fastest = std::max(fastest, t.all.conductivity / capacity);
   }
+  if (orthotropic && differ && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/heat: materials of different conductivity share fix mpm {}, and one of "
+                   "them is orthotropic: there are no means across their interfaces, and with few "
+                   "cells too little or too much heat goes through",
+                   field.id());
+  if (orthotropic) return;
   if (!differ) return;
   const bool along = greatest <= MPMLayerMean::MOST * fastest * least_capacity;
   layers = std::make_unique<MPMLayerMean>(field, along);
@@ -468,6 +519,22 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
+/** Of all conductivities, also those that points have at present by their temperature or a random field. */
+double MPMConduction::greatest_possible() const
+{
+  if (std::none_of(thermals.begin(), thermals.end(), [this](const Thermal &t) {
+        return t.varies && is_present(t);
+      }))
+    return greatest;
+  double mine = greatest, all;
+  Conduction room;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const Thermal *const t = field.is_point(i) ? thermal(field.material_of(i)) : nullptr)
+      mine = std::max(mine, t->at(i, room).conductivity);
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
 /** Functions that points alone do not bound, and domains, have the bound of the last step, and before the first one
  *  what they have inside of a body that is not deformed. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
@@ -477,6 +544,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
   const int dim = field.lattice.dim;
   const bool bounded = steepest > 0.0 || field.boxes;
   double most = 0.0;
+  const double possible = layers ? greatest_possible() : 0.0;
   Conduction room;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
@@ -486,7 +554,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     if (bounded) {
       here = bound(*t, i, volume_of(i));
       // of interfaces what is possible, and not what is there at present: the same after a restart
-      if (layers) here *= layers->most_over_own(greatest / t->at(i, room).conductivity);
+      if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
     } else if (conducted == 0.0) {
       double k[3][3], x[24], least = 1.0;
       tensor(*t, i, k);

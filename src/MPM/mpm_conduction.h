@@ -66,13 +66,15 @@ class MPMConduction : protected Pointers {
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
   double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
-  /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. */
+  /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. Collective. */
   double greatest_rate_of_points(tagint &tag) const;
   /** The points are known. Without any that conduct, on any rank, there is nothing to do if it may rest. Collective. */
   void find_points(bool may_rest);
+  /** Is there a material that conducts, whether or not the field has points of it now? */
+  bool has_materials() const { return !thermals.empty(); }
   /** A material of the field conducts. */
   bool conducts() const { return active; }
-  /** A material of the field conducts, and another one does not. */
+  /** Points of the field, on any rank, are of a material that conducts, and others of one that does not. */
   bool conducts_in_part() const;
   double memory_usage() const;
 
@@ -107,9 +109,14 @@ class MPMConduction : protected Pointers {
   std::vector<double>
       shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
 
+  std::vector<signed char> present;    // [materials of the field]: has points here, on any rank
   const Thermal *thermal(const FixMPMMaterial *) const;
+  std::size_t index_of(const FixMPMMaterial *) const;
+  bool is_present(const Thermal &) const;
+  void keep_present(const std::vector<signed char> &mine);
   double volume_of(int i) const;
   void tensor(const Thermal &, int i, double k[3][3]) const;
+  double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;
   double steepness(int i) const;
   double row_bound(double usual);

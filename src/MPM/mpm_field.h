@@ -83,7 +83,7 @@ class MPMField : protected Pointers {
 
   /** [n][dim] gradients on the lattice that other physics keeps for points; set by its init_physics(). */
   std::vector<const MPMRows *> slopes;
-  /** det F of points, for other physics: asked for by its init_physics(). */
+  /** det F of points, for other physics: asked for by its topology_changed(). */
   MPMJacobians jacobians;
 
   // what depends on the options; null: not with these

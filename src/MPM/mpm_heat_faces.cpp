@@ -20,10 +20,23 @@
    material fills the box, and in proportion to it below.
 
    Convection and radiation: the temperature at a face follows that outside with the rate r = R dP/dT of a line, with its
-   response R and the power P. As at other surfaces (mpm_heat_surface.cpp) this rate is limited to l. Lines of faces normal to
-   several axes take turns, each with the rates that the one before has left: (1 - (1 - l/r_1) Pi_1) (1 - (1 - l/r_2) Pi_2)
-   in terms of the projections to their temperatures, which commute at the edges and corners of a block. What
-   follows there is at most as fast as the sum of the rates of all axes.
+   response R and the power P. As at other surfaces (mpm_heat_surface.cpp) this rate is limited to l: the line gets
+
+     P = F - a D/R,   a = r/l - 1,
+
+   F: the power without a limit, D: the rate of its temperature by all heat, P included, which is zero when nothing
+   changes. With a projection Pi to the temperature of each line, this is (1 + sum a Pi)^-1 times the rates without limits. In the
+   norm of capacities it is symmetric, and for any amplitude y of the line in a mode r y/(1 + a y) <= l: what follows at edges and
+   corners is at most as fast as the sum of the rates of all axes. There, lines of several faces have nodes in common, and D of one
+   depends on the powers of the others: with sum_k w_k w'_k/C_k between two lines, a matrix G that has R on its
+   diagonal, these are the equations
+
+     (R/a) P + sum G P' = (R/a) F - D_0,   D_0: by all other heat.
+
+   Lines with a prescribed temperature are among them, with next to no R/a and without F. At edges r is at most some times the rate
+   of conduction, whatever the time step is: the area is made smaller, by which temperatures of the faces there differ from those
+   outside by a small part of what they differ from those a cell further inside. If lines took turns instead, each with
+   what those before it have left, edges had a wrong steady state, which depends on the time step.
 
    How near is material? Along a line, sum_k w_k V_k over what it is where material fills the box up to the
    face, is 1 without a gap, 0.7 with one of a quarter of a cell, and 0.46 with half a cell (quadratic). At the
@@ -52,6 +65,9 @@ static constexpr double ENOUGH = 0.5;    // of the volume of a node, for its who
 static constexpr double TOUCHES = 0.6, IS_AT_FACE = 0.75;
 // sums over points are not exactly integrals: a line from here on is full, and what is between
 static constexpr double FULL = 0.95, NOT_FULL = 0.8;
+// rates of lines at edges, in that of conduction
+static constexpr double FIGHTS = 4.0;
+static constexpr double STIFFEST = 1.0e9;    // of equations: a prescribed temperature
 
 /* ---------------------------------------------------------------------- */
 
@@ -71,6 +87,7 @@ void MPMHeatFaces::init(double sigma_of_units)
 {
   sigma = sigma_of_units;
   std::fill_n(last, 3, 0.0);
+  groups.clear();
   faces.clear();
   const MPMStencil stencil(field);
   const auto &lattice = field.lattice;
@@ -102,9 +119,13 @@ void MPMHeatFaces::init(double sigma_of_units)
   crossing = (held & (held - 1)) != 0;
 }
 
-double MPMHeatFaces::limit(double cap, const double rates[3])
+double MPMHeatFaces::limit(double cap, double conduction, const double rates[3])
 {
   fastest = cap;
+  for (auto &group : groups) {
+    slow_down(group, conduction);
+    set_up(group);
+  }
   double sum = 0.0;
   for (int axis = 0; axis < 3; axis++) sum += std::min(cap, last[axis] = rates[axis]);
   return sum;
@@ -178,6 +199,138 @@ void MPMHeatFaces::topology_changed()
         if (all) face.lines.push_back(line);
       }
     }
+  }
+  find_groups();
+}
+
+/* ----------------------------------------------------------------------
+   A rank that has a node of a line has all of them, and so all lines of a group
+------------------------------------------------------------------------- */
+
+void MPMHeatFaces::find_groups()
+{
+  groups.clear();
+  if (axes_that_follow() == 0 || faces.size() < 2) return;
+  std::vector<Line *> lines;
+  std::vector<const Face *> face_of;
+  std::vector<std::pair<int64_t, int>> touched;    // node, line
+  for (auto &face : faces) {
+    if (conditions[face.face].kind == MPMHeatCondition::FLUX) continue;
+    for (auto &line : face.lines) {
+      for (int k = 0; k < face.n; k++) touched.emplace_back(line.node[k], (int) lines.size());
+      lines.push_back(&line);
+      face_of.push_back(&face);
+    }
+  }
+  std::sort(touched.begin(), touched.end());
+  std::vector<int> parent(lines.size()), size(lines.size(), 0), group_of(lines.size(), -1);
+  for (std::size_t k = 0; k < parent.size(); k++) parent[k] = (int) k;
+  const auto root = [&](int k) {
+    while (parent[k] != k) k = parent[k] = parent[parent[k]];
+    return k;
+  };
+  for (std::size_t k = 1; k < touched.size(); k++)
+    if (touched[k].first == touched[k - 1].first)
+      parent[root(touched[k].second)] = root(touched[k - 1].second);
+  for (std::size_t k = 0; k < lines.size(); k++) size[root((int) k)]++;
+  for (std::size_t k = 0; k < lines.size(); k++) {
+    const int r = root((int) k);
+    if (size[r] < 2) continue;
+    if (group_of[r] < 0) {
+      group_of[r] = (int) groups.size();
+      groups.emplace_back();
+    }
+    groups[group_of[r]].all.push_back({face_of[k], lines[k]});
+  }
+}
+
+/** Faces that meet with different temperatures fight for the nodes of the edge: what they exchange there would be in proportion to
+ *  their coefficients, and not what conduction lets through. */
+void MPMHeatFaces::slow_down(Group &group, double conduction) const
+{
+  const auto touches = [](const Member &member) {
+    return member.line->response > 0.0;
+  };
+  if (std::count_if(group.all.begin(), group.all.end(), touches) < 2) return;
+  for (const auto &member : group.all) {
+    Line &line = *member.line;
+    const double most = FIGHTS * conduction;
+    if (!(line.rate > most)) continue;
+    line.area *= most / line.rate;
+    line.rate = most;
+  }
+}
+
+/** The lines of a group that are limited or held, if any is limited, and the factors L L^T of the matrix of their equations. */
+void MPMHeatFaces::set_up(Group &group) const
+{
+  auto &lines = group.lines;
+  auto &L = group.factor;
+  lines.clear();
+  bool any = false;
+  for (const auto &member : group.all) {
+    member.line->joint = false;
+    const bool held = conditions[member.face->face].kind == MPMHeatCondition::TEMPERATURE;
+    if (!(member.line->response > 0.0) || (!held && !is_limited(*member.line))) continue;
+    lines.push_back(member);
+    any = any || !held;
+  }
+  if (!any) lines.clear();
+  const std::size_t n = lines.size();
+  L.assign(n * n, 0.0);
+  for (std::size_t i = 0; i < n; i++) {
+    const auto &[face, line] = lines[i];
+    line->joint = true;
+    for (std::size_t j = 0; j <= i; j++) {
+      double sum = i == j ? softness(*face, *line) : 0.0;
+      for (int a = 0; a < face->n; a++)
+        for (int b = 0; b < lines[j].face->n; b++)
+          if (line->node[a] == lines[j].line->node[b])
+            sum += line->weight[a] * lines[j].line->change[b];
+      for (std::size_t k = 0; k < j; k++) sum -= L[n * i + k] * L[n * j + k];
+      L[n * i + j] = i == j ? std::sqrt(sum) : sum / L[n * j + j];
+    }
+  }
+}
+
+/** R/a of a line, see the top of this file. */
+double MPMHeatFaces::softness(const Face &face, const Line &line) const
+{
+  const bool held = conditions[face.face].kind == MPMHeatCondition::TEMPERATURE;
+  return line.response *
+      (held ? 1.0 / STIFFEST
+            : std::clamp(fastest / (line.rate - fastest), 1.0 / STIFFEST, STIFFEST));
+}
+
+void MPMHeatFaces::solve(const Group &group, const std::vector<double> &temperature,
+                         std::vector<double> &rate, Heats &power) const
+{
+  const auto &lines = group.lines;
+  const auto &L = group.factor;
+  const std::size_t n = lines.size();
+  std::vector<double> P(n);
+  for (std::size_t i = 0; i < n; i++) {
+    const auto &[face, line] = lines[i];
+    const auto &condition = conditions[face->face];
+    double T = 0.0;
+    for (int k = 0; k < face->n; k++) {
+      T += line->weight[k] * temperature[line->node[k]];
+      P[i] -= line->weight[k] * rate[line->node[k]];
+    }
+    if (condition.kind != MPMHeatCondition::TEMPERATURE)
+      P[i] += softness(*face, *line) * std::min(1.0, STIFFEST * fastest / line->rate) * line->area *
+          condition.flux(T, sigma);
+    for (std::size_t k = 0; k < i; k++) P[i] -= L[n * i + k] * P[k];
+    P[i] /= L[n * i + i];
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t k = i + 1; k < n; k++) P[i] -= L[n * k + i] * P[k];
+    P[i] /= L[n * i + i];
+  }
+  for (std::size_t i = 0; i < n; i++) {
+    const auto &[face, line] = lines[i];
+    for (int k = 0; k < face->n; k++) rate[line->node[k]] += P[i] * line->change[k];
+    power[face->face] += P[i] * line->owned;
   }
 }
 
@@ -264,6 +417,7 @@ void MPMHeatFaces::begin_step(const std::vector<double> &capacity,
     const auto &condition = conditions[face.face];
     for (auto &line : face.lines) {
       line.response = line.area = line.rate = 0.0;
+      line.joint = false;
       prepare(face, line, capacity, volume, body);
       if (condition.kind <= MPMHeatCondition::FLUX) continue;
       double T = 0.0;
@@ -319,39 +473,32 @@ void MPMHeatFaces::hold(std::vector<double> &temperature, Heats &heat) const
 void MPMHeatFaces::add_rates(const std::vector<double> &temperature, std::vector<double> &rate,
                              Heats &power) const
 {
-  const auto visit = [&](bool follows, const auto &power_of) {
-    bool any = false;
+  const auto visit = [&](bool limited, const auto &power_of) {
     for (const auto &face : faces) {
       const auto &condition = conditions[face.face];
-      if (condition.kind == MPMHeatCondition::TEMPERATURE ||
-          (condition.kind != MPMHeatCondition::FLUX) != follows)
-        continue;
-      any = true;
+      if (condition.kind == MPMHeatCondition::TEMPERATURE) continue;
       for (const auto &line : face.lines) {
-        if (!(line.area > 0.0)) continue;
-        const double more = power_of(condition, line, face.n);
+        if (!(line.area > 0.0) || line.joint || is_limited(line) != limited) continue;
+        double T = 0.0;
+        for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
+        const double more = power_of(line, face.n, line.area * condition.flux(T, sigma));
         for (int k = 0; k < face.n; k++) rate[line.node[k]] += more * line.change[k];
         power[face.face] += more * line.owned;
       }
     }
-    return any;
   };
-  visit(false, [&](const auto &condition, const Line &line, int) {
-    return line.area * condition.flux(0.0, sigma);
+  visit(false, [](const Line &, int, double P) {
+    return P;
   });
-  hold_rates(rate, power);
-  const bool any = visit(true, [&](const auto &condition, const Line &line, int n) {
-    double T = 0.0, drift = 0.0;
-    for (int k = 0; k < n; k++) {
-      T += line.weight[k] * temperature[line.node[k]];
-      drift += line.weight[k] * rate[line.node[k]];
-    }
-    const double P = line.area * condition.flux(T, sigma);
-    if (line.rate <= fastest) return P;
+  // these have no nodes in common with others that are limited or held
+  visit(true, [&](const Line &line, int n, double P) {
+    double drift = 0.0;
+    for (int k = 0; k < n; k++) drift += line.weight[k] * rate[line.node[k]];
     const double slower = fastest / line.rate;
     return slower * P - (1.0 - slower) * drift / line.response;
   });
-  if (any) hold_rates(rate, power);
+  for (const auto &group : groups) solve(group, temperature, rate, power);
+  hold_rates(rate, power);
 }
 
 void MPMHeatFaces::hold_rates(std::vector<double> &rate, Heats &power) const
@@ -369,5 +516,8 @@ double MPMHeatFaces::memory_usage() const
 {
   double bytes = 0.0;
   for (const auto &face : faces) bytes += face.lines.capacity() * sizeof(Line);
+  for (const auto &group : groups)
+    bytes += (group.all.capacity() + group.lines.capacity()) * sizeof(Member) +
+        group.factor.capacity() * sizeof(double);
   return bytes;
 }

@@ -67,8 +67,9 @@ class MPMHeatFaces : protected Pointers {
    *  outside [1/time]. */
   void begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
                   const MPMHeatBody *body, const std::vector<double> &temperature, double rates[3]);
-  /** They follow with this rate at the most. rates: those of all ranks. Returns a bound for nodes at edges and corners. */
-  double limit(double cap, const double rates[3]);
+  /** They follow with this rate at the most. conduction: the bound of its rates; rates: those of all ranks. Returns a bound for
+   *  nodes at edges and corners. */
+  double limit(double cap, double conduction, const double rates[3]);
   /** Such a bound also before the first step, for this limit and the least capacity per volume [1/time]. */
   double expected_rate(double cap, double capacity) const;
   /** Give the faces with a temperature theirs, by the smallest change in the norm of capacities; adds the heat
@@ -92,6 +93,7 @@ class MPMHeatFaces : protected Pointers {
     double response;        // of the temperature at the face to heat: sum of weight * change
     double area;            // of the material that touches the face
     double rate;            // at which the temperature at the face follows that outside
+    bool joint;             // its power is that of the equations of a group in this step
   };
   struct Face {
     int face, axis, first, n;    // n nodes from the first one on
@@ -100,18 +102,35 @@ class MPMHeatFaces : protected Pointers {
     double full[MOST];    // volume of the nodes where material fills the box, in cells
     std::vector<Line> lines;
   };
+  struct Member {
+    const Face *face;
+    Line *line;
+  };
+  /** Lines of several faces that have nodes in common. */
+  struct Group {
+    std::vector<Member> all, lines;    // lines: with equations in this step
+    std::vector<double> factor;        // of their matrix [n*n]
+  };
   MPMField &field;
   const MPMHeatCondition *conditions;
   double sigma = 0.0;
   std::vector<Face> faces;
   bool crossing = false;    // prescribed temperatures at faces normal to several axes
-  double fastest = 0.0;     // limit of the rates
-  double last[3] = {};      // rates of the last step
+  std::vector<Group> groups;
+  double fastest = 0.0;    // limit of the rates
+  double last[3] = {};     // rates of the last step
 
   void prepare(const Face &, Line &, const std::vector<double> &capacity,
                const std::vector<double> &volume, const MPMHeatBody *) const;
   double circle(int64_t node) const;
   bool weigh_by_surface(const Face &, Line &, const MPMHeatBody *) const;
+  void find_groups();
+  void slow_down(Group &, double conduction) const;
+  void set_up(Group &) const;
+  bool is_limited(const Line &line) const { return line.rate > fastest; }
+  double softness(const Face &, const Line &) const;
+  void solve(const Group &, const std::vector<double> &temperature, std::vector<double> &rate,
+             Heats &) const;
   template <class F> void visit_held(const F &) const;
 };
 
