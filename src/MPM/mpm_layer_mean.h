@@ -38,10 +38,7 @@ class MPMLayerMean {
   /** The greatest conductivity of a point. */
   double most(int i) const { return means[i].along + std::max(0.0, -means[i].less); }
   /** Bound of this over the conductivity of the point itself, from that of the greatest of all points. */
-  double most_over_own(double ratio) const
-  {
-    return std::max(1.0, means_along ? ratio : std::min(ratio, MOST));
-  }
+  double most_over_own(double ratio) const { return means_along ? ratio : std::min(ratio, MOST); }
   /** Conductivity of a point times the vector q, in place. */
   void multiply(int i, double *q) const
   {
