@@ -35,8 +35,9 @@
 
    Lines with a prescribed temperature are among them, with next to no R/a and without F. At edges r is at most some times the rate
    of conduction, whatever the time step is: the area is made smaller, by which temperatures of the faces there differ from those
-   outside by a small part of what they differ from those a cell further inside. If lines took turns instead, each with
-   what those before it have left, edges had a wrong steady state, which depends on the time step.
+   outside by a small part of what they differ from those a cell further inside. If lines took turns instead, each
+   with what those before it have left, edges of faces with one temperature outside would not be symmetric. Between
+   different temperatures a weak dependence on the time step is left.
 
    How near is material? Along a line, sum_k w_k V_k over what it is where material fills the box up to the
    face, is 1 without a gap, 0.7 with one of a quarter of a cell, and 0.46 with half a cell (quadratic). At the
