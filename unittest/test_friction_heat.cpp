@@ -523,6 +523,11 @@ SERIAL_TEST(BadInput, IsRefused)
        {"fix b all mpm/boundary ylo slip heat yes\nfix h all mpm/heat", "needs a coefficient"},
        {"fix b all mpm/boundary ylo slip friction 0.3 heat yes", "define a fix mpm/heat"}},
       "run 1\n");
+  expect_error(bare +
+                   "fix m all mpm/material density 1 eos linear 1 thermal conducting 1 0 1 "
+                   "orthotropic 100 1 axes 1 0 0 0 1 1\ntimestep 0.01\nfix h all mpm/heat\n"
+                   "fix c all mpm/contact F1 F2 law coulomb 0.3 heat yes\nrun 1\n",
+               "must be normal to the plane");
   expect_error(
       bare +
           "group none type 3\nfix m all mpm/material density 1 eos linear 1\n"

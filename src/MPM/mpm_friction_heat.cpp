@@ -55,6 +55,18 @@ MPMFrictionHeat::MPMFrictionHeat(LAMMPS *lmp, const MPMFrictionHeatOptions &opti
 
 /* ---------------------------------------------------------------------- */
 
+/** Is an axis neither in the plane nor normal to it? */
+static bool leaves_plane(const Conduction &c)
+{
+  constexpr double SAME = 1.0e-9;
+  const double I[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  double k[3], n[3][3];
+  principal_conductivities(c, I, k, n);
+  return std::any_of(n, n + 3, [](const double *axis) {
+    return std::fabs(axis[2]) > SAME && std::hypot(axis[0], axis[1]) > SAME;
+  });
+}
+
 void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &fields)
 {
   const auto heats = modify->get_fix_by_style("^mpm/heat$");
@@ -82,6 +94,12 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
       const auto &material = *field->materials[k]->material;
       if (!material.conducts()) continue;
       const Conduction c = material.conduction(nullptr);
+      if (c.orthotropic && domain->dimension == 2 && leaves_plane(c))
+        error->all(
+            FLERR, Error::NOLASTLINE,
+            "Fix {} {} heat: in 2d, an axis of the conductivity of fix mpm/material {} must be "
+            "normal to the plane: choose other axes",
+            user.style, user.id, field->materials[k]->id);
       nconducting++;
       body.orthotropic = body.orthotropic || c.orthotropic;
       body.mixed = body.mixed || material.conduction_varies();
