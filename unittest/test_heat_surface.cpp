@@ -323,6 +323,10 @@ PARAMETER_TEST(TwoBlocks, HideWhereTheyTouch, const char *,
     const double power = measured("power", run.fix_vector("heat", 10)[9]);
     EXPECT_LT(power, perimeter + 0.01);
     EXPECT_GT(power, perimeter - edges);
+    if (contact) continue;
+    Scene alone(two_blocks("surface flux 1.0", GetParam()) +
+                "delete_atoms group b\nunfix gb\nunfix mb\nrun 1\n");
+    EXPECT_NEAR(power / (2.0 * alone.fix_vector("heat", 10)[9]), 1.0, 1e-10);
   }
 }
 
