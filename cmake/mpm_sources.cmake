@@ -9,7 +9,7 @@ get_filename_component(MPM_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 set(MPM_DIR ${MPM_ROOT}/src/MPM)
 
 # styles and what needs LAMMPS are flat; what does not is in a folder for each idea
-set(MPM_FOLDERS declare lattice law material math mesh transfer)
+set(MPM_FOLDERS declare lattice law material math mesh solve transfer)
 set(MPM_SOURCES)
 set(MPM_CORE_SOURCES)
 set(MPM_ISA_SOURCES)

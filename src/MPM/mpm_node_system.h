@@ -1,0 +1,42 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_NODE_SYSTEM_H
+#define LMP_MPM_NODE_SYSTEM_H
+
+#include "lattice/grid.h"
+#include "solve/linear_system.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** A system of equations for values at the nodes of a lattice: width reals for each node of a Grid, in the order of its
+ *  blocks. Each node counts once in products, on the rank that owns it. Who derives from this has the operator, whose
+ *  result must be the same on all ranks that share a node, and at periodic images (MPMNodes::sum(), complete()). */
+class MPMNodeSystem : public MPM_NS::LinearSystem {
+ public:
+  MPMNodeSystem(class LAMMPS *lmp, const MPM_NS::Grid &grid, int width) :
+      lmp(lmp), grid(grid), width(width)
+  {
+  }
+
+  int64_t size() const override { return grid.nnodes() * width; }
+  void products(int n, const double *const *a, const double *const *b, double *value) override;
+
+ protected:
+  class LAMMPS *const lmp;
+  const MPM_NS::Grid &grid;
+  const int width;
+
+ private:
+  std::vector<double> of_ranks;    // sums of this rank, and of all
+};
+
+}    // namespace LAMMPS_NS
+#endif

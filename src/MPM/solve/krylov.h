@@ -1,0 +1,60 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_SOLVE_KRYLOV_H
+#define MPM_SOLVE_KRYLOV_H
+
+#include "solve/linear_system.h"
+
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+
+/** When a solution is good enough: |b - A x| <= max(relative |b|, absolute), in the norm of LinearSystem::products(). */
+struct SolveGoal {
+  double relative = 1.0e-8;
+  double absolute = 0.0;
+  int most_iterations = 1000;
+};
+
+/** What became of a solve. */
+struct SolveReport {
+  enum Outcome {
+    CONVERGED,
+    TOO_MANY,    ///< iterations
+    INDEFINITE,    ///< the operator or its preconditioner is not positive definite, as conjugate gradients need
+    NOT_FINITE    ///< a residual is not a number
+  };
+  Outcome outcome = CONVERGED;
+  int iterations = 0;
+  double right_side = 0.0;          ///< |b|
+  std::vector<double> residuals;    ///< |b - A x|, at first and after each iteration
+
+  bool converged() const { return outcome == CONVERGED; }
+  /** For messages: the outcome, and how residuals went. */
+  std::string describe() const;
+};
+
+/** Preconditioned conjugate gradients (M.R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409) for symmetric
+ *  systems that are positive definite, or semi-definite with a right side that is in their range. x: first guess and
+ *  solution. The object keeps its vectors from solve to solve. */
+class ConjugateGradients {
+ public:
+  SolveReport solve(LinearSystem &, const double *b, double *x, const SolveGoal &);
+  double memory_usage() const
+  {
+    return (r.capacity() + z.capacity() + p.capacity() + Ap.capacity()) * sizeof(double);
+  }
+
+ private:
+  std::vector<double> r, z, p, Ap;
+};
+
+}    // namespace MPM_NS
+#endif
