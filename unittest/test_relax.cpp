@@ -78,6 +78,46 @@ SERIAL_TEST(Column, ComesToRest)
   }
 }
 
+// Critical damping of the slowest mode, with a coefficient from theory, takes 21.6 n steps of half the limit until the forces
+// of a hanging bar of n cells have fallen by 1e6; without any input from users it may be half as much again.
+SERIAL_TEST(Bar, ComesToRestInFewSteps)
+{
+  for (const int n : {25, 100})
+    for (const char *options : {"", "transfer flip 1.0"}) {
+      Scene run(replaced(column(n, options, "1e-14 every 1 stop no"), "9.81", "0.0981") +
+                "run 1\n");
+      const auto forces = [&]() {
+        return run.fix("rest")->compute_vector(0);
+      };
+      const double first = forces();
+      while (forces() > 1e-6 * first && run.lmp->update->ntimestep < 100 * n)
+        run.commands(strprintf("run %d pre no post no\n", n / 5));
+      EXPECT_LE(measured("steps for each cell", run.lmp->update->ntimestep / (double) n), 32.4)
+          << n << options;
+      const double tip = settlement(run, 1.0 / n);
+      run.commands(strprintf("run %d\n", 40 * n));
+      EXPECT_NEAR(tip / settlement(run, 1.0 / n), 1.0, 1e-6);
+    }
+}
+
+// What does not come to rest is told, and ends: a soft half on a stiff one, whose steps are those of the stiff one, and a body
+// that nothing holds.
+SERIAL_TEST(Bar, TellsThatItMoves)
+{
+  const auto bar = replaced(column(20, "frame total", "1e-6"), "9.81", "1e-4") + "run 2000\n";
+  EXPECT_EQ(lines_that_say(bar, "before forces are balanced").size(), 0u);
+  const auto soft =
+      replaced(bar, "fix m all mpm/material density 1600 linear 1e7 0.3",
+               "region top block INF INF 0.5 INF INF INF\ngroup top region top\n"
+               "group low subtract all top\nfix m low mpm/material density 1600 linear 1e7 0.3\n"
+               "fix n top mpm/material density 1600 linear 10 0.3");
+  EXPECT_EQ(lines_that_say(soft, "before forces are balanced").size(), 1u);
+  EXPECT_EQ(lines_that_say(replaced(bar, "fix floor all mpm/boundary ylo slip", ""),
+                           "before forces are balanced")
+                .size(),
+            1u);
+}
+
 // the slowest mode, that of bending, is found without a coefficient; at two resolutions
 SERIAL_TEST(Beam, BendsUnderItsWeight)
 {
