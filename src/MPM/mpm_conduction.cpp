@@ -12,13 +12,16 @@
      C_i = sum_p C_p N_ip,  T_i = sum_p C_p N_ip [T_p + g_p (x_i - x_p)]/C_i,
      C_i dT_i/dt = - sum_p V_p k_p (sum_j T_j grad N_jp) . grad N_ip + sum_p V_p s_p N_ip + faces,
 
-   with the gradient g_p of each point but for the transfer pic, and sources s_p. Then points get
+   with the gradient g_p of each point but for the transfers pic and xpic, and sources s_p. Then points get
 
      T_p = sum_i N_ip T_i                                                  (pic, affine)
      T_p = sum_i N_ip T_i + e (T_p - sum_i N_ip T_i of the start)          (relax)
+     T_p = sum_i N_ip (T_i - T_i of the start + u_i)                       (xpic)
      g_p = D^-1 sum_i N_ip T_i (x_i - x_p),  D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T
 
-   All of them keep sum_p C_p T_p: the sum of weights is one, and sum_i N_ip (x_i - x_p) = 0.
+   with the terms u of MPMNodeScalar::add_terms() for the temperatures of nodes that would give points theirs (XPIC, C.C.
+   Hammerquist, J.A. Nairn, Comput. Methods Appl. Mech. Eng. 318 (2017) 724, of the momentum there). All of them keep sum_p C_p T_p: the
+   sum of weights is one, and sum_i N_ip (x_i - x_p) = 0.
 
    Without g_p, nodes at faces, whose points are all on one side, would have the temperature of another place: an
    error of first order in the heat that flows. With pic each step smoothes, as a conductivity of the order of h^2/dt
@@ -126,7 +129,7 @@ void MPMConduction::init(double sigma, bool surfaces)
   keep_present(mine);
   faces.init(sigma);
   wants_volumes = faces.any() || (surfaces && thermals.size() < field.materials.size());
-  scalar.init(transfer.kind != MPMHeatTransfer::PIC, wants_volumes);
+  scalar.init(transfer.has_slopes(), wants_volumes);
 }
 
 std::size_t MPMConduction::index_of(const FixMPMMaterial *fix) const
@@ -440,11 +443,29 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
         return true;
       },
       transfer.kind == MPMHeatTransfer::RELAX);
+  if (transfer.kind == MPMHeatTransfer::XPIC) find_unseen();
   if (simple)
     most *= steepest;
   else if (!field.boxes && !field.domains && steepest == 0.0)
     most = row_bound(4.0 * dim / (field.lattice.h * field.lattice.h) * most);
   return most;
+}
+
+/** XPIC: the place of the temperatures before gets by how much these are above those of the series, so that points get the new
+ *  temperature less this. */
+void MPMConduction::find_unseen()
+{
+  std::vector<double> &unseen = scalar.before;
+  unseen = temperature;
+  scalar.add_terms(
+      transfer.order,
+      [this](const MPMPointMap::Run &run, int first, int n, double *C) {
+        const Thermal *const t = thermal(run.material);
+        Conduction room;
+        for (int p = 0; p < n; p++) C[p] = atom->rmass[first + p] * t->at(first + p, room).capacity;
+      },
+      unseen);
+  for (std::size_t k = 0; k < unseen.size(); k++) unseen[k] = temperature[k] - unseen[k];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -489,7 +510,8 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
   const double crossings = slowest * field.step_dt() / (field.lattice.h * field.lattice.h);
-  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
+  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX,
+             xpic = transfer.kind == MPMHeatTransfer::XPIC;
   const double keep = relaxes ? exp(-transfer.relax * crossings) : 0.0;
   double got = 0.0;
   scalar.nodes_to_points(
@@ -501,7 +523,9 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
         for (int p = 0; p < n; p++) {
           double *const history = t->fix->history[first + p], &T = history[t->temperature];
           if (t->varies) c = t->fix->material->conduction(history);
-          const double now = relaxes ? q[p][3] + keep * (T - before[p]) : q[p][3];
+          double now = q[p][3];
+          if (relaxes) now += keep * (T - before[p]);
+          if (xpic) now -= before[p];
           sum += atom->rmass[first + p] * c.capacity * (now - T);
           if (c.by_enthalpy) {
             t->fix->material->warm(history, c.capacity * (now - T));
@@ -513,7 +537,7 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
         if (gradients) copy_rows(dim, n, q[0], 4, gradients[first], dim);
         got += sum;
       },
-      relaxes);
+      relaxes || xpic);
   return got;
 }
 
