@@ -84,6 +84,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// of nodes that points hardly reach, in units of the bound of rates inside of a body
+static constexpr double MOST_AT_LIGHT_NODES = 4.0;
+
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
@@ -351,7 +354,6 @@ double MPMConduction::bound(const Thermal &t, int i, double volume) const
  *  Nodes with a much greater one have next to no capacity: points conduct less there. */
 double MPMConduction::row_bound(double usual)
 {
-  static constexpr double MOST = 4.0;    // in units of the usual one
   double mine[2] = {usual, 0.0}, all[2];
   mine[1] = scalar.greatest_rate(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
@@ -365,7 +367,7 @@ double MPMConduction::row_bound(double usual)
       });
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   shares.clear();
-  const double limit = MOST * all[0];
+  const double limit = MOST_AT_LIGHT_NODES * all[0];
   if (all[1] <= limit) return mine[1];
 
   field.nodes.complete(rate.data(), 1, 1);
@@ -559,8 +561,8 @@ double MPMConduction::greatest_possible() const
   return all;
 }
 
-/** Functions that points alone do not bound, and domains, have the bound of the last step, and before the first one
- *  what they have inside of a body that is not deformed. */
+/** Domains have the bound of the last step, and before the first one what they have inside of a body that is not deformed.
+ *  Functions that points alone do not bound have that of light nodes, which are there as soon as a point comes to another cell. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
   if (!active) return 0.0;
@@ -579,13 +581,13 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
       here = bound(*t, i, volume_of(i));
       // of interfaces what is possible, and not what is there at present: the same after a restart
       if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
-    } else if (conducted == 0.0) {
+    } else if (!field.domains || conducted == 0.0) {
       double k[3][3], x[24], least = 1.0;
       tensor(*t, i, k);
       if (field.domains) field.domains->corners_of_box(i, x);
       for (int d = 0; field.domains && d < dim; d++)
         for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
-      const double steep = field.domains ? 1.0 / (least * least) : 4.0 * dim;
+      const double steep = field.domains ? 1.0 / (least * least) : MOST_AT_LIGHT_NODES * 4.0 * dim;
       here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
           (atom->rmass[i] * t->at(i, room).capacity);
     }
@@ -593,7 +595,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     most = here;
     tag = atom->tag[i];
   }
-  return bounded || conducted == 0.0 ? most : conducted;
+  return field.domains && conducted > 0.0 ? conducted : most;
 }
 
 double MPMConduction::memory_usage() const
