@@ -114,7 +114,13 @@ Options MPMHeatOptions::declare(int dim)
                       "heat crosses a cell")}},
              {"pic", MPMHeatTransfer::PIC, "points get the temperature of the nodes"},
              {"affine", MPMHeatTransfer::AFFINE,
-              "points get the temperature of the nodes, and its gradient"}})});
+              "points get the temperature of the nodes, and its gradient"},
+             {"xpic",
+              MPMHeatTransfer::XPIC,
+              "points get the change of the nodes, and keep of their temperature what nodes see of "
+              "it",
+              {integer(transfer.order, "order", {1, 100, true},
+                       "terms of the inverse of the matrix of capacities")}}})});
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
   o.add("grains", {yes_no(grains)},
@@ -176,8 +182,7 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
-  if (transfer.kind != MPMHeatTransfer::PIC)
-    state.declare(gradients, "mpm/heat:gradient", domain->dimension);
+  if (transfer.has_slopes()) state.declare(gradients, "mpm/heat:gradient", domain->dimension);
   grains_said = options.given("grains");
   if (grains) {
     state.declare(waiting, "mpm/heat:waiting", 1);

@@ -237,10 +237,11 @@ void MPMPointMap::find_blocks()
   // at the latest: all around the block, if nothing else bounds the drift
 
   const double least = field.domains ? 1.0e-6 : 0.0;    // see MPMCpdi::update()
-  const double drift = field.frame->is_total() ? 0.0
+  constexpr double ROUNDING =
+      1.0e-6;    // of places, in cells; kernels may see them in the next cell
+  const double drift = field.frame->is_total() ? ROUNDING
       : watch_drift                            ? grid.side
                     : std::max(least, std::min(1.0, 0.5 * neighbor->skin / grid.lattice.h));
-  constexpr double ROUNDING = 1.0e-6;    // of places, in cells
   const int nactive = active.size(), order = stencil_order(field.options.shape),
             cell = shape_constants[field.options.shape].cell;
   int nodes_low[3] = {INT_MAX, INT_MAX, INT_MAX}, nodes_high[3] = {INT_MIN, INT_MIN, INT_MIN};
