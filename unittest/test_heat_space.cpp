@@ -96,6 +96,22 @@ PARAMETER_TEST(FunctionsOfLightNodes, HaveATimeStep, const char *,
       }
 }
 
+// steady heat through a bar between faces of the box, wherever these are in a cell: exact as sums over points balance
+PARAMETER_TEST(EndsOfShapes, LetThroughAll, const char *,
+               Values("", "shape cubic", "shape gimp", "shape cpgimp", "shape cpdi", "shape cpdi2",
+                      "frame total"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const double offset : {0.0, 0.1, 0.25, 0.5, 0.8}) {
+    Scene run(bar(10, "xlo temperature 1.0 xhi temperature 0.0 stages 64", offset, GetParam()));
+    run_to(run, 4.0, 0.02);
+    const double *const power = run.fix_vector("heat", 7);
+    EXPECT_NEAR(measured(strprintf("%s, offset %g", GetParam(), offset), power[0] / 0.4), 1.0,
+                1e-4);
+    EXPECT_NEAR(power[1] / power[0], -1.0, 1e-4);
+  }
+}
+
 // One end is heated, the other one held
 PARAMETER_TEST(Ends, HaveTheirTemperature, const char *,
                Values("shape linear", "shape gimp", "shape cpdi", "shape cubic", "frame total"))
