@@ -44,6 +44,20 @@ namespace {
       }
     }
 
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const LawLinear law(p);
+      alignas(64) double old[6][BATCH], bulk[BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        store_rows(old, i, b.Jold[i] * load_stress(b, i));
+        bulk[i] = law.K;
+      }
+      update(p, b, history);
+      add_elastic_step(b.n, ElasticStep(b, law.G, old), t);
+      add_mean(b.n, bulk, t);
+    }
+
     /** J d sigma_nn / d epsilon_nn = lambda + 2 mu - tau_nn; bound of -tau_nn over directions n. In
      *  strong expansion it is negative: the law then has no waves at all. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
@@ -93,6 +107,21 @@ namespace {
         const Sym bb = left_cauchy_green(b, i);
         store_stress(b, i, add_diagonal(law.mu * inv * bb, (law.lambda * log(J) - law.mu) * inv));
       }
+    }
+
+    /** mu (l b + b l^T) + lambda tr(l) I */
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const LawNeoHookean law(p);
+      update(p, b, history);
+      alignas(64) double left[6][BATCH], lambda[BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        store_rows(left, i, law.mu * left_cauchy_green(b, i));
+        lambda[i] = law.lambda;
+      }
+      add_convected(b.n, left, t);
+      add_mean(b.n, lambda, t);
     }
 
     /** Acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the longest

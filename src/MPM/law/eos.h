@@ -11,7 +11,7 @@
 
 // Equations of state without energy, and what all of them share.
 
-#include "law/kinematics.h"
+#include "law/tangent.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -21,7 +21,8 @@ namespace {
   /** Loops of an equation of state p(J) without energy.
    *
    *  Eos has, with the volume ratio J = density_0 / density: pressure(J), bulk(J) = -J^2 dp/dJ (the
-   *  reference density times the square of the sound speed), stored(J) = -integral of p dJ from 1.
+   *  reference density times the square of the sound speed), stored(J) = -integral of p dJ from 1. Where bulk() is not
+   *  that derivative, it also has slope(J), which is.
    */
   template <class Eos> struct Barotropic : LawDefaults {
     static constexpr bool uses_F = false;
@@ -45,6 +46,22 @@ namespace {
       const Eos eos(p);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) w[i] += eos.stored(b.J[i]);
+    }
+
+    MPM_INLINE double slope(double J) const { return static_cast<const Eos *>(this)->bulk(J); }
+
+    /** -d(J p)/d ln J */
+    static void tangent(const LawParameters &p, Batch &b, History, Tangent &t)
+    {
+      const Eos eos(p);
+      alignas(64) double mean[BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], pressure = eos.pressure(J);
+        mean[i] = eos.slope(J) - J * pressure;
+        subtract_pressure(b, i, pressure);
+      }
+      add_mean(b.n, mean, t);
     }
   };
 
@@ -108,6 +125,11 @@ namespace {
       return x > logJc ? pmin : p;
     }
     MPM_INLINE double bulk(double J) const { return K * exp((1.0 - gamma) * log(J)); }
+    MPM_INLINE double slope(double J) const
+    {
+      const double liquid = bulk(J);
+      return log(J) > logJc ? 0.0 : liquid;
+    }
 
     /** -K/gamma [(J^(1-gamma) - 1)/(1-gamma) - (J - 1)] */
     MPM_INLINE double liquid_energy(double J, double x) const

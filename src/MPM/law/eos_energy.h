@@ -36,6 +36,25 @@ namespace {
     }
   };
 
+  /** Adds the derivative of -J p, from those of p with respect to J and to the heat of the step. */
+  inline void add_pressure(const Batch &b, const double *p, const double *by_J,
+                           const double *by_heat, Tangent &t)
+  {
+    for (int k = 0; k < 9; k++) {
+      const double volume = k % 4 == 0 ? 1.0 : 0.0;
+      const double *const heat = t.heat[k];
+      double *const xx = t.stress[0][k], *const yy = t.stress[1][k], *const zz = t.stress[2][k];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i];
+        const double change = J * (volume * (p[i] + J * by_J[i]) + by_heat[i] * heat[i]);
+        xx[i] -= change;
+        yy[i] -= change;
+        zz[i] -= change;
+      }
+    }
+  }
+
   // options for the tension that an equation of state bears
   constexpr Parameter limits[] = {
       {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED, "lowest pressure, not positive"},
@@ -64,7 +83,7 @@ namespace {
    *
    *  Eos has cold(J), gamma(J), slope(J, E) = -dp/dJ at constant E, and least, the smallest
    *  density_0 (sound speed)^2 that is believed; CUTOFF and SPALL are the indices of its parameters
-   *  cutoff and spall. E follows from
+   *  cutoff and spall; where slope() is not that derivative, exact_slope() is. E follows from
    *
    *    E = E_old - (p_old + p)/2 (J - J_old) + heat
    *
@@ -94,6 +113,32 @@ namespace {
         loop<false>(eos, tension, b, history);
     }
 
+    /** dp/dJ = -slope + gamma dE/dJ with dE/dJ = [-(p_old + p)/2 + slope (J - J_old)/2] / [1 + gamma (J - J_old)/2], but
+     *  for compressions of a step so violent that this last factor is limited. */
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const Eos eos(p);
+      const Tension tension(p.value[Eos::CUTOFF], p.value[Eos::SPALL]);
+      alignas(64) double pressure[BATCH], by_J[BATCH], by_heat[BATCH], broken[BATCH];
+      for (int i = 0; i < b.n; i++) broken[i] = tension.spall ? history[SPALLED][i] : 0.0;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], Jold = b.Jold[i], dJ = J - Jold, Eold = history[ENERGY][i];
+        const double lowest = broken[i] > 0.0 ? 0.0 : tension.pmin;
+        const double cold = eos.cold(J), gamma = eos.gamma(J);
+        const double pold = max(eos.cold(Jold) + eos.gamma(Jold) * Eold, lowest);
+        const double inv = 1.0 / max(1.0 + 0.5 * gamma * dJ, 0.1);
+        const double E = inv * (Eold - 0.5 * (pold + cold) * dJ + b.heat[i]);
+        const double end = cold + gamma * E, slope = eos.exact_slope(J, E);
+        const double flat = end < lowest ? 0.0 : 1.0;
+        pressure[i] = end < lowest ? tension.after : end;
+        by_J[i] = flat * (gamma * inv * 0.5 * (slope * dJ - pold - end) - slope);
+        by_heat[i] = flat * gamma * inv;
+      }
+      update(p, b, history);
+      add_pressure(b, pressure, by_J, by_heat, t);
+    }
+
     /** Isentropic -J^2 dp/dJ = J^2 (-(dp/dJ)_E + gamma p). */
     static void modulus(const LawParameters &p, const Batch &b, History history, double *k)
     {
@@ -105,6 +150,11 @@ namespace {
         const double pressure = max(eos.cold(J) + gamma * E, tension.pmin);
         k[i] += max(J * J * (eos.slope(J, E) + gamma * pressure), eos.least);
       }
+    }
+
+    MPM_INLINE double exact_slope(double J, double E) const
+    {
+      return static_cast<const Eos *>(this)->slope(J, E);
     }
 
    private:
@@ -177,6 +227,11 @@ namespace {
       const double dph = K * (1.0 + s * eta) / (g * g * g);
       const double squeezed = dph * (1.0 - 0.5 * gamma0 * eta) - 0.5 * gamma0 * ph;
       return J < 1.0 ? squeezed : K / (J * J);
+    }
+    MPM_INLINE double exact_slope(double J, double E) const
+    {
+      const double eta = 1.0 - J, g = gap(eta), free = slope(J, E);
+      return 1.0 - s * eta < g ? K * (1.0 - gamma0 * eta) / (g * g) : free;
     }
   };
 
@@ -271,6 +326,26 @@ namespace {
         history[ENERGY][i] = below ? Eold - mean * (J - Jold) + 2.0 * half : e + gas.pinf * J;
         history[HEATED][i] += b.heat[i];
       }
+    }
+
+    /** Of e at a given J, the half of the heat that comes last is not compressed. */
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const Gas gas = Law::gas(p);
+      alignas(64) double pressure[BATCH], by_J[BATCH], by_heat[BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double J = b.J[i], Jold = b.Jold[i], half = 0.5 * b.heat[i];
+        const double ratio = exp(gas.g * log(Jold / J));
+        const double before = (history[ENERGY][i] - gas.pinf * Jold + half) * ratio;
+        const double end = gas.g * (before + half) / J - gas.pinf;
+        const double flat = end < gas.pmin ? 0.0 : 1.0;
+        pressure[i] = end < gas.pmin ? gas.pmin : end;
+        by_J[i] = -flat * gas.g * (gas.g * before + before + half) / (J * J);
+        by_heat[i] = flat * 0.5 * gas.g * (ratio + 1.0) / J;
+      }
+      update(p, b, history);
+      add_pressure(b, pressure, by_J, by_heat, t);
     }
 
     /** -J^2 dp/dJ = GAMMA (p + PINF) J */
@@ -457,6 +532,31 @@ namespace {
         history[BURN][i] = burn;
       }
       if (warms) find_temperature(p, eos, was, energy, batch, history);
+    }
+
+    /** As that of LinearInEnergy. */
+    static void tangent(const LawParameters &p, Batch &batch, History history, Tangent &t)
+    {
+      const EosJWL eos(p);
+      alignas(64) double pressure[BATCH], by_J[BATCH], by_heat[BATCH];
+      const double time = batch.time, rate = p.value[D] / (p.value[WIDTH] * batch.h);
+      MPM_SIMD
+      for (int i = 0; i < batch.n; i++) {
+        const double J = batch.J[i], Jold = batch.Jold[i], dJ = J - Jold;
+        const double Eold = history[ENERGY][i], before = history[BURN][i];
+        const double burn = min(max((time - history[LIGHTING][i]) * rate, before), 1.0);
+        const double cold = burn * eos.cold(J), gamma = burn * eos.omega / J;
+        const double pold = max(before * (eos.cold(Jold) + eos.omega / Jold * Eold), 0.0);
+        const double inv = 1.0 / max(1.0 + 0.5 * gamma * dJ, 0.1);
+        const double E = inv * (Eold - 0.5 * (pold + cold) * dJ + batch.heat[i]);
+        const double end = cold + gamma * E, slope = burn * eos.slope(J) + gamma / J * E;
+        const double flat = end < 0.0 ? 0.0 : 1.0;
+        pressure[i] = flat * end;
+        by_J[i] = flat * (gamma * inv * 0.5 * (slope * dJ - pold - end) - slope);
+        by_heat[i] = flat * gamma * inv;
+      }
+      update(p, batch, history);
+      add_pressure(batch, pressure, by_J, by_heat, t);
     }
 
     /** Isentropic -J^2 dp/dJ. While the explosive burns at least density_0 D^2: the front is no

@@ -9,6 +9,7 @@
 #ifndef MPM_LAW_HYPERELASTIC_H
 #define MPM_LAW_HYPERELASTIC_H
 
+#include "law/tangent.h"
 #include "law/tensor_function.h"
 
 namespace MPM_NS::law {
@@ -81,6 +82,26 @@ namespace {
     return max(max(max(k0, k1), max(k2, k3)), max(k4, k5));
   }
 
+  /** Components ab and ba of the tangent of an isotropic point in principal axes: d tau_ab = s_ab l_ab + s_ba l_ba with
+   *
+   *    s_ab = (tau_a - tau_b) / (exp(2 (e_a - e_b)) - 1) = m - (tau_a - tau_b)/2,   s_ba = m + (tau_a - tau_b)/2,
+   *    m = (tau_a - tau_b)/2 coth(e_a - e_b)
+   *
+   *  (G.A. Holzapfel, Nonlinear Solid Mechanics, 2000, eq. 6.180, with Kirchhoff stresses; E.A. de Souza Neto et al.,
+   *  Computational Methods for Plasticity, 2008, app. A). m is even in e_a - e_b: where that is small, what its
+   *  limit leaves out is of second order. */
+  MPM_INLINE void turn_axes(const PrincipalResponse &r, int i, int a, int b, int ab, double &s_ab,
+                            double &s_ba)
+  {
+    const double d = r.e[a][i] - r.e[b][i], half = 0.5 * (r.tau[a][i] - r.tau[b][i]);
+    const bool equal = d * d < 1e-10;
+    const double ratio = half * (1.0 + 2.0 / expm1(2.0 * (equal ? 1.0 : d)));
+    const double limit = 0.25 * (r.A[a][i] + r.A[b][i] - 2.0 * r.A[ab][i]);
+    const double m = equal ? limit : ratio;
+    s_ab = m - half;
+    s_ba = m + half;
+  }
+
   /** Hyperelastic law that is isotropic. Law has in addition: respond_at(response, i), or its own
    *  respond(). */
   template <class Law> struct IsotropicHyperelastic : Hyperelastic<Law> {
@@ -118,6 +139,34 @@ namespace {
       const double least = LEAST_MODULUS * rest.A[0][0];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) k[i] += max(largest_modulus(r, i), least);
+    }
+
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      Law::update(p, b, history);
+      Tensors strain;
+      left_strains(b, strain);
+      const Spectral axes(b.n, strain.row);
+      PrincipalResponse r;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        r.logJ[i] = log_volume(displacement(b, i));
+        for (int a = 0; a < 3; a++) {
+          r.e[a][i] = log_strain(axes.value[a][i]);
+          r.tau[a][i] = 0.0;
+          r.A[a][i] = r.A[a + 3][i] = 0.0;
+        }
+      }
+      Law::respond(p, b.n, r);
+      FrameModuli moduli;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        for (int k = 0; k < 6; k++) moduli.A[k][i] = r.A[k][i];
+        turn_axes(r, i, 0, 1, 3, moduli.s[0][0][i], moduli.s[0][1][i]);
+        turn_axes(r, i, 0, 2, 4, moduli.s[1][0][i], moduli.s[1][1][i]);
+        turn_axes(r, i, 1, 2, 5, moduli.s[2][0][i], moduli.s[2][1][i]);
+      }
+      add_frame_tangent(b.n, axes.vector, moduli, t);
     }
   };
 

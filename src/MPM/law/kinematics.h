@@ -227,17 +227,32 @@ namespace {
             txx * M[6] + txy * M[7] + txz * M[8], tyx * M[6] + tyy * M[7] + tyz * M[8]};
   }
 
-  /** Q s Q^T with the incremental rotation Q = (I - W/2)^-1 (I + W/2)
+  /** Incremental rotation Q = (I - W/2)^-1 (I + W/2), row-major
    *  (T.J.R. Hughes, J. Winget, Int. J. Numer. Meth. Eng. 15 (1980) 1862). */
+  struct Rotation {
+    double Q[9];
+
+    MPM_INLINE explicit Rotation(const Increment &inc)
+    {
+      const double x = inc.wx, y = inc.wy, z = inc.wz;
+      const double w2 = x * x + y * y + z * z;
+      const double c = 1.0 / (1.0 + 0.25 * w2), h = 0.5 * c, d = 1.0 - h * w2;
+      Q[0] = d + h * x * x;
+      Q[1] = h * x * y - c * z;
+      Q[2] = h * x * z + c * y;
+      Q[3] = h * x * y + c * z;
+      Q[4] = d + h * y * y;
+      Q[5] = h * y * z - c * x;
+      Q[6] = h * x * z - c * y;
+      Q[7] = h * y * z + c * x;
+      Q[8] = d + h * z * z;
+    }
+  };
+
+  /** Q s Q^T */
   MPM_INLINE Sym rotate(const Increment &inc, const Sym &s)
   {
-    const double x = inc.wx, y = inc.wy, z = inc.wz;
-    const double w2 = x * x + y * y + z * z;
-    const double c = 1.0 / (1.0 + 0.25 * w2), h = 0.5 * c, d = 1.0 - h * w2;
-    const double Q[9] = {d + h * x * x,     h * x * y - c * z, h * x * z + c * y,
-                         h * x * y + c * z, d + h * y * y,     h * y * z - c * x,
-                         h * x * z - c * y, h * y * z + c * x, d + h * z * z};
-    return congruence(Q, s);
+    return congruence(Rotation(inc).Q, s);
   }
 
   /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate belongs to the middle

@@ -190,6 +190,11 @@ struct LawKernels {
    *  temperature by compression, when stress depends on it: stress and heat are then those of the
    *  same time, and no energy comes of the coupling of the two. */
   void (*prepare)(const LawParameters &, Batch &, History);
+
+  /** What update() does, to the last bit, and adds this part's share of the tangent of the step. A part that adds to
+   *  batch.heat adds to Tangent::heat, and one whose stress depends on that heat looks at it there. Null: has no
+   *  analytic tangent. Of a thermal part it is not asked. */
+  void (*tangent)(const LawParameters &, Batch &, History, Tangent &);
 };
 
 /** What a law need not declare or provide; all laws derive from this. */
@@ -210,7 +215,7 @@ struct LawDefaults {
   static constexpr std::nullptr_t consistent = nullptr;
   static constexpr std::nullptr_t initialize = nullptr;
   static constexpr std::nullptr_t modulus = nullptr, energy = nullptr;
-  static constexpr std::nullptr_t raise_speed = nullptr, prepare = nullptr;
+  static constexpr std::nullptr_t raise_speed = nullptr, prepare = nullptr, tangent = nullptr;
 };
 
 /** Kernels of all laws for one instruction set. */
@@ -235,7 +240,7 @@ struct LawVersion {
   int interface;    ///< raised with each change of what laws and package expect of each other
   int batch, info, kernels, parameters, conduction;
 };
-constexpr LawVersion law_version{6,
+constexpr LawVersion law_version{7,
                                  sizeof(Batch),
                                  sizeof(LawInfo),
                                  sizeof(LawKernels),
@@ -303,7 +308,7 @@ namespace law {
 
     template <class Law> constexpr LawKernels kernels()
     {
-      return {Law::update, Law::modulus, Law::energy, Law::raise_speed, Law::prepare};
+      return {Law::update, Law::modulus, Law::energy, Law::raise_speed, Law::prepare, Law::tangent};
     }
 
   }    // namespace

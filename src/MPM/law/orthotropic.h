@@ -95,6 +95,37 @@ namespace {
       return max(a, b);
     }
 
+    /** l tau + tau l^T + F (C : F^T l F) F^T. The last term is that of a law in principal axes, with the axes of the
+     *  material, as F has moved them, in place of those. */
+    static void add_tangent(const AnisotropicKirchhoff &law, const Batch &b, Tangent &t)
+    {
+      alignas(64) double tau[6][BATCH], axes[3][3][BATCH];
+      FrameModuli moduli;
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        store_rows(tau, i, b.J[i] * load_stress(b, i));
+        moduli.A[0][i] = law.C11;
+        moduli.A[1][i] = law.C22;
+        moduli.A[2][i] = law.C33;
+        moduli.A[3][i] = law.C12;
+        moduli.A[4][i] = law.C13;
+        moduli.A[5][i] = law.C23;
+        moduli.s[0][0][i] = moduli.s[0][1][i] = law.G12;
+        moduli.s[1][0][i] = moduli.s[1][1][i] = law.G13;
+        moduli.s[2][0][i] = moduli.s[2][1][i] = law.G23;
+      }
+      for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 3; a++) {
+          const double x = law.to_axes[3 * a], y = law.to_axes[3 * a + 1],
+                       z = law.to_axes[3 * a + 2];
+          MPM_SIMD
+          for (int i = 0; i < b.n; i++)
+            axes[k][a][i] = b.F[3 * k][i] * x + b.F[3 * k + 1][i] * y + b.F[3 * k + 2][i] * z;
+        }
+      add_convected(b.n, tau, t);
+      add_frame_tangent(b.n, axes, moduli, t);
+    }
+
     /** With N = F^T n and M = F^T m, J density c^2 = (M N):C:(M N) + n.tau.n. */
     static MPM_INLINE void bound(const AnisotropicKirchhoff &law, const Batch &b, double *k)
     {
@@ -162,6 +193,12 @@ namespace {
     {
       bound(LawOrthotropic(p), b, k);
     }
+
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      update(p, b, history);
+      add_tangent(LawOrthotropic(p), b, t);
+    }
   };
 
   /** Law by the five constants of a material with an axis of symmetry, such as fibres. */
@@ -224,6 +261,12 @@ namespace {
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       bound(LawTransverselyIsotropic(p), b, k);
+    }
+
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      update(p, b, history);
+      add_tangent(LawTransverselyIsotropic(p), b, t);
     }
   };
 

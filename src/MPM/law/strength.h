@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_STRENGTH_H
 #define MPM_LAW_STRENGTH_H
 
-#include "law/kinematics.h"
+#include "law/tangent.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -19,6 +19,13 @@ namespace {
   {
     const Sym old = b.Jold[i] * deviator(load_stress(b, i));
     return (1.0 / b.J[i]) * jaumann(inc, old, 2.0 * G * deviator(inc.strain));
+  }
+
+  /** Deviators of the Kirchhoff stress at the start of the step, before the update. */
+  inline void old_deviators(const Batch &b, double (*old)[BATCH])
+  {
+    MPM_SIMD
+    for (int i = 0; i < b.n; i++) store_rows(old, i, b.Jold[i] * deviator(load_stress(b, i)));
   }
 
   /** Wave speed and energy of a strength whose first parameter is the shear modulus. */
@@ -57,6 +64,14 @@ namespace {
       const double G = p.value[0];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) store_stress(b, i, elastic_trial(G, b, i, increment(b, i)));
+    }
+
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      alignas(64) double old[6][BATCH];
+      old_deviators(b, old);
+      update(p, b, history);
+      add_elastic_step(b.n, ElasticStep(b, p.value[0], old), t);
     }
   };
 
@@ -383,6 +398,125 @@ namespace {
       }
       b.work[PLASTIC] += plastic;
       b.work[HEAT] += p.chi * plastic;
+    }
+  };
+
+  /** Flow stress of a radial return at the ends of a step, for its tangent. */
+  struct FlowOfStep {
+    alignas(64) double begin[BATCH];    ///< at which plastic flow begins, as in RadialReturn
+    alignas(64) double end[BATCH], slope[BATCH];    ///< Y(D) and dY/dD
+  };
+
+  /** Consistent tangent of RadialReturn, and of KinematicReturn, without and with a back stress (J.C. Simo, T.J.R.
+   *  Hughes, Computational Inelasticity, 1998, ch. 3.3 and 8; E.A. de Souza Neto, D. Peric, D.R.J. Owen, Computational
+   *  Methods for Plasticity, 2008, ch. 7.4), here of Kirchhoff stresses. With the trial deviator t, the turned back
+   *  stress X, and xi = t - w X, of equivalent value q, the step ends with
+   *
+   *    J s = t - (3 G D/q) xi,   q - 3 G D - J Y(D) - C g(D) = 0,
+   *
+   *  where t and X depend on the motion by strain and rotation of the step. To be made before the update. */
+  template <bool KINEMATIC> struct ReturnTangent {
+    const double C, gamma;
+    alignas(64) double old[6][BATCH], X[6][BATCH];
+    alignas(64) double last[BATCH];    ///< equivalent stress, less back stress, of the step before
+
+    ReturnTangent(double C, double gamma, const Batch &b, const double (*back)[BATCH]) :
+        C(C), gamma(gamma)
+    {
+      old_deviators(b, old);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double inv = 1.0 / b.Jold[i];
+        const Sym s = load_rows(old, i);
+        if constexpr (KINEMATIC) {
+          const Increment inc = increment(b, i);
+          const Sym before = load_rows(back, i);
+          store_rows(X, i, rotate(inc, before));
+          last[i] = inv * equivalent(s + (-1.0) * before);
+        } else {
+          last[i] = inv * equivalent(s);
+        }
+      }
+    }
+
+    /** After the update: adds the tangent with the shear modulus G, and that of the heat, a share chi of the work. */
+    void add(double G, double chi, const FlowOfStep &flow, const Batch &b, Tangent &t) const
+    {
+      const ElasticStep step(b, G, old);
+      alignas(64) double xi[6][BATCH], inv_q[BATCH], cross[BATCH], compliance[BATCH];
+      alignas(64) double trial[6][BATCH],
+          turned[6][BATCH];    // changes of the trial deviator, of X
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double D = b.plastic[i], w = kept(D);
+        const Sym x = KINEMATIC ? step.trial(i) + (-w) * load_rows(X, i) : step.trial(i);
+        const double inv = 1.0 / max(equivalent(x), 1e-300);
+        // of q by D at a given motion
+        const double fading = KINEMATIC ? 1.5 * inv * gamma * w * contract(x, load_rows(X, i))
+                                        : 0.0;
+        const double stiff = 3.0 * G + b.J[i] * flow.slope[i] + (KINEMATIC ? C * w : 0.0) - fading;
+        store_rows(xi, i, x);
+        inv_q[i] = inv;
+        cross[i] = fading;
+        compliance[i] = D > 0.0 ? 1.0 / stiff : 0.0;
+      }
+      for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++) {
+          const double volume = k == l ? 1.0 : 0.0;
+          double *const heat = t.heat[3 * k + l];
+          step.column(b.n, k, l, trial);
+          if constexpr (KINEMATIC) {
+            const StepMotion::Columns columns = step.columns(k, l);
+            MPM_SIMD
+            for (int i = 0; i < b.n; i++)
+              store_rows(turned, i, columns(i).spin.of(load_rows(X, i)));
+          }
+          MPM_SIMD
+          for (int i = 0; i < b.n; i++) {
+            const double D = b.plastic[i], J = b.J[i], inv = inv_q[i], y = flow.end[i];
+            const Sym x = load_rows(xi, i), dt = load_rows(trial, i);
+            if constexpr (KINEMATIC) {
+              const double w = kept(D), g = growth(D);
+              const Sym back = load_rows(X, i), turn = w * load_rows(turned, i);
+              const Sym moved = dt + (-1.0) * turn;
+              const double dq0 = 1.5 * inv * contract(x, moved);
+              const double dD = compliance[i] * (dq0 - volume * J * y), dq = dq0 + cross[i] * dD;
+              const Sym fade = (gamma * w * dD) * back, dx = moved + fade;
+              const double share = 3.0 * G * inv;
+              add_column(t, 3 * k + l, i,
+                         dt + (-share * D) * dx + (share * (D * inv * dq - dD)) * x);
+              const Sym end = w * back + (C * g * inv) * x;
+              const Sym dend = turn + (-1.0) * fade + (C * inv * (w * dD - g * inv * dq)) * x +
+                  (C * g * inv) * dx;
+              const double recovery = 0.75 * gamma / C;
+              heat[i] += chi *
+                  (work(flow, b, i, volume, D, dD) +
+                   recovery * ((norm2(back) + norm2(end)) * dD + 2.0 * D * contract(end, dend)));
+            } else {
+              const double dq = 1.5 * inv * contract(x, dt);
+              const double dD = compliance[i] * (dq - volume * J * y), share = 3.0 * G * inv;
+              add_column(t, 3 * k + l, i,
+                         (1.0 - share * D) * dt + (share * (D * inv * dq - dD)) * x);
+              heat[i] += chi * work(flow, b, i, volume, D, dD);
+            }
+          }
+        }
+    }
+
+   private:
+    MPM_INLINE double kept(double D) const { return KINEMATIC ? 1.0 + expm1(-gamma * D) : 1.0; }
+    MPM_INLINE double growth(double D) const
+    {
+      const double faded = -expm1(-gamma * D);
+      return gamma > 0.0 ? faded / gamma : D;
+    }
+    /** Derivative of the plastic work. */
+    static MPM_INLINE double work(const FlowOfStep &flow, const Batch &b, int i, double volume,
+                                  double D, double dD)
+    {
+      const double mean = 0.5 * (flow.begin[i] + flow.end[i]);
+      return 0.5 * volume * b.J[i] * mean * D +
+          0.5 * (b.J[i] + b.Jold[i]) * (mean + 0.5 * flow.slope[i] * D) * dD;
     }
   };
 

@@ -155,6 +155,11 @@ namespace {
     {
       return with_rate(hardening.estimate(i, D), D);
     }
+    /** At the end of a step, with the history of then. */
+    MPM_INLINE FlowStress at_end(History history, int i, double D) const
+    {
+      return with_rate(hardening(history[0][i]), D);
+    }
     MPM_INLINE FlowStress with_rate(const FlowStress &f, double D) const
     {
       if (!RATE) return f;
@@ -234,18 +239,20 @@ namespace {
 
     static void update(const LawParameters &p, Batch &b, History history)
     {
-      if (p.nterms > SHORT_TABLE)
-        choose<LONG_TABLE>(p, b, history);
-      else if (p.nterms > 0)
-        choose<SHORT_TABLE>(p, b, history);
-      else if (voce(p) || p.value[J2_VOCE_H] > 0.0)
-        choose<HARDENING_VOCE>(p, b, history);
-      else if (power(p))
-        choose<HARDENING_POWER>(p, b, history);
-      else if (rate(p) || kinematic(p))
-        choose<HARDENING_LINEAR>(p, b, history);
-      else
+      if (kind(p) == HARDENING_LINEAR && !rate(p) && !kinematic(p))
         linear(p, b, history);
+      else
+        with_flow(p, [&](auto flow) {
+          choose_kinematic<typename decltype(flow)::type>(p, b, history);
+        });
+    }
+
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      if (kinematic(p))
+        tangent_of_return<true>(p, b, history, t);
+      else
+        tangent_of_return<false>(p, b, history, t);
     }
 
     static void energy(const LawParameters &p, const Batch &b, History history, double *w)
@@ -255,13 +262,67 @@ namespace {
     }
 
    private:
-    template <int KIND>
-    static MPM_INLINE void choose(const LawParameters &p, Batch &b, History history)
+    static constexpr int kind(const LawParameters &p)
+    {
+      if (p.nterms > 0) return p.nterms > SHORT_TABLE ? LONG_TABLE : SHORT_TABLE;
+      if (voce(p) || p.value[J2_VOCE_H] > 0.0) return HARDENING_VOCE;
+      return power(p) ? HARDENING_POWER : HARDENING_LINEAR;
+    }
+
+    /** use(FlowType<...>()) */
+    template <class Flow> struct FlowType {
+      using type = Flow;
+    };
+    template <class Use> static MPM_INLINE void with_flow(const LawParameters &p, const Use &use)
+    {
+      switch (kind(p)) {
+        case LONG_TABLE:
+          return with_rate<LONG_TABLE>(p, use);
+        case SHORT_TABLE:
+          return with_rate<SHORT_TABLE>(p, use);
+        case HARDENING_VOCE:
+          return with_rate<HARDENING_VOCE>(p, use);
+        case HARDENING_POWER:
+          return with_rate<HARDENING_POWER>(p, use);
+        default:
+          return with_rate<HARDENING_LINEAR>(p, use);
+      }
+    }
+    template <int KIND, class Use>
+    static MPM_INLINE void with_rate(const LawParameters &p, const Use &use)
     {
       if (rate(p))
-        choose_kinematic<J2Flow<KIND, true>>(p, b, history);
+        use(FlowType<J2Flow<KIND, true>>());
       else
-        choose_kinematic<J2Flow<KIND, false>>(p, b, history);
+        use(FlowType<J2Flow<KIND, false>>());
+    }
+
+    template <bool KINEMATIC>
+    static void tangent_of_return(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const ReturnTangent<KINEMATIC> motion(p.value[J2_BACK_C], p.value[J2_BACK_GAMMA], b,
+                                            KINEMATIC ? history + 1 : nullptr);
+      FlowOfStep of_step;
+      with_flow(p, [&](auto type) {
+        using Flow = typename decltype(type)::type;
+        Flow flow(p, b);
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) {
+          const double y = flow.start(history, i), last = Flow::goes_on ? motion.last[i] : 0.0;
+          of_step.begin[i] = last > 0.5 * y ? last : y;
+        }
+      });
+      update(p, b, history);
+      with_flow(p, [&](auto type) {
+        const typename decltype(type)::type flow(p, b);
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) {
+          const FlowStress f = flow.at_end(history, i, b.plastic[i]);
+          of_step.end[i] = f.y;
+          of_step.slope[i] = f.dy;
+        }
+      });
+      motion.add(p.value[J2_G], p.chi, of_step, b, t);
     }
 
     template <class Flow>

@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_VISCOSITY_H
 #define MPM_LAW_VISCOSITY_H
 
-#include "law/kinematics.h"
+#include "law/tangent.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -58,6 +58,34 @@ namespace {
     {
       MPM_SIMD
       for (int i = 0; i < b.n; i++) c[i] = damped_speed(p, b, i, c[i], p.value[0], p.value[1]);
+    }
+
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const double inv_dt = b.dt > 0.0 ? 1.0 / b.dt : 0.0;
+      const double twomu = 2.0 * p.value[0] * inv_dt, zeta = p.value[1] * inv_dt;
+      update(p, b, history);
+      const StepMotion step(b);
+      alignas(64) double change[6][BATCH];
+      for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++) {
+          const double volume = k == l ? 1.0 : 0.0;
+          double *const heat = t.heat[3 * k + l];
+          const StepMotion::Columns columns = step.columns(k, l);
+          MPM_SIMD
+          for (int i = 0; i < b.n; i++) store_rows(change, i, columns(i).strain);
+          MPM_SIMD
+          for (int i = 0; i < b.n; i++) {
+            const double J = b.J[i], all = J + b.Jold[i];
+            const Sym strain = step.strain(i), e = deviator(strain);
+            const Sym dstrain = load_rows(change, i), de = deviator(dstrain);
+            const double tr = trace(strain), dtr = trace(dstrain);
+            add_column(t, 3 * k + l, i,
+                       J * add_diagonal(twomu * (de + volume * e), zeta * (dtr + volume * tr)));
+            heat[i] += 0.5 * volume * J * (twomu * norm2(e) + zeta * tr * tr) +
+                all * (twomu * contract(e, de) + zeta * tr * dtr);
+          }
+        }
     }
   };
 

@@ -25,7 +25,8 @@ namespace {
    *  shear rate sqrt(2 dev(D):dev(D)), D the strain rate half-way in the step.
    *
    *  Fluid is made from the parameters and has apparent(rate), the viscosity at a rate, and steepness,
-   *  a bound of the slope of stress over rate in units of the apparent viscosity. History: the
+   *  a bound of the slope of stress over rate in units of the apparent viscosity; slope(rate), the derivative of
+   *  apparent(). History: the
    *  apparent viscosity of the last step, which the stable time step needs, and for output. */
   template <class Fluid> struct GeneralizedNewtonian : LawDefaults {
     static constexpr StressShare share = DEVIATOR;
@@ -57,6 +58,38 @@ namespace {
       MPM_SIMD
       for (int i = 0; i < b.n; i++)
         c[i] = damped_speed(p, b, i, c[i], steepness * history[0][i], 0.0);
+    }
+
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const Fluid fluid(p);
+      const double inv_dt = b.dt > 0.0 ? 1.0 / b.dt : 0.0, dt = b.dt;
+      update(p, b, history);
+      const StepMotion step(b);
+      alignas(64) double change[6][BATCH],
+          slope[BATCH];    // of the strain; of the viscosity by D:dD
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double rate = std::sqrt(2.0 * norm2(inv_dt * deviator(step.strain(i))));
+        const double s = 2.0 * fluid.slope(rate) / max(rate, 1e-300);
+        slope[i] = rate > 0.0 ? s : 0.0;
+      }
+      for (int k = 0; k < 9; k++) {
+        const StepMotion::Columns columns = step.columns(k / 3, k % 3);
+        const double volume = k % 4 == 0 ? 1.0 : 0.0;
+        double *const heat = t.heat[k];
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) store_rows(change, i, columns(i).strain);
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) {
+          const Sym D = inv_dt * deviator(step.strain(i));
+          const Sym dD = inv_dt * deviator(load_rows(change, i));
+          const double J = b.J[i], all = J + b.Jold[i], D2 = norm2(D), both = contract(D, dD);
+          const double eta = history[0][i], deta = slope[i] * both;
+          add_column(t, k, i, (2.0 * J * eta) * dD + (2.0 * J * (deta + volume * eta)) * D);
+          heat[i] += (volume * J * eta * D2 + all * (deta * D2 + 2.0 * eta * both)) * dt;
+        }
+      }
     }
   };
 
@@ -92,6 +125,11 @@ namespace {
     {
       return min(mu + tauy / max(rate, 1e-300), mumax);
     }
+    MPM_INLINE double slope(double rate) const
+    {
+      const double inv = 1.0 / max(rate, 1e-150);
+      return mu + tauy * inv < mumax ? -tauy * inv * inv : 0.0;
+    }
   };
 
   constexpr Parameter CONSISTENCY = {"", "K", "pressure time^N", POSITIVE, REQUIRED, "consistency"};
@@ -110,6 +148,11 @@ namespace {
     {
       const double g = max(rate, 1e-100);
       return (yield + k * pow(g, n)) / g;
+    }
+    MPM_INLINE double slope_of_viscosity(double rate, double yield) const
+    {
+      const double g = max(rate, 1e-100);
+      return ((n - 1.0) * k * pow(g, n) - yield) / (g * g);
     }
   };
 
@@ -133,6 +176,11 @@ namespace {
     {
     }
     MPM_INLINE double apparent(double rate) const { return min(viscosity(rate, tauy), mumax); }
+    MPM_INLINE double slope(double rate) const
+    {
+      const double here = slope_of_viscosity(rate, tauy);
+      return viscosity(rate, tauy) < mumax ? here : 0.0;
+    }
   };
 
   /** Power-law fluid of Ostwald and de Waele (W. Ostwald, Kolloid-Z. 36 (1925) 99): the apparent
@@ -161,6 +209,11 @@ namespace {
     MPM_INLINE double apparent(double rate) const
     {
       return min(max(viscosity(rate, 0.0), mumin), mumax);
+    }
+    MPM_INLINE double slope(double rate) const
+    {
+      const double eta = viscosity(rate, 0.0), here = slope_of_viscosity(rate, 0.0);
+      return eta > mumin && eta < mumax ? here : 0.0;
     }
   };
 

@@ -10,6 +10,7 @@
 #define MPM_LAW_VISCOSITY_MAXWELL_H
 
 #include "law/spectral.h"
+#include "law/tangent.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -90,6 +91,53 @@ namespace {
         }
       }
       b.work[VISCOUS] += viscous;
+    }
+
+    /** What z is made of moves with the isochoric part of the motion: with y = z + (1 - exp(-x))/x I,
+     *  dz = l y + y l^T - 2/3 tr(l) y. That of excess() is dz:(I - c^-2). */
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      update(p, b, history);
+      for (int term = 0; term < p.nterms; term++) {
+        const History h = history + 6 * term;
+        const double G = p.term[term][0], x = b.dt / p.term[term][1];
+        const double decay = exp(-x), gain = x > 0.0 ? -expm1(-x) / x : 1.0;
+        const double second = 0.5 * G * (x - 0.5 * (1.0 - decay));
+        alignas(64) double y[6][BATCH], dissipation[6][BATCH], change[6][BATCH];
+        MPM_SIMD
+        for (int i = 0; i < b.n; i++) {
+          const Sym c = add_diagonal(load_rows(h, i), 1.0), squared = square(c);
+          // c^-2 = cof(c^2)/det(c^2)
+          const Sym cofactors = {squared.yy * squared.zz - squared.yz * squared.yz,
+                                 squared.xx * squared.zz - squared.xz * squared.xz,
+                                 squared.xx * squared.yy - squared.xy * squared.xy,
+                                 squared.xz * squared.yz - squared.xy * squared.zz,
+                                 squared.xy * squared.yz - squared.xz * squared.yy,
+                                 squared.xy * squared.xz - squared.yz * squared.xx};
+          const double inv = 1.0 / determinant(squared);
+          store_rows(y, i, add_diagonal(c, gain - 1.0));
+          store_rows(dissipation, i, second * add_diagonal((-inv) * cofactors, 1.0));
+        }
+        for (int k = 0; k < 9; k++) {
+          const int row = k / 3, column = k % 3;
+          for (int m = 0; m < 6; m++) {
+            const double left = FIRST[m] == row ? 1.0 : 0.0, right = SECOND[m] == row ? 1.0 : 0.0;
+            const double volume = row == column ? -2.0 / 3.0 : 0.0;
+            const double *const yl = y[COMPONENT[column][SECOND[m]]];
+            const double *const yr = y[COMPONENT[FIRST[m]][column]];
+            MPM_SIMD
+            for (int i = 0; i < b.n; i++)
+              change[m][i] = left * yl[i] + right * yr[i] + volume * y[m][i];
+          }
+          double *const heat = t.heat[k];
+          MPM_SIMD
+          for (int i = 0; i < b.n; i++) {
+            const Sym dz = load_rows(change, i);
+            add_column(t, k, i, G * deviator(dz));
+            heat[i] += contract(load_rows(dissipation, i), dz);
+          }
+        }
+      }
     }
 
     /** For a sudden strain, in which the elements do not relax. The bound is that of

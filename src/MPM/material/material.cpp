@@ -162,14 +162,25 @@ class ComposedMaterial : public Material {
     run(eos, b);
   }
 
-  void update(Batch &b) const override
+  void update(Batch &b) const override { update(b, nullptr); }
+
+  bool has_tangent() const override
   {
-    if (seen >= 0) {
-      update_by_temperature(b);
-      return;
-    }
-    make_stress(b);
-    find_temperature(b);
+    if (damage || solid >= 0) return false;
+    // a compression that warms, and so expands
+    const int gruneisen = expands ? thermal->info->gruneisen : -1;
+    if (gruneisen >= 0 && thermal->parameters.value[gruneisen] != 0.0) return false;
+    return std::all_of(laws.begin(), laws.end(), [](const auto &law) {
+      return law.part == THERMAL || law.kernels->tangent;
+    });
+  }
+
+  void update_with_tangent(Batch &b, Tangent &t) const override
+  {
+    for (auto &component : t.stress)
+      for (auto &row : component) std::fill(row, row + b.n, 0.0);
+    for (auto &row : t.heat) std::fill(row, row + b.n, 0.0);
+    update(b, &t);
   }
 
   const std::vector<ValidRange> &ranges() const override { return valid; }
@@ -264,9 +275,20 @@ class ComposedMaterial : public Material {
   std::vector<int> source;    ///< of the quantities of these, as in UsedRange
   std::string text;
 
+  /** A step, and its tangent if t is not null. */
+  void update(Batch &b, Tangent *t) const
+  {
+    if (seen >= 0) {
+      update_by_temperature(b, t);
+      return;
+    }
+    make_stress(b, t);
+    find_temperature(b);
+  }
+
   /** Stress and history at the end of the step, and heat per reference volume, but not what heat
    *  does to the temperature. */
-  void make_stress(Batch &b) const
+  void make_stress(Batch &b, Tangent *t) const
   {
     double outside[BATCH];
     for (int i = 0; i < b.n; i++) {
@@ -280,7 +302,7 @@ class ComposedMaterial : public Material {
     if (speed_matters) plain_speed(b, b.speed);
     if (!base) clear_stress(b);
     if (solid < 0)
-      run(base, b);
+      run(base, b, t);
     else
       run_solid(b);
     if (damage) account_of_strength(b);
@@ -296,12 +318,12 @@ class ComposedMaterial : public Material {
       if (law.liquid)
         run_liquid(law, b);
       else if (law.part == VISCOSITY)
-        run(&law, b);
+        run(&law, b, t);
     with_viscous_stress(b, [](double stress, double &added) {
       added += stress;
     });
     if (damage) table->mean_stress(b, b.viscous_mean);
-    run_eos(b);
+    run_eos(b, t);
     if (damage) add_energy(eos, b, b.volume_energy);
     run(damage, b);
   }
@@ -337,17 +359,17 @@ class ComposedMaterial : public Material {
 
   /** The equation of state. Its internal energy gets what conduction has brought since the last step, too, as
    *  heat of this one, which the temperature knows of already. */
-  void run_eos(Batch &b) const
+  void run_eos(Batch &b, Tangent *t) const
   {
     if (heated < 0) {
-      run(eos, b);
+      run(eos, b, t);
       return;
     }
     double own[BATCH], brought[BATCH];
     find_conducted_heat(b, brought);
     std::copy_n(b.heat, b.n, own);
     for (int i = 0; i < b.n; i++) b.heat[i] += brought[i];
-    run(eos, b);
+    run(eos, b, t);
     std::copy_n(own, b.n, b.heat);
   }
 
@@ -453,7 +475,7 @@ class ComposedMaterial : public Material {
    *  step but for the heat that the step makes. What stress loses or gains by the change of temperature
    *  is the work THERMOELASTIC: that of the stress on the thermal strain, and, at the same stress or
    *  deformation gradient, whatever a law keeps, the change of the stored energy. */
-  void update_by_temperature(Batch &b) const
+  void update_by_temperature(Batch &b, Tangent *t) const
   {
     double *const T = b.history[thermal->history], *const at = b.history[seen];
     if (thermal->kernels->prepare) call(thermal->kernels->prepare, *thermal, b);
@@ -465,7 +487,7 @@ class ComposedMaterial : public Material {
       changes = changes || at[i] != before[i];
     }
     if (!expands) {
-      make_stress(b);
+      make_stress(b, t);
       if (changes) add_energy_of_warming(b, before, nullptr, work);
     } else {
       const ThermalStretch s = stretch_of(b, before, at);
@@ -474,9 +496,13 @@ class ComposedMaterial : public Material {
       for (int i = 0; i < b.n; i++) b.heat[i] /= s.volume(i);
       {
         const ElasticMotion motion(b, s, shape_matters);
-        make_stress(b);
+        make_stress(b, t);
         if (changes) add_energy_of_warming(b, before, &s, work);
       }
+      // J sigma is theta^3 J_e sigma, and theta is one of this temperature, not of the motion
+      for (int k = 0; t && k < 6; k++)
+        for (auto &row : t->stress[k])
+          for (int i = 0; i < b.n; i++) row[i] *= s.volume(i);
       table->mean_stress(b, mean);
       for (int i = 0; i < b.n; i++) {
         work[i] += 1.5 * s.change[i] * b.J[i] * mean[i];
@@ -799,6 +825,30 @@ class ComposedMaterial : public Material {
     if (law) call(law->kernels->update, *law, b);
   }
 
+  /** The same, and its tangent if t is not null. */
+  void run(const UsedLaw *law, Batch &b, Tangent *t) const
+  {
+    if (!t) {
+      run(law, b);
+    } else if (law && !law->varies) {
+      law->kernels->tangent(law->parameters, b, rows(b, *law), *t);
+    } else if (law) {
+      Tangent own;
+      const auto copy = [](const Tangent &from, int i, Tangent &to, int j) {
+        for (int l = 0; l < 9; l++) {
+          for (int k = 0; k < 6; k++) to.stress[k][l][j] = from.stress[k][l][i];
+          to.heat[l][j] = from.heat[l][i];
+        }
+      };
+      one_by_one(*law, b, [&](const LawParameters &p, Batch &one, History history, int i) {
+        copy(*t, i, own, 0);
+        law->kernels->tangent(p, one, history, own);
+        copy(own, 0, *t, i);
+        take_back(one, i, b);
+      });
+    }
+  }
+
   /** A kernel that changes a batch. */
   void call(void (*kernel)(const LawParameters &, Batch &, History), const UsedLaw &law,
             Batch &b) const
@@ -809,10 +859,16 @@ class ComposedMaterial : public Material {
     }
     one_by_one(law, b, [&](const LawParameters &p, Batch &one, History history, int i) {
       kernel(p, one, history);
-      for (int k = 0; k < 6; k++) b.stress[k][i] = one.stress[k][0];
-      for (const auto row : single_rows) (b.*row)[i] = (one.*row)[0];
-      for (int k = 0; k < NWORK; k++) b.work[k] += one.work[k];
+      take_back(one, i, b);
     });
+  }
+
+  /** What a kernel has changed in the batch of point i of another one. */
+  static void take_back(const Batch &one, int i, Batch &b)
+  {
+    for (int k = 0; k < 6; k++) b.stress[k][i] = one.stress[k][0];
+    for (const auto row : single_rows) (b.*row)[i] = (one.*row)[0];
+    for (int k = 0; k < NWORK; k++) b.work[k] += one.work[k];
   }
 
   /** A kernel that adds to values of the points. */

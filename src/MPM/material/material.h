@@ -68,6 +68,20 @@ struct Batch {
   alignas(64) double volume_energy[BATCH];    ///< stored by the equation of state
 };
 
+/** How the result of a step depends on its motion: derivatives of the discrete update, not of the rates that it
+ *  approximates, so that a Newton iteration converges quadratically (J.C. Simo, R.L. Taylor, Comput. Methods Appl. Mech.
+ *  Eng. 48 (1985) 101). With the change l = dF F^-1 of the motion, F at the end of the step,
+ *
+ *    d(J sigma)_k = sum_j stress[k][j] l_j
+ *
+ *  where l_j is row-major (l_xx, l_xy, ...) and k in the order of Batch::stress. The change of the first Piola-Kirchhoff
+ *  stress P = J sigma F^-T is [d(J sigma) - J sigma l^T] F^-T.
+ */
+struct Tangent {
+  alignas(64) double stress[6][9][BATCH];    ///< of the Kirchhoff stress J sigma
+  alignas(64) double heat[9][BATCH];    ///< of Batch::heat, passed from part to part of a material
+};
+
 /** A history variable of a material. */
 struct HistoryVariable {
   std::string name;    ///< as used by compute mpm/atom
@@ -176,6 +190,14 @@ class Material {
 
   /** Stress and history at the end of the step (hot: one call per batch). */
   virtual void update(Batch &) const = 0;
+
+  /** Is there an analytic tangent? All laws of the material must have one. Damage has none, and neither have solids
+   *  that melt, and bodies with thermal expansion that a compression warms. */
+  virtual bool has_tangent() const = 0;
+
+  /** The same as update(), to the last bit, and the tangent of this step; for materials that have one. Where the
+   *  update has a kink, as at yield, it is the derivative on the side on which the step has ended. */
+  virtual void update_with_tangent(Batch &, Tangent &) const = 0;
 
   /** Ranges of validity. They change nothing; whoever steps the material may look at them. */
   virtual const std::vector<ValidRange> &ranges() const = 0;

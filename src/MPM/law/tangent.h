@@ -1,0 +1,291 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_LAW_TANGENT_H
+#define MPM_LAW_TANGENT_H
+
+// Tangents that laws share, see Tangent in material/material.h. Loops over the columns of a tangent are outside of those
+// over the points, so that their indices cost nothing. Functions that have loops over points are not inlined by force: a
+// tensor with a name in such a loop would become an array in memory, and the loop would not vectorize.
+
+#include "law/kinematics.h"
+
+namespace MPM_NS::law {
+namespace {
+
+  /** Component of a symmetric tensor, in the order of Sym, by its indices, and the indices of a component. */
+  constexpr int COMPONENT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
+
+  /** Adds the derivative of a pressure-like stress: value[i] tr(l) I. */
+  inline void add_mean(int n, const double *value, Tangent &t)
+  {
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < 9; k += 4) {
+        double *const row = t.stress[c][k];
+        MPM_SIMD
+        for (int i = 0; i < n; i++) row[i] += value[i];
+      }
+  }
+
+  /** Adds l s + s l^T, how a tensor s changes that moves with the material. */
+  inline void add_convected(int n, const double (*s)[BATCH], Tangent &t)
+  {
+    for (int c = 0; c < 6; c++)
+      for (int m = 0; m < 3; m++) {
+        double *const left = t.stress[c][3 * FIRST[c] + m];
+        double *const right = t.stress[c][3 * SECOND[c] + m];
+        const double *const s_left = s[COMPONENT[m][SECOND[c]]];
+        const double *const s_right = s[COMPONENT[FIRST[c]][m]];
+        MPM_SIMD
+        for (int i = 0; i < n; i++) left[i] += s_left[i];
+        MPM_SIMD
+        for (int i = 0; i < n; i++) right[i] += s_right[i];
+      }
+  }
+
+  /** Derivative with respect to l_ab, components along three vectors: of the stress along the dyads of these. */
+  struct FrameModuli {
+    alignas(64) double A[6][BATCH];       ///< of aa by bb, for ab = 11 22 33 12 13 23
+    alignas(64) double s[3][2][BATCH];    ///< of ab by l_ab and by l_ba, for ab = 12 13 23
+  };
+
+  /** Adds the tangent
+   *
+   *    sum_ab A_ab (v_a v_a) (v_b v_b) + sum_(a < b) (v_a v_b + v_b v_a) (s_ab v_a v_b + s_ba v_b v_a)
+   *
+   *  with three vectors v_a of each point, [component][vector]. */
+  inline void add_frame_tangent(int n, const double (*v)[3][BATCH], const FrameModuli &moduli,
+                                Tangent &t)
+  {
+    alignas(64) double dyad[6][6][BATCH];
+    for (int c = 0; c < 6; c++)
+      for (int m = 0; m < 6; m++) {
+        const double *const pa = v[FIRST[c]][FIRST[m]], *const qb = v[SECOND[c]][SECOND[m]];
+        const double *const pb = v[FIRST[c]][SECOND[m]], *const qa = v[SECOND[c]][FIRST[m]];
+        const double twice = m < 3 ? 0.5 : 1.0;
+        double *const row = dyad[m][c];
+        MPM_SIMD
+        for (int i = 0; i < n; i++) row[i] = twice * (pa[i] * qb[i] + pb[i] * qa[i]);
+      }
+    const auto &A = moduli.A;
+    const auto &s = moduli.s;
+    for (int k = 0; k < 3; k++)
+      for (int l = 0; l < 3; l++) {
+        double *const xx = t.stress[0][3 * k + l], *const yy = t.stress[1][3 * k + l];
+        double *const zz = t.stress[2][3 * k + l], *const xy = t.stress[3][3 * k + l];
+        double *const xz = t.stress[4][3 * k + l], *const yz = t.stress[5][3 * k + l];
+        MPM_SIMD
+        for (int i = 0; i < n; i++) {
+          const double p0 = v[k][0][i], p1 = v[k][1][i], p2 = v[k][2][i];
+          const double q0 = v[l][0][i], q1 = v[l][1][i], q2 = v[l][2][i];
+          const double d0 = p0 * q0, d1 = p1 * q1, d2 = p2 * q2;
+          const double r0 = A[0][i] * d0 + A[3][i] * d1 + A[4][i] * d2;
+          const double r1 = A[3][i] * d0 + A[1][i] * d1 + A[5][i] * d2;
+          const double r2 = A[4][i] * d0 + A[5][i] * d1 + A[2][i] * d2;
+          const double r3 = s[0][0][i] * p0 * q1 + s[0][1][i] * p1 * q0;
+          const double r4 = s[1][0][i] * p0 * q2 + s[1][1][i] * p2 * q0;
+          const double r5 = s[2][0][i] * p1 * q2 + s[2][1][i] * p2 * q1;
+#define MPM_ALONG(c)                                                                   \
+  (dyad[0][c][i] * r0 + dyad[1][c][i] * r1 + dyad[2][c][i] * r2 + dyad[3][c][i] * r3 + \
+   dyad[4][c][i] * r4 + dyad[5][c][i] * r5)
+          xx[i] += MPM_ALONG(0);
+          yy[i] += MPM_ALONG(1);
+          zz[i] += MPM_ALONG(2);
+          xy[i] += MPM_ALONG(3);
+          xz[i] += MPM_ALONG(4);
+          yz[i] += MPM_ALONG(5);
+#undef MPM_ALONG
+        }
+      }
+  }
+
+  /** Change of a tensor that turns with the velocity (x, y, z). */
+  struct Spin {
+    double x, y, z;
+
+    MPM_INLINE Sym of(const Sym &s) const
+    {
+      return {2.0 * (y * s.xz - z * s.xy),
+              2.0 * (z * s.xy - x * s.yz),
+              2.0 * (x * s.yz - y * s.xz),
+              y * s.yz - z * s.yy + z * s.xx - x * s.xz,
+              y * s.zz - z * s.yz + x * s.xy - y * s.xx,
+              z * s.xz - x * s.zz + x * s.yy - y * s.xy};
+    }
+  };
+
+  /** What the end of a step in rate form depends on. With the increment G = A (I + A/2)^-1 of the middle of the step,
+   *  strain e and rotation W, its derivative is
+   *
+   *    dG = (I - G/2) l (I + G/2),
+   *
+   *  and the rotation Q = (I - W/2)^-1 (I + W/2) changes by dQ Q^T = (I - W/2)^-1 dW (I + W/2)^-1, the matrix of the
+   *  vector (dw + w x dw/2)/(1 + w.w/4), where W is that of w. */
+  struct StepMotion {
+    alignas(64) double G[9][BATCH], Q[9][BATCH];
+    alignas(64) double QM[9][BATCH], QN[9][BATCH];    ///< Q (I - G/2), Q (I + G/2)^T
+    alignas(64) double w[3][BATCH];
+
+    explicit StepMotion(const Batch &b)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Increment inc = increment(b, i);
+        const Rotation R(inc);
+        w[0][i] = inc.wx;
+        w[1][i] = inc.wy;
+        w[2][i] = inc.wz;
+        G[0][i] = inc.strain.xx;
+        G[1][i] = inc.strain.xy - inc.wz;
+        G[2][i] = inc.strain.xz + inc.wy;
+        G[3][i] = inc.strain.xy + inc.wz;
+        G[4][i] = inc.strain.yy;
+        G[5][i] = inc.strain.yz - inc.wx;
+        G[6][i] = inc.strain.xz - inc.wy;
+        G[7][i] = inc.strain.yz + inc.wx;
+        G[8][i] = inc.strain.zz;
+        for (int k = 0; k < 9; k++) Q[k][i] = R.Q[k];
+      }
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+          MPM_SIMD
+          for (int i = 0; i < b.n; i++) {
+            const double x = Q[3 * r][i], y = Q[3 * r + 1][i], z = Q[3 * r + 2][i];
+            QM[3 * r + c][i] =
+                Q[3 * r + c][i] - 0.5 * (x * G[c][i] + y * G[3 + c][i] + z * G[6 + c][i]);
+            QN[3 * r + c][i] = Q[3 * r + c][i] +
+                0.5 * (x * G[3 * c][i] + y * G[3 * c + 1][i] + z * G[3 * c + 2][i]);
+          }
+        }
+    }
+
+    /** e of the step. */
+    MPM_INLINE Sym strain(int i) const
+    {
+      return {G[0][i],
+              G[4][i],
+              G[8][i],
+              0.5 * (G[1][i] + G[3][i]),
+              0.5 * (G[2][i] + G[6][i]),
+              0.5 * (G[5][i] + G[7][i])};
+    }
+
+    /** Derivatives by l_kl of one point. */
+    struct Column {
+      Sym strain;     ///< of e
+      Sym both;       ///< de + Q de Q^T
+      double mean;    ///< third of the trace of e
+      Spin spin;      ///< of Q
+    };
+
+    /** Of the points, one after the other. */
+    struct Columns {
+      const StepMotion &step;
+      const int k, l;
+      const double kx, ky, kz, lx, ly, lz;    ///< unit vectors
+
+      MPM_INLINE Column operator()(int i) const
+      {
+        const auto &G = step.G, &QM = step.QM, &QN = step.QN;
+        const auto &w = step.w;
+        // dG is a dyad a b, and so is what Q makes of it
+        const double ax = kx - 0.5 * G[k][i], ay = ky - 0.5 * G[3 + k][i];
+        const double az = kz - 0.5 * G[6 + k][i], bx = lx + 0.5 * G[3 * l][i];
+        const double by = ly + 0.5 * G[3 * l + 1][i], bz = lz + 0.5 * G[3 * l + 2][i];
+        const double cx = QM[k][i], cy = QM[3 + k][i], cz = QM[6 + k][i];
+        const double dx = QN[l][i], dy = QN[3 + l][i], dz = QN[6 + l][i];
+        const double x = w[0][i], y = w[1][i], z = w[2][i];
+        const double vx = 0.5 * (by * az - bz * ay), vy = 0.5 * (bz * ax - bx * az);
+        const double vz = 0.5 * (bx * ay - by * ax);
+        const double q = 1.0 / (1.0 + 0.25 * (x * x + y * y + z * z));
+        return {{ax * bx, ay * by, az * bz, 0.5 * (ax * by + ay * bx), 0.5 * (ax * bz + az * bx),
+                 0.5 * (ay * bz + az * by)},
+                {ax * bx + cx * dx, ay * by + cy * dy, az * bz + cz * dz,
+                 0.5 * (ax * by + ay * bx + cx * dy + cy * dx),
+                 0.5 * (ax * bz + az * bx + cx * dz + cz * dx),
+                 0.5 * (ay * bz + az * by + cy * dz + cz * dy)},
+                (1.0 / 3.0) * (ax * bx + ay * by + az * bz),
+                {q * (vx + 0.5 * (y * vz - z * vy)), q * (vy + 0.5 * (z * vx - x * vz)),
+                 q * (vz + 0.5 * (x * vy - y * vx))}};
+      }
+    };
+
+    MPM_INLINE Columns columns(int k, int l) const
+    {
+      return {*this,
+              k,
+              l,
+              1.0 * (k == 0),
+              1.0 * (k == 1),
+              1.0 * (k == 2),
+              1.0 * (l == 0),
+              1.0 * (l == 1),
+              1.0 * (l == 2)};
+    }
+  };
+
+  /** The deviator of the Kirchhoff stress after an elastic step of the rate form, see jaumann(), with the shear modulus
+   *  G: its rotated part, of which the rotation is felt, and its derivative. */
+  struct ElasticStep : StepMotion {
+    double shear;
+    alignas(64) double turned[6][BATCH];    ///< Q (old + G dev(e)) Q^T
+
+    /** old: Kirchhoff stress at the start of the step, or its deviator. */
+    ElasticStep(const Batch &b, double shear, const double (*old)[BATCH]) :
+        StepMotion(b), shear(shear)
+    {
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Increment inc = increment(b, i);
+        store_rows(turned, i, rotate(inc, load_rows(old, i) + shear * deviator(inc.strain)));
+      }
+    }
+
+    /** The deviator that it ends with. */
+    MPM_INLINE Sym trial(int i) const { return load_rows(turned, i) + shear * deviator(strain(i)); }
+
+    /** Its derivatives by l_kl. */
+    void column(int n, int k, int l, double (*out)[BATCH]) const
+    {
+      const Columns columns = StepMotion::columns(k, l);
+      const double G = shear;
+      MPM_SIMD
+      for (int i = 0; i < n; i++) {
+        const Column d = columns(i);
+        store_rows(out, i,
+                   G * add_diagonal(d.both, -2.0 * d.mean) + d.spin.of(load_rows(turned, i)));
+      }
+    }
+  };
+
+  /** Adds a column. */
+  MPM_INLINE void add_column(Tangent &t, int column, int i, const Sym &s)
+  {
+    t.stress[0][column][i] += s.xx;
+    t.stress[1][column][i] += s.yy;
+    t.stress[2][column][i] += s.zz;
+    t.stress[3][column][i] += s.xy;
+    t.stress[4][column][i] += s.xz;
+    t.stress[5][column][i] += s.yz;
+  }
+
+  /** Adds the tangent of an elastic step. */
+  inline void add_elastic_step(int n, const ElasticStep &step, Tangent &t)
+  {
+    alignas(64) double column[6][BATCH];
+    for (int k = 0; k < 9; k++) {
+      step.column(n, k / 3, k % 3, column);
+      MPM_SIMD
+      for (int i = 0; i < n; i++) add_column(t, k, i, load_rows(column, i));
+    }
+  }
+
+}    // namespace
+}    // namespace MPM_NS::law
+#endif
