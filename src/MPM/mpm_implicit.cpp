@@ -336,6 +336,7 @@ void MPMImplicit::newton(std::vector<double> &u)
       now.failure = "the linear system " + solved.describe();
       return;
     }
+    now.indefinite += solved.outcome == SolveReport::INDEFINITE;
     // not positive definite: as far as the energy had a minimum, or down the preconditioned slope
     if (solved.outcome == SolveReport::INDEFINITE && solved.iterations == 0)
       precondition(free.data(), du.data());

@@ -51,6 +51,7 @@ class MPMImplicit : private MPMNodeSystem {
   struct Report {
     bool converged = false;
     int iterations = 0, linear = 0, cuts = 0;
+    int indefinite = 0;    ///< iterations in which the energy had no minimum along some way
     double unbalanced = 0.0;          ///< sum of forces that are left [mass acceleration]
     double ratio = 0.0;               ///< to all forces
     double asymmetry = 0.0;           ///< of the tangents
