@@ -28,6 +28,7 @@
 #include "fix_mpm_rigid.h"
 #include "fix_mpm_surface.h"
 #include "mpm_field_options.h"
+#include "mpm_implicit.h"
 #include "mpm_point.h"
 #include "pair_mpm_penalty.h"
 
@@ -57,6 +58,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_immersed", MPMImmersedOptions().declare(3));
   add("fix_mpm_mixture", MPMMixtureOptions().declare());
   add("fix_mpm_pore", MPMPoreOptions().declare(3));
+  add("fix_mpm_implicit", MPMImplicitOptions().declare());
   add("fix_mpm_relax", MPMRelaxOptions().declare());
   add("fix_mpm_rigid", MPMRigidOptions().declare());
   add("fix_mpm_surface", MPMSurfaceOptions().declare());
