@@ -270,6 +270,35 @@ TEST(Tangent, StepIsTheSameToTheLastBit)
   }
 }
 
+TEST(Tangent, OfMotionsInThePlaneHasTheirColumnsOnly)
+{
+  const std::set<int> others = {2, 5, 6, 7};
+  const double mark = 1234.5;
+  for (const auto &sample : samples) {
+    SCOPED_TRACE(sample.name);
+    const auto material = make(sample.text);
+    if (!material->has_tangent()) continue;
+    RandomMatrix random(6);
+    MaterialPoint p(*material, BATCH), q(p);
+    const Motions A = random_motions(random, BATCH, 0.2, SPACE);
+    Tangent all, plane;
+    plane.plane = true;
+    const auto rows = [](Tangent &t, int l) {
+      std::vector<double *> rows = {t.heat[l]};
+      for (auto &component : t.stress) rows.push_back(component[l]);
+      return rows;
+    };
+    for (const int l : others)
+      for (double *row : rows(plane, l)) std::fill_n(row, BATCH, mark);
+    make_step(p, A, 0.01, &all);
+    make_step(q, A, 0.01, &plane);
+    for (int l = 0; l < 9; l++)
+      for (size_t k = 0; k < 7; k++)
+        for (int i = 0; i < BATCH; i++)
+          EXPECT_EQ(rows(plane, l)[k][i], others.count(l) ? mark : rows(all, l)[k][i]);
+  }
+}
+
 TEST(Tangent, OfStretchesThatAreNearlyEqual)
 {
   const double apart[] = {0.0,  1e-15, 1e-13,  1e-11, 1e-9, 1e-8, 1e-7, 1e-6,

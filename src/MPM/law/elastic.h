@@ -179,6 +179,32 @@ namespace {
       return 0.5 * lambda * t * t + mu * norm2(e);
     }
 
+    /** l tau + tau l^T + lambda (b:d) b + 2 mu b d b with the symmetric part d of l. */
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const LawStVenantKirchhoff law(p);
+      update(p, b, history);
+      alignas(64) double tau[6][BATCH], left[6][BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        store_rows(tau, i, b.J[i] * load_stress(b, i));
+        store_rows(left, i, left_cauchy_green(b, i));
+      }
+      add_convected(b.n, tau, t);
+      for (int k = 0; k < 9; k++)
+        for (int c = 0; c < 6 && !t.skips(k); c++) {
+          const double *const bij = left[c], *const bkl = left[COMPONENT[k / 3][k % 3]];
+          const double *const bik = left[COMPONENT[FIRST[c]][k / 3]];
+          const double *const blj = left[COMPONENT[k % 3][SECOND[c]]];
+          const double *const bil = left[COMPONENT[FIRST[c]][k % 3]];
+          const double *const bkj = left[COMPONENT[k / 3][SECOND[c]]];
+          double *const row = t.stress[c][k];
+          MPM_SIMD
+          for (int i = 0; i < b.n; i++)
+            row[i] += law.lambda * bij[i] * bkl[i] + law.mu * (bik[i] * blj[i] + bil[i] * bkj[i]);
+        }
+    }
+
     MPM_INLINE void respond_at(PrincipalResponse &r, int i) const
     {
       const double x = exp(2.0 * r.e[0][i]), y = exp(2.0 * r.e[1][i]);

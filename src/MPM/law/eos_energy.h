@@ -41,6 +41,7 @@ namespace {
                            const double *by_heat, Tangent &t)
   {
     for (int k = 0; k < 9; k++) {
+      if (t.skips(k)) continue;
       const double volume = k % 4 == 0 ? 1.0 : 0.0;
       const double *const heat = t.heat[k];
       double *const xx = t.stress[0][k], *const yy = t.stress[1][k], *const zz = t.stress[2][k];

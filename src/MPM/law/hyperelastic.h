@@ -82,24 +82,21 @@ namespace {
     return max(max(max(k0, k1), max(k2, k3)), max(k4, k5));
   }
 
-  /** Components ab and ba of the tangent of an isotropic point in principal axes: d tau_ab = s_ab l_ab + s_ba l_ba with
+  /** What the tangent of an isotropic point has for shear in the plane of its principal axes a and b. With
+   *  d tau_ab = s_ab l_ab + s_ba l_ba, s_ab = (tau_a - tau_b)/(exp(2 (e_a - e_b)) - 1), the mean of s_ab and s_ba is
    *
-   *    s_ab = (tau_a - tau_b) / (exp(2 (e_a - e_b)) - 1) = m - (tau_a - tau_b)/2,   s_ba = m + (tau_a - tau_b)/2,
-   *    m = (tau_a - tau_b)/2 coth(e_a - e_b)
+   *    m_ab = (tau_a - tau_b)/2 coth(e_a - e_b)
    *
-   *  (G.A. Holzapfel, Nonlinear Solid Mechanics, 2000, eq. 6.180, with Kirchhoff stresses; E.A. de Souza Neto et al.,
-   *  Computational Methods for Plasticity, 2008, app. A). m is even in e_a - e_b: where that is small, what its
-   *  limit leaves out is of second order. */
-  MPM_INLINE void turn_axes(const PrincipalResponse &r, int i, int a, int b, int ab, double &s_ab,
-                            double &s_ba)
+   *  (G.A. Holzapfel, Nonlinear Solid Mechanics, 2000, ch. 6.6; E.A. de Souza Neto et al., Computational Methods for
+   *  Plasticity, 2008, app. A), and the rest is a rotation of the stress. m_ab is even in e_a - e_b: where that is
+   *  small, what the limit leaves out is of second order. */
+  MPM_INLINE double shear_tangent(const PrincipalResponse &r, int i, int a, int b, int ab)
   {
-    const double d = r.e[a][i] - r.e[b][i], half = 0.5 * (r.tau[a][i] - r.tau[b][i]);
+    const double d = r.e[a][i] - r.e[b][i];
     const bool equal = d * d < 1e-10;
-    const double ratio = half * (1.0 + 2.0 / expm1(2.0 * (equal ? 1.0 : d)));
+    const double ratio = 1.0 + 2.0 / expm1(2.0 * (equal ? 1.0 : d));
     const double limit = 0.25 * (r.A[a][i] + r.A[b][i] - 2.0 * r.A[ab][i]);
-    const double m = equal ? limit : ratio;
-    s_ab = m - half;
-    s_ba = m + half;
+    return equal ? limit : 0.5 * (r.tau[a][i] - r.tau[b][i]) * ratio;
   }
 
   /** Hyperelastic law that is isotropic. Law has in addition: respond_at(response, i), or its own
@@ -159,13 +156,16 @@ namespace {
       }
       Law::respond(p, b.n, r);
       FrameModuli moduli;
+      alignas(64) double tau[6][BATCH];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
+        store_rows(tau, i, b.J[i] * load_stress(b, i));
         for (int k = 0; k < 6; k++) moduli.A[k][i] = r.A[k][i];
-        turn_axes(r, i, 0, 1, 3, moduli.s[0][0][i], moduli.s[0][1][i]);
-        turn_axes(r, i, 0, 2, 4, moduli.s[1][0][i], moduli.s[1][1][i]);
-        turn_axes(r, i, 1, 2, 5, moduli.s[2][0][i], moduli.s[2][1][i]);
+        moduli.m[0][i] = shear_tangent(r, i, 0, 1, 3);
+        moduli.m[1][i] = shear_tangent(r, i, 0, 2, 4);
+        moduli.m[2][i] = shear_tangent(r, i, 1, 2, 5);
       }
+      add_turned(b.n, tau, t);
       add_frame_tangent(b.n, axes.vector, moduli, t);
     }
   };

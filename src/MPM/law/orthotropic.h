@@ -110,9 +110,9 @@ namespace {
         moduli.A[3][i] = law.C12;
         moduli.A[4][i] = law.C13;
         moduli.A[5][i] = law.C23;
-        moduli.s[0][0][i] = moduli.s[0][1][i] = law.G12;
-        moduli.s[1][0][i] = moduli.s[1][1][i] = law.G13;
-        moduli.s[2][0][i] = moduli.s[2][1][i] = law.G23;
+        moduli.m[0][i] = law.G12;
+        moduli.m[1][i] = law.G13;
+        moduli.m[2][i] = law.G23;
       }
       for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++) {

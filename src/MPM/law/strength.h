@@ -462,6 +462,7 @@ namespace {
       }
       for (int k = 0; k < 3; k++)
         for (int l = 0; l < 3; l++) {
+          if (t.skips(3 * k + l)) continue;
           const double volume = k == l ? 1.0 : 0.0;
           double *const heat = t.heat[3 * k + l];
           step.column(b.n, k, l, trial);

@@ -22,15 +22,18 @@ namespace {
   constexpr int COMPONENT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
 
-  /** Adds the derivative of a pressure-like stress: value[i] tr(l) I. */
+  /** Adds a factor times one row to another one. */
+  inline void add_rows(int n, double factor, const double *from, double *to)
+  {
+    MPM_SIMD
+    for (int i = 0; i < n; i++) to[i] += factor * from[i];
+  }
+
+  /** Adds the derivative value[i] tr(l) I of a mean stress. */
   inline void add_mean(int n, const double *value, Tangent &t)
   {
     for (int c = 0; c < 3; c++)
-      for (int k = 0; k < 9; k += 4) {
-        double *const row = t.stress[c][k];
-        MPM_SIMD
-        for (int i = 0; i < n; i++) row[i] += value[i];
-      }
+      for (int k = 0; k < 9; k += 4) add_rows(n, 1.0, value, t.stress[c][k]);
   }
 
   /** Adds l s + s l^T, how a tensor s changes that moves with the material. */
@@ -38,32 +41,47 @@ namespace {
   {
     for (int c = 0; c < 6; c++)
       for (int m = 0; m < 3; m++) {
-        double *const left = t.stress[c][3 * FIRST[c] + m];
-        double *const right = t.stress[c][3 * SECOND[c] + m];
+        const int left = 3 * FIRST[c] + m, right = 3 * SECOND[c] + m;
         const double *const s_left = s[COMPONENT[m][SECOND[c]]];
         const double *const s_right = s[COMPONENT[FIRST[c]][m]];
-        MPM_SIMD
-        for (int i = 0; i < n; i++) left[i] += s_left[i];
-        MPM_SIMD
-        for (int i = 0; i < n; i++) right[i] += s_right[i];
+        if (!t.skips(left)) add_rows(n, 1.0, s_left, t.stress[c][left]);
+        if (!t.skips(right)) add_rows(n, 1.0, s_right, t.stress[c][right]);
       }
   }
 
-  /** Derivative with respect to l_ab, components along three vectors: of the stress along the dyads of these. */
+  /** Adds w s - s w with the skew part w of l, how a tensor s changes that turns with the material. */
+  inline void add_turned(int n, const double (*s)[BATCH], Tangent &t)
+  {
+    for (int c = 0; c < 6; c++)
+      for (int m = 0; m < 3; m++) {
+        const int i = FIRST[c], j = SECOND[c];
+        const double *const s_left = s[COMPONENT[m][j]], *const s_right = s[COMPONENT[i][m]];
+        if (m != i && !t.skips(3 * i + m)) {
+          add_rows(n, 0.5, s_left, t.stress[c][3 * i + m]);
+          add_rows(n, -0.5, s_left, t.stress[c][3 * m + i]);
+        }
+        if (m != j && !t.skips(3 * j + m)) {
+          add_rows(n, 0.5, s_right, t.stress[c][3 * j + m]);
+          add_rows(n, -0.5, s_right, t.stress[c][3 * m + j]);
+        }
+      }
+  }
+
+  /** Derivative along three vectors of a stress that depends on the symmetric part of the motion only. */
   struct FrameModuli {
-    alignas(64) double A[6][BATCH];       ///< of aa by bb, for ab = 11 22 33 12 13 23
-    alignas(64) double s[3][2][BATCH];    ///< of ab by l_ab and by l_ba, for ab = 12 13 23
+    alignas(64) double A[6][BATCH];    ///< of the components aa by l_bb, for ab = 11 22 33 12 13 23
+    alignas(64) double m[3][BATCH];    ///< of ab by l_ab + l_ba, for ab = 12 13 23
   };
 
   /** Adds the tangent
    *
-   *    sum_ab A_ab (v_a v_a) (v_b v_b) + sum_(a < b) (v_a v_b + v_b v_a) (s_ab v_a v_b + s_ba v_b v_a)
+   *    sum_ab A_ab (v_a v_a) (v_b v_b) + sum_(a < b) m_ab (v_a v_b + v_b v_a) (v_a v_b + v_b v_a)
    *
    *  with three vectors v_a of each point, [component][vector]. */
   inline void add_frame_tangent(int n, const double (*v)[3][BATCH], const FrameModuli &moduli,
                                 Tangent &t)
   {
-    alignas(64) double dyad[6][6][BATCH];
+    alignas(64) double dyad[6][6][BATCH], sum[6][BATCH];
     for (int c = 0; c < 6; c++)
       for (int m = 0; m < 6; m++) {
         const double *const pa = v[FIRST[c]][FIRST[m]], *const qb = v[SECOND[c]][SECOND[m]];
@@ -73,36 +91,29 @@ namespace {
         MPM_SIMD
         for (int i = 0; i < n; i++) row[i] = twice * (pa[i] * qb[i] + pb[i] * qa[i]);
       }
-    const auto &A = moduli.A;
-    const auto &s = moduli.s;
-    for (int k = 0; k < 3; k++)
-      for (int l = 0; l < 3; l++) {
-        double *const xx = t.stress[0][3 * k + l], *const yy = t.stress[1][3 * k + l];
-        double *const zz = t.stress[2][3 * k + l], *const xy = t.stress[3][3 * k + l];
-        double *const xz = t.stress[4][3 * k + l], *const yz = t.stress[5][3 * k + l];
-        MPM_SIMD
-        for (int i = 0; i < n; i++) {
-          const double p0 = v[k][0][i], p1 = v[k][1][i], p2 = v[k][2][i];
-          const double q0 = v[l][0][i], q1 = v[l][1][i], q2 = v[l][2][i];
-          const double d0 = p0 * q0, d1 = p1 * q1, d2 = p2 * q2;
-          const double r0 = A[0][i] * d0 + A[3][i] * d1 + A[4][i] * d2;
-          const double r1 = A[3][i] * d0 + A[1][i] * d1 + A[5][i] * d2;
-          const double r2 = A[4][i] * d0 + A[5][i] * d1 + A[2][i] * d2;
-          const double r3 = s[0][0][i] * p0 * q1 + s[0][1][i] * p1 * q0;
-          const double r4 = s[1][0][i] * p0 * q2 + s[1][1][i] * p2 * q0;
-          const double r5 = s[2][0][i] * p1 * q2 + s[2][1][i] * p2 * q1;
-#define MPM_ALONG(c)                                                                   \
-  (dyad[0][c][i] * r0 + dyad[1][c][i] * r1 + dyad[2][c][i] * r2 + dyad[3][c][i] * r3 + \
-   dyad[4][c][i] * r4 + dyad[5][c][i] * r5)
-          xx[i] += MPM_ALONG(0);
-          yy[i] += MPM_ALONG(1);
-          zz[i] += MPM_ALONG(2);
-          xy[i] += MPM_ALONG(3);
-          xz[i] += MPM_ALONG(4);
-          yz[i] += MPM_ALONG(5);
-#undef MPM_ALONG
-        }
+    const auto &A = moduli.A, &d = dyad[0], &e = dyad[1], &f = dyad[2];
+    const auto &x = dyad[3], &y = dyad[4], &z = dyad[5];
+    const auto &m = moduli.m;
+    for (int k = 0; k < 6; k++) {
+      const int column = 3 * FIRST[k] + SECOND[k], other = 3 * SECOND[k] + FIRST[k];
+      if (t.skips(column)) continue;
+      MPM_SIMD
+      for (int i = 0; i < n; i++) {
+        const double d0 = d[k][i], d1 = e[k][i], d2 = f[k][i];
+        const double r0 = A[0][i] * d0 + A[3][i] * d1 + A[4][i] * d2;
+        const double r1 = A[3][i] * d0 + A[1][i] * d1 + A[5][i] * d2;
+        const double r2 = A[4][i] * d0 + A[5][i] * d1 + A[2][i] * d2;
+        const double r3 = m[0][i] * x[k][i], r4 = m[1][i] * y[k][i], r5 = m[2][i] * z[k][i];
+#pragma GCC unroll 6
+        for (int c = 0; c < 6; c++)
+          sum[c][i] = d[c][i] * r0 + e[c][i] * r1 + f[c][i] * r2 + x[c][i] * r3 + y[c][i] * r4 +
+              z[c][i] * r5;
       }
+      for (int c = 0; c < 6; c++) {
+        add_rows(n, 1.0, sum[c], t.stress[c][column]);
+        if (other != column) add_rows(n, 1.0, sum[c], t.stress[c][other]);
+      }
+    }
   }
 
   /** Change of a tensor that turns with the velocity (x, y, z). */
@@ -180,7 +191,7 @@ namespace {
     struct Column {
       Sym strain;     ///< of e
       Sym both;       ///< de + Q de Q^T
-      double mean;    ///< third of the trace of e
+      double mean;    ///< third of the trace of de
       Spin spin;      ///< of Q
     };
 
@@ -264,7 +275,7 @@ namespace {
     }
   };
 
-  /** Adds a column. */
+  /** Adds to a column the derivatives of one point. */
   MPM_INLINE void add_column(Tangent &t, int column, int i, const Sym &s)
   {
     t.stress[0][column][i] += s.xx;
@@ -280,6 +291,7 @@ namespace {
   {
     alignas(64) double column[6][BATCH];
     for (int k = 0; k < 9; k++) {
+      if (t.skips(k)) continue;
       step.column(n, k / 3, k % 3, column);
       MPM_SIMD
       for (int i = 0; i < n; i++) add_column(t, k, i, load_rows(column, i));

@@ -75,6 +75,7 @@ namespace {
         slope[i] = rate > 0.0 ? s : 0.0;
       }
       for (int k = 0; k < 9; k++) {
+        if (t.skips(k)) continue;
         const StepMotion::Columns columns = step.columns(k / 3, k % 3);
         const double volume = k % 4 == 0 ? 1.0 : 0.0;
         double *const heat = t.heat[k];

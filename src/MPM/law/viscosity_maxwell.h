@@ -101,8 +101,8 @@ namespace {
       for (int term = 0; term < p.nterms; term++) {
         const History h = history + 6 * term;
         const double G = p.term[term][0], x = b.dt / p.term[term][1];
-        const double kept = exp(-x), gain = x > 0.0 ? -expm1(-x) / x : 1.0;
-        const double second = 0.5 * G * (x - 0.5 * (1.0 - kept));
+        const double lost = -expm1(-x), gain = x > 0.0 ? lost / x : 1.0;
+        const double second = 0.5 * G * (x - 0.5 * lost);
         alignas(64) double y[6][BATCH], dissipation[6][BATCH], change[6][BATCH];
         MPM_SIMD
         for (int i = 0; i < b.n; i++) {
@@ -119,6 +119,7 @@ namespace {
           store_rows(dissipation, i, second * add_diagonal((-inv) * cofactors, 1.0));
         }
         for (int k = 0; k < 9; k++) {
+          if (t.skips(k)) continue;
           const int row = k / 3, column = k % 3;
           for (int m = 0; m < 6; m++) {
             const double left = FIRST[m] == row ? 1.0 : 0.0, right = SECOND[m] == row ? 1.0 : 0.0;

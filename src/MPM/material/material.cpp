@@ -177,9 +177,11 @@ class ComposedMaterial : public Material {
 
   void update_with_tangent(Batch &b, Tangent &t) const override
   {
-    for (auto &component : t.stress)
-      for (auto &row : component) std::fill(row, row + b.n, 0.0);
-    for (auto &row : t.heat) std::fill(row, row + b.n, 0.0);
+    for (int l = 0; l < 9; l++) {
+      if (t.skips(l)) continue;
+      for (auto &component : t.stress) std::fill_n(component[l], b.n, 0.0);
+      std::fill_n(t.heat[l], b.n, 0.0);
+    }
     update(b, &t);
   }
 
@@ -500,9 +502,9 @@ class ComposedMaterial : public Material {
         if (changes) add_energy_of_warming(b, before, &s, work);
       }
       // J sigma is theta^3 J_e sigma, and theta is one of this temperature, not of the motion
-      for (int k = 0; t && k < 6; k++)
-        for (auto &row : t->stress[k])
-          for (int i = 0; i < b.n; i++) row[i] *= s.volume(i);
+      for (int l = 0; t && l < 9; l++)
+        for (int k = 0; k < 6 && !t->skips(l); k++)
+          for (int i = 0; i < b.n; i++) t->stress[k][l][i] *= s.volume(i);
       table->mean_stress(b, mean);
       for (int i = 0; i < b.n; i++) {
         work[i] += 1.5 * s.change[i] * b.J[i] * mean[i];
@@ -834,8 +836,10 @@ class ComposedMaterial : public Material {
       law->kernels->tangent(law->parameters, b, rows(b, *law), *t);
     } else if (law) {
       Tangent own;
+      own.plane = t->plane;
       const auto copy = [](const Tangent &from, int i, Tangent &to, int j) {
         for (int l = 0; l < 9; l++) {
+          if (from.skips(l)) continue;
           for (int k = 0; k < 6; k++) to.stress[k][l][j] = from.stress[k][l][i];
           to.heat[l][j] = from.heat[l][i];
         }

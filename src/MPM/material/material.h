@@ -78,8 +78,12 @@ struct Batch {
  *  stress P = J sigma F^-T is [d(J sigma) - J sigma l^T] F^-T.
  */
 struct Tangent {
+  /** In: are only motions in the plane xy of interest, and around an axis? Columns of other ones are left alone. */
+  bool plane = false;
   alignas(64) double stress[6][9][BATCH];    ///< of the Kirchhoff stress J sigma
   alignas(64) double heat[9][BATCH];    ///< of Batch::heat, passed from part to part of a material
+
+  bool skips(int l) const { return plane && (l == 2 || l == 5 || l == 6 || l == 7); }
 };
 
 /** A history variable of a material. */
