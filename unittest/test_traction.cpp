@@ -211,6 +211,45 @@ SERIAL_TEST(Face, OtherSurfaces)
   EXPECT_NEAR(tagged.fix_vector("load", 7)[1], 3.0 * 0.24, 1e-12);
 }
 
+// planes that are inclined to the lattice of points, and what is told where layers are closer together than points
+SERIAL_TEST(Face, Inclined)
+{
+  const auto slope = [](double angle, const std::string &more) {
+    const double a = angle * PI / 180.0;
+    return plane("si", "p f", "0 40 0 40", 1, 0.3) + "fix grid all mpm 1.0\n" +
+        strprintf("region top plane 20 20 0 %.17g %.17g 0\n", std::sin(a), -std::cos(a)) +
+        "region bottom block 5 33 5 INF INF INF\nregion body intersect 2 top bottom\n"
+        "create_points 1 region body ppc 2 outside ignore\n"
+        "fix m all mpm/material density 1000 linear 100 0.3\ntimestep 1e-6\n"
+        "region part block 10 28 INF INF INF INF\ngroup part region part\n"
+        "fix load part mpm/traction region top pressure 1" +
+        more + "\nrun 0\n";
+  };
+  for (const double angle : {5.0, 10.0, 30.0}) {
+    Scene run(slope(angle, ""));
+    EXPECT_NEAR(run.fix_vector("load", 7)[3] * std::cos(angle * PI / 180.0) / 18.0, 1.0, 3e-3)
+        << angle;
+  }
+  EXPECT_EQ(lines_that_say(slope(26.565, ""), "areas of two layers").size(), 1u);
+  EXPECT_EQ(lines_that_say(slope(30.0, ""), "areas of two layers").size(), 0u);
+  EXPECT_THAT(error_of(slope(45.0, "")), HasSubstr("use the keywords spacing"));
+  Scene run(slope(45.0, strprintf(" spacing %.17g", 0.5 / std::sqrt(2.0))));
+  EXPECT_NEAR(run.fix_vector("load", 7)[3] / (18.0 * std::sqrt(2.0)), 1.0, 1e-12);
+}
+
+// a ball: no resultant, and the area but for terms of second order in the distance of points over the radius
+SERIAL_TEST(Face, Ball)
+{
+  Scene run(
+      space("si", "f f f", "-1 1 -1 1 -1 1", 1, 0.03) +
+      "region ball sphere 0 0 0 0.6\nfix grid all mpm 0.1\ncreate_points 1 region ball ppc 2\n"
+      "fix m all mpm/material density 1 linear 1 0.3\n"
+      "fix load all mpm/traction region ball pressure 3\ntimestep 1e-6\nrun 0\n");
+  const double area = 4.0 * PI * 0.36, *const values = run.fix_vector("load", 7);
+  EXPECT_LT(std::fabs(measured("area over exact - 1", values[3] / area - 1.0)), 0.02);
+  for (const int k : {0, 1, 2, 4, 5, 6}) EXPECT_NEAR(values[k], 0.0, 1e-12 * 3.0 * area);
+}
+
 // a pipe of rubber under pressure, plane strain, a quarter of it, whose bore is cut by the lattice (benchmark S2): radii to 1 %
 SERIAL_TEST(Pipe, Widens)
 {

@@ -51,8 +51,10 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double TOO_DEEP = 0.25;       // center of the force below the surface, in spacings
-static constexpr double TOO_UNEQUAL = 0.05;    // areas of layers below a plane
+// what is refused: center of the force below a plane, and below other surfaces, in spacings; difference of the areas of two
+// layers below a plane; and what is told of these
+static constexpr double TOO_DEEP = 0.25, TOO_DEEP_CURVED = 0.6;
+static constexpr double TOO_UNEQUAL = 0.05, UNEQUAL = 0.01;
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/traction surface values keyword values ...
@@ -192,11 +194,12 @@ void FixMPMTraction::define()
     mine[0] += share.area;
     mine[1] += 1.0;
   };
-  double depth = 0.0, unequal = 0.0, given = area;
+  MPMFace::Judgement layers = {};
+  double given = area;
   if (surface == REGION) {
     MPMFace face(lmp, domain->get_region_by_id(region), spacing);
     for (const auto *field : fields) face.find(*field, groupbit, add);
-    face.judge(depth, unequal);
+    layers = face.judge();
   } else {
     given = points_area;
     const double length = std::sqrt(dot(points_normal, points_normal));
@@ -219,14 +222,22 @@ void FixMPMTraction::define()
   if (all[1] == 0.0)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/traction {} has no points in group {}", id,
                group->names[igroup]);
-  if (!(all[0] > 0.0) || std::fabs(depth) > TOO_DEEP || (area == 0.0 && unequal > TOO_UNEQUAL))
+  const double unequal = layers.flat && area == 0.0 ? layers.unequal : 0.0;
+  if (!(all[0] > 0.0) || unequal > TOO_UNEQUAL ||
+      std::fabs(layers.depth) > (layers.flat ? TOO_DEEP : TOO_DEEP_CURVED))
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/traction {}: the points below the surface of region {} are not in layers of "
         "the spacing that is expected, or in less than three of them: the force would act {:.3g} "
         "spacings below it, and the areas of two layers differ by {:.3g} %; use the keywords "
         "spacing and area, more points across the body, or points A nx ny nz",
-        id, region, depth, 100.0 * unequal);
+        id, region, layers.depth, 100.0 * unequal);
+  if (unequal > UNEQUAL && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/traction {}: the areas of two layers of points below region {} differ by "
+        "{:.3g} %, and what is found may be wrong by more: use the keywords spacing or area",
+        id, region, 100.0 * unequal);
   const double scale = given > 0.0 ? given / all[0] : 1.0;
   for (int i = 0; i < atom->nlocal; i++) {
     rows[i][AREA] *= scale;

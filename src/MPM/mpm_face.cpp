@@ -83,12 +83,11 @@ void MPMFace::find(const MPMField &field, int groupbit,
   }
 }
 
-void MPMFace::judge(double &depth, double &unequal) const
+MPMFace::Judgement MPMFace::judge() const
 {
   double all[8];
   MPI_Allreduce(sums, all, 8, MPI_DOUBLE, MPI_SUM, world);
-  depth = all[0] != 0.0 ? all[1] / all[0] : 0.0;
-  const double *const n = all + 3;
-  const bool flat = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) > (1.0 - 1.0e-6) * all[2];
-  unequal = flat && all[0] != 0.0 ? std::fabs((all[6] - all[7]) / all[0]) : 0.0;
+  const double *const n = all + 3, area = all[0] != 0.0 ? all[0] : 1.0;
+  return {std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) > (1.0 - 1.0e-6) * all[2],
+          all[1] / area, std::fabs((all[6] - all[7]) / area)};
 }

@@ -28,8 +28,8 @@ class Region;
  *  The sum of k over layers is one wherever these are, and that of d k is zero: resultant and moment are those of
  *  the force on the surface. That of W is zero, too, for layers at 1/2, 3/2, ..., where W = 3/4, -5/8, -1/8: the node forces
  *  of quadratic functions are then those of a uniform stress in the points, which such a force leaves in
- *  equilibrium, without a layer of another stress at the surface. Others differ a little, linear functions by 1/16 of the
- *  force on the nodes next to the kink.
+ *  equilibrium, without a layer of another stress at the surface. Others differ a little, linear functions by 1/8 of the
+ *  force on the node below the surface.
  */
 class MPMFace : protected Pointers {
  public:
@@ -50,10 +50,15 @@ class MPMFace : protected Pointers {
   /** Calls f(i, share) for all points of the field and group that have one. */
   void find(const MPMField &, int groupbit, const std::function<void(int, const Share &)> &f);
 
-  /** Of the points that were found on all ranks: how deep the force acts below the surface, in units of the distance of
-   *  layers, and, where the surface is a plane, by how much the areas that the hats around 1 and 2 find differ. Both
-   *  are zero where there are at least three layers at that distance. Collective. */
-  void judge(double &depth, double &unequal) const;
+  /** Of the points that were found on all ranks, whether they are in layers at the expected distance. */
+  struct Judgement {
+    bool flat;         ///< the surface is a plane
+    double depth;      ///< of the force below the surface, in units of the distance of layers
+    double unequal;    ///< by how much the areas that the hats around 1 and 2 find differ
+  };
+  /** Collective. Below a plane, depth and unequal are zero where there are at least three layers at that distance; below a surface of
+   *  radius R the depth is 11/3 s/R, as deeper layers of a ball are smaller. */
+  Judgement judge() const;
 
  private:
   Region *const region;
