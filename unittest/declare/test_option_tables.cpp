@@ -27,6 +27,7 @@
 #include "fix_mpm_relax.h"
 #include "fix_mpm_rigid.h"
 #include "fix_mpm_surface.h"
+#include "fix_mpm_traction.h"
 #include "mpm_field_options.h"
 #include "mpm_implicit.h"
 #include "mpm_point.h"
@@ -62,6 +63,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_relax", MPMRelaxOptions().declare());
   add("fix_mpm_rigid", MPMRigidOptions().declare());
   add("fix_mpm_surface", MPMSurfaceOptions().declare());
+  add("fix_mpm_traction", MPMTractionOptions().declare(3));
   add("mpm_point", MPMPointOptions().declare());
   add("pair_mpm_penalty", MPMPenaltyOptions().declare());
   add("pair_mpm_penalty_coeff", MPMPenaltyCoeff().declare());
