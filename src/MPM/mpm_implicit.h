@@ -51,10 +51,10 @@ class MPMImplicit : private MPMNodeSystem {
   struct Report {
     bool converged = false;
     int iterations = 0, linear = 0, cuts = 0;
-    int indefinite = 0;    ///< iterations in which the energy had no minimum along some way
-    double unbalanced = 0.0;          ///< sum of forces that are left [mass acceleration]
-    double ratio = 0.0;               ///< to all forces
-    double asymmetry = 0.0;           ///< of the tangents
+    int indefinite = 0;         ///< iterations in which the energy had no minimum along some way
+    double unbalanced = 0.0;    ///< sum of forces that are left [mass acceleration]
+    double ratio = 0.0;         ///< to all forces
+    double asymmetry = 0.0;     ///< of the tangents
     std::vector<double> residuals;    ///< sums of forces before each iteration
     std::string failure;
   };
@@ -102,6 +102,7 @@ class MPMImplicit : private MPMNodeSystem {
   double sum_of_sizes(const std::vector<double> &);
   bool find_residual(const std::vector<double> &u, double &size);
   bool search(std::vector<double> &u, double slope, double &size);
+  void precondition_with_blocks();
   void newton(std::vector<double> &u);
   void account();
   double give_back(const std::vector<double> &u);
