@@ -28,7 +28,7 @@ struct MPMImplicitOptions {
   double gamma = 0.5;              ///< of Newmark's method
   double tolerance = 1.0e-8;       ///< of the ratio of forces
   double absolute = 0.0;           ///< sum of unbalanced forces that is as good [force]
-  int64_t most_iterations = 30;    ///< of Newton's method in a step
+  int64_t most_iterations = 50;    ///< of Newton's method in a step
   int64_t most_linear = 10000;     ///< of the linear solver in each of these
   double least_accuracy = 0.1;     ///< of linear solutions
   bool report = false;             ///< residuals of each step go to the log
