@@ -468,3 +468,58 @@ SERIAL_TEST(Implicit, BadInput)
                               "every 2", "transfer flip 1.0", "transfer flip 0.99 edges modified"})
     expect_error(beam(4, options, 1.0, "static") + "run 1\n", "mpm/implicit");
 }
+
+// Newton's method goes past the load at which a straight column is stable no more: that of Euler for both ends clamped, with shear
+SERIAL_TEST(Column, Buckles)
+{
+  const double h = 0.05 / 4, L = 1.0 - 0.5 * h, EI = 1e8 * 0.05 * 0.05 * 0.05 / 12.0,
+               euler = 4.0 * PI * PI * EI / (L * L),
+               load = euler / (1.0 + euler / (5.0 / 6.0 * 5e7 * 0.05));
+  Scene run(plane("si", "f f", "0 1.2 -0.5 0.5", 1, 0.01) +
+            body("block 0 1 0 0.05 INF INF", "density 1000 neohookean 1e8 0",
+                 strprintf("%.17g frame total", h)) +
+            "fix clamp all mpm/boundary xlo stick\n" +
+            strprintf("region end block %.17g INF INF INF INF INF\n", L) +
+            "fix push all mpm/boundary region end stick velocity -0.002 0 NULL\n"
+            "fix g all gravity 0.01 vector 0 -1 0\nfix solve all mpm/implicit static\n"
+            "compute u all displace/atom\ncompute low all reduce min c_u[2]\n"
+            "thermo_style custom step c_low\ntimestep 1.0\nrun 3\n");
+  EXPECT_LT(run.fix("push")->compute_vector(0), 0.8 * load);
+  EXPECT_GT(run.compute_scalar("low"), -1e-4);
+  run.commands("run 5\n");
+  EXPECT_NEAR(measured("load over Euler's", run.fix("push")->compute_vector(0) / load), 1.0, 0.01);
+  // all that the ends have come nearer is in the bow: a cosine of amplitude w is shorter by (pi w)^2 / (4 L)
+  const double nearer = 8 * 0.002 - load / (1e8 * 0.05), bow = 2.0 / PI * std::sqrt(nearer * L);
+  EXPECT_NEAR(measured("bow", -run.compute_scalar("low") / bow), 1.0, 0.03);
+}
+
+// a thick-walled cylinder of a perfectly plastic metal: benchmark P3, plane strain, inner radius 1, outer radius 2
+SERIAL_TEST(Cylinder, BecomesPlastic)
+{
+  const int n = 16;
+  const double h = 1.0 / n, v = 5e-5;
+  Scene run(plane("si", "f p", strprintf("0 2.5 0 %.17g", 2 * h), 1, 0.3 * h) +
+            body("block 1 2 INF INF INF INF",
+                 "density 1000 eos linear 833.333333333 strength j2 384.615384615 1",
+                 strprintf("%.17g frame total axisymmetric yes", h)) +
+            "fix axis all mpm/boundary xlo slip\nregion bore block INF 1.0001 INF INF INF INF\n" +
+            strprintf("fix push all mpm/boundary region bore stick velocity %g NULL NULL\n", v) +
+            "fix solve all mpm/implicit static\ntimestep 1.0\n");
+  const double reference[3][2] = {{0.5, 0.97223}, {0.6, 1.28674}, {0.7, 1.82421}};
+  double before = 0.0, most = 0.0;
+  int found = 0;
+  for (int step = 1; step <= 40; step++) {
+    run.commands("run 1\n");
+    const double p = -run.fix("push")->compute_vector(0) / (2.0 * PI * 2.0 * h);
+    most = std::max(most, run.fix("solve")->compute_vector(0));
+    while (found < 3 && p >= reference[found][0]) {
+      const double u = v * (step - (p - reference[found][0]) / (p - before)) * 1000.0;
+      EXPECT_NEAR(measured(strprintf("p %g: u", reference[found][0]), u) / reference[found][1], 1.0,
+                  0.02);
+      found++;
+    }
+    before = p;
+  }
+  EXPECT_EQ(found, 3);
+  EXPECT_LE(most, 6.0);
+}

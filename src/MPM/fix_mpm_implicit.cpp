@@ -207,12 +207,13 @@ void FixMPMImplicit::step()
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/implicit {}: no equilibrium in step {} after {} Newton iterations, {}; sums of "
-        "forces:{}; ratio {:.3g}. Use smaller steps of load or time, hold bodies that can move "
-        "freely, or let it be less accurate (keyword tolerance)",
-        id, update->ntimestep, now.iterations, now.failure, list, now.ratio);
+        "forces:{}; ratio {:.3g}; {} tangents were not positive definite. Use smaller steps of "
+        "load or "
+        "time, hold bodies that can move freely, or let it be less accurate (keyword tolerance)",
+        id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite);
   if (report && comm->me == 0)
-    utils::logmesg(lmp, "  implicit step {}: {} linear iterations, forces{}\n", update->ntimestep,
-                   now.linear, list);
+    utils::logmesg(lmp, "  implicit step {}: {} linear iterations, {} not definite, forces{}\n",
+                   update->ntimestep, now.linear, now.indefinite, list);
 }
 
 /* ----------------------------------------------------------------------

@@ -251,7 +251,7 @@ bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
     double factor = 0.25;
     if (find_residual(trial, size)) {
       const double end = product(du.data(), free.data());
-      if (end >= -ENOUGH * std::fabs(slope) || slope <= 0.0) {
+      if (slope <= 0.0 || end >= -ENOUGH * slope) {
         u = trial;
         return true;
       }
@@ -263,6 +263,17 @@ bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
       "no part of the last correction gives points that are not inside out, or forces that "
       "are smaller";
   return false;
+}
+
+/** Blocks of the diagonal of the present tangents, inverted. */
+void MPMImplicit::precondition_with_blocks()
+{
+  tangent.diagonal(blocks);
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
+    double *const block = &blocks[width * width * n];
+    for (int d = 0; d < width; d++) block[(width + 1) * d] += inertia * mass[n];
+    invert(width, block);
+  }
 }
 
 void MPMImplicit::newton(std::vector<double> &u)
@@ -303,12 +314,7 @@ void MPMImplicit::newton(std::vector<double> &u)
 
     stiffness = tangent.linearize(u.data(), dt);
     now.asymmetry = tangent.asymmetry();
-    tangent.diagonal(blocks);
-    for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
-      double *const block = &blocks[width * width * n];
-      for (int d = 0; d < width; d++) block[(width + 1) * d] += inertia * mass[n];
-      invert(width, block);
-    }
+    precondition_with_blocks();
 
     // at first, walls bring what they hold where it has to be, and all the rest goes with that
 
@@ -336,10 +342,17 @@ void MPMImplicit::newton(std::vector<double> &u)
       now.failure = "the linear system " + solved.describe();
       return;
     }
-    now.indefinite += solved.outcome == SolveReport::INDEFINITE;
-    // not positive definite: as far as the energy had a minimum, or down the preconditioned slope
-    if (solved.outcome == SolveReport::INDEFINITE && solved.iterations == 0)
-      precondition(free.data(), du.data());
+    // the energy has no minimum along some way, such as next to a state that is not stable: one that has
+
+    if (solved.outcome == SolveReport::INDEFINITE) {
+      now.indefinite++;
+      tangent.make_definite();
+      precondition_with_blocks();
+      std::fill(du.begin(), du.end(), 0.0);
+      const auto again = solver.solve(*this, free.data(), du.data(), goal);
+      now.linear += again.iterations;
+      if (!again.converged() && again.iterations == 0) precondition(free.data(), du.data());
+    }
 
     const double slope = product(du.data(), free.data());
     if (wall_moves) {

@@ -28,7 +28,7 @@ struct MPMImplicitOptions {
   double gamma = 0.5;              ///< of Newmark's method
   double tolerance = 1.0e-8;       ///< of the ratio of forces
   double absolute = 0.0;           ///< sum of unbalanced forces that is as good [force]
-  int64_t most_iterations = 30;    ///< of Newton's method in a step
+  int64_t most_iterations = 50;    ///< of Newton's method in a step
   int64_t most_linear = 10000;     ///< of the linear solver in each of these
   double least_accuracy = 0.1;     ///< of linear solutions
   bool report = false;             ///< residuals of each step go to the log
@@ -51,10 +51,10 @@ class MPMImplicit : private MPMNodeSystem {
   struct Report {
     bool converged = false;
     int iterations = 0, linear = 0, cuts = 0;
-    int indefinite = 0;    ///< iterations in which the energy had no minimum along some way
-    double unbalanced = 0.0;          ///< sum of forces that are left [mass acceleration]
-    double ratio = 0.0;               ///< to all forces
-    double asymmetry = 0.0;           ///< of the tangents
+    int indefinite = 0;         ///< iterations in which the energy had no minimum along some way
+    double unbalanced = 0.0;    ///< sum of forces that are left [mass acceleration]
+    double ratio = 0.0;         ///< to all forces
+    double asymmetry = 0.0;     ///< of the tangents
     std::vector<double> residuals;    ///< sums of forces before each iteration
     std::string failure;
   };
@@ -102,6 +102,7 @@ class MPMImplicit : private MPMNodeSystem {
   double sum_of_sizes(const std::vector<double> &);
   bool find_residual(const std::vector<double> &u, double &size);
   bool search(std::vector<double> &u, double slope, double &size);
+  void precondition_with_blocks();
   void newton(std::vector<double> &u);
   void account();
   double give_back(const std::vector<double> &u);
