@@ -22,6 +22,7 @@
 #include "fix_mpm_handshake.h"
 #include "fix_mpm_heat.h"
 #include "fix_mpm_immersed.h"
+#include "fix_mpm_incompressible.h"
 #include "fix_mpm_mixture.h"
 #include "fix_mpm_pore.h"
 #include "fix_mpm_relax.h"
@@ -57,6 +58,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_handshake", MPMHandshakeOptions().declare());
   add("fix_mpm_heat", MPMHeatOptions().declare(3));
   add("fix_mpm_immersed", MPMImmersedOptions().declare(3));
+  add("fix_mpm_incompressible", MPMIncompressibleOptions().declare(3));
   add("fix_mpm_mixture", MPMMixtureOptions().declare());
   add("fix_mpm_pore", MPMPoreOptions().declare(3));
   add("fix_mpm_implicit", MPMImplicitOptions().declare());
