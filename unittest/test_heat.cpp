@@ -496,6 +496,26 @@ SERIAL_TEST(Corner, OfTwoTemperatures)
   }
 }
 
+// lines of faces that cross change one another's temperature: with different coefficients and temperatures, which nothing makes symmetric, long
+// steps, in which their rates are limited, have the powers of short ones, in which they are not. Points do not relax, which depends on the step
+SERIAL_TEST(Corner, IsCoupledInLongSteps)
+{
+  for (const double offset : {0.0, 0.03}) {
+    double flow[2][2];
+    for (const bool is_long : {false, true}) {
+      Scene run(replaced(block(2, offset,
+                               "xlo convection 0.3 0.0 ylo convection 1.0 1.0 xhi convection 0.01 "
+                               "0.5 yhi convection 0.01 0.5 stages 9 transfer relax 0"),
+                         "1.0 1.0 1e-3", "1.0 1.0 1e-2"));
+      run_to(run, 300.0, is_long ? 2.0 : 0.05);
+      const double *const flows = run.fix_vector("heat", 4);
+      flow[is_long][0] = measured(strprintf("offset %g, xlo", offset), flows[0]);
+      flow[is_long][1] = measured("ylo", flows[2]);
+    }
+    for (int k = 0; k < 2; k++) EXPECT_NEAR(flow[1][k] / flow[0][k], 1.0, 0.01);
+  }
+}
+
 // perfect convection on both does not let through at the edge what conduction does not
 SERIAL_TEST(Corner, HasAFiniteFlow)
 {

@@ -314,6 +314,72 @@ PARAMETER_TEST(AxisOfBodies, AreaOfTheirSurfaces, const char *,
     }
 }
 
+namespace {
+
+/** A square of 1 x 1 with 10 cells along its sides in a box with room around it, conductivity 1e-2. Relaxation of points smoothes at edges by
+ *  what depends on the time step: without it. */
+std::string square(double offset, const std::string &heat)
+{
+  const std::string at = strprintf(" %g", offset);
+  return plane("lj", "f f", "-0.5 1.5 -0.5 1.5", 1, 0.02) +
+      "region body block 0 1 0 1 INF INF\nregion left block -1 0 -1 2 INF INF\n"
+      "region low block -1 2 -1 0 INF INF\nregion right block 1 2 -1 2 INF INF\n"
+      "region top block -1 2 1 2 INF INF\ncreate_points 1 region body spacing 0.05\n"
+      "fix grid all mpm 0.1 dtcheck no origin" +
+      at + at +
+      "\nfix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e-2\n"
+      "fix heat all mpm/heat stages 9 transfer relax 0 " +
+      heat + "\n";
+}
+
+}    // namespace
+
+// surfaces with large coefficients and different temperatures that cross: the power at the end is the same with short steps, in which no
+// rate is limited, and with long ones
+PARAMETER_TEST(Edge, DoesNotDependOnTheTimeStep, const char *,
+               Values("region left convection 1e3 0.0 region low convection 1.0 1.0",
+                      "region left temperature 0.0 region low convection 1e3 1.0",
+                      "region left temperature 0.0 surface convection 1e3 1.0",
+                      "region left convection 5.0 0.0 surface radiation 0.9 1e3"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  std::string heat = GetParam();
+  const bool radiates = heat.find("radiation") != std::string::npos;
+  if (heat.find("surface") == std::string::npos)
+    heat += " region right convection 0.01 0.5 region top convection 0.01 0.5";
+  for (const double offset : {0.0, 0.03}) {
+    std::vector<double> power[2];
+    for (const bool is_long : {false, true}) {
+      std::string scene = square(offset, heat);
+      if (radiates) scene = replaced(replaced(scene, "units lj", "units si"), " 1e-2", " 20.0");
+      Scene run(scene);
+      const double unit = radiates ? 20.0 / 1e-2 : 1.0;
+      run_to(run, 200.0 / unit, (is_long ? 2.0 : 0.05) / unit);
+      const double *const all = run.fix_vector("heat", 11);
+      power[is_long] = {measured("power", all[9]), measured("power", all[10])};
+    }
+    for (int k = 0; k < 2; k++) EXPECT_NEAR(power[1][k] / power[0][k], 1.0, 0.02) << offset;
+  }
+}
+
+// the same, and faces of the box that cross regions
+SERIAL_TEST(EdgeOfTheBox, DoesNotDependOnTheTimeStep)
+{
+  for (const char *face : {"xlo temperature 0.0", "xlo convection 1e3 0.0"}) {
+    double power[2][2];
+    for (const bool is_long : {false, true}) {
+      Scene run(replaced(
+          square(0.0, std::string(face) + " region low convection 1e3 1.0 region top flux -0.01"),
+          "box block -0.5 1.5", "box block 0 1.5"));
+      run_to(run, 300.0, is_long ? 2.0 : 0.05);
+      const double *const all = run.fix_vector("heat", 11);
+      power[is_long][0] = measured(face, all[0]);
+      power[is_long][1] = measured("region", all[9]);
+    }
+    for (int k = 0; k < 2; k++) EXPECT_NEAR(power[1][k] / power[0][k], 1.0, 0.02) << face;
+  }
+}
+
 // a thin plate of aluminum that radiates from both of its surfaces, from 1000 K to 300 K: 484.5102 K after 600 s (M2 b)
 SERIAL_TEST(Plate, Radiates)
 {

@@ -547,6 +547,20 @@ int FixMPMHeat::exchanges(const MPMConduction &of_field) const
    temperatures of nodes, and the stages that all fields need for their step
 ------------------------------------------------------------------------- */
 
+/** Lines of surfaces and contacts that cross others at edges, when all lines of the step are known. Collective. */
+void FixMPMHeat::find_edges()
+{
+  for (auto &body : bodies)
+    if (body->conduction) body->begin_edges();
+  for (auto &contact : contacts) contact->note_edges();
+  for (auto &skin : skins) skin->note_edges();
+  for (auto &body : bodies) {
+    if (!body->conduction) continue;
+    body->conduction->faces.note_edges(*body);
+    body->end_edges();
+  }
+}
+
 int FixMPMHeat::count_stages()
 {
   static constexpr int NRATE =
@@ -580,8 +594,13 @@ int FixMPMHeat::count_stages()
   const double dt = fields[0]->field.step_dt(),
                cap = std::max(greatest, BELOW_ONE_STEP / (dt * std::max(most_at_a_node, 1)));
   const double *rates = all.data() + NRATE * fields.size();
+  const bool has_lines = !contacts.empty() || !skins.empty();
+  if (has_lines) find_edges();
   double most = 0.0;
   for (std::size_t k = 0; k < fields.size(); k++) {
+    for (auto &body : bodies)
+      if (has_lines && body->conduction == fields[k].get())
+        fields[k]->faces.slow_down_at_edges(*body, all[NRATE * k]);
     const double rate = fields[k]->faces.limit(cap, all[NRATE * k], &all[NRATE * k + 1]);
     most = std::max(most, rate);
   }
@@ -592,7 +611,7 @@ int FixMPMHeat::count_stages()
   }
   most = 0.0;
   for (auto &skin : skins) {
-    skin->limit(cap);
+    skin->limit(cap, skin->body.conduction->bound_of_rates());
     most = std::max(most, std::min(cap, *rates++));
   }
   greatest += most;

@@ -122,6 +122,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   /** Of how many kinds of exchange can a node of a field have a part? */
   int exchanges(const MPMConduction &of_field) const;
   int count_stages();
+  void find_edges();
   void find_rates();
   void conduct();
 };

@@ -58,6 +58,7 @@ class MPMConduction : protected Pointers {
   double points_to_nodes(const MPMRows &gradients);
   /** The bound of the rates of conduction on all ranks. */
   void keep_rate(double conduction) { conducted = conduction; }
+  double bound_of_rates() const { return conducted; }
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. */
   void find_rates(const double *source, Heats &power);

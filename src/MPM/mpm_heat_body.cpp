@@ -58,6 +58,8 @@ static constexpr double LEAST =
 static constexpr double ENOUGH = 0.5;    // of the volume of a node, that conducts, for its weight
 // sums over points are not exactly integrals: a line from here on is full, and what is between
 static constexpr double FULL = 0.95, NOT_FULL = 0.8;
+// length of the mean of unit normals from which on a surface is not an edge: that of two that differ by 36 degrees
+static constexpr double STRAIGHT = 0.95;
 // gaps up to which all heat goes through, and from which on none, in node spacings
 static constexpr double TOUCHES = 0.2, IS_APART = 0.4, MORE_WITH_LINEAR = 0.1;
 
@@ -232,6 +234,48 @@ double MPMHeatBody::drift(const Line &line) const
   for (int k = 0; k < line.n; k++)
     if (line.weight[k] > 0.0) sum += line.weight[k] * conduction->rate[line.node[k]];
   return sum;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMHeatBody::begin_edges()
+{
+  noted.assign(NOTED * field.grid.nnodes(), 0.0);
+}
+
+void MPMHeatBody::note(const Line &line, const double *into, double part)
+{
+  for (int k = 0; k < line.n; k++) {
+    if (!(line.weight[k] > 0.0)) continue;
+    double *const at = &noted[NOTED * line.node[k]];
+    for (int d = 0; d < 3; d++) at[NORMAL + d] += part * line.weight[k] * into[d];
+    at[PARTS] += part * line.weight[k];
+    at[OF_SURFACES] += part * line.weight[k];
+  }
+}
+
+void MPMHeatBody::note_face(int64_t node, int axis, double weight)
+{
+  noted[NOTED * node + NORMAL + axis] += weight;
+  noted[NOTED * node + PARTS] += std::fabs(weight);
+}
+
+void MPMHeatBody::end_edges()
+{
+  field.nodes.sum(noted.data(), NOTED, 0, NOTED);
+}
+
+bool MPMHeatBody::is_edge(int64_t node) const
+{
+  const double *const at = &noted[NOTED * node];
+  return at[OF_SURFACES] > 0.0 && MathExtra::len3(at + NORMAL) < STRAIGHT * at[PARTS];
+}
+
+bool MPMHeatBody::is_edge(const Line &line) const
+{
+  for (int k = 0; k < line.n; k++)
+    if (line.weight[k] > 0.0 && is_edge(line.node[k])) return true;
+  return false;
 }
 
 /* ---------------------------------------------------------------------- */

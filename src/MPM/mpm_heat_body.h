@@ -70,6 +70,16 @@ class MPMHeatBody : protected Pointers {
   /** Rate of this temperature by all other heat. */
   double drift(const Line &) const;
 
+  /** Edges: where lines of surfaces with different normals have nodes in common. All lines are noted, with the share of the surface that they
+   *  stand for, those of faces of the box apart; then ranks are summed (collective). */
+  void begin_edges();
+  void note(const Line &, const double *into, double part);
+  void note_face(int64_t node, int axis, double sign);
+  void end_edges();
+  /** Has a node lines of surfaces, and is it at an edge? */
+  bool is_edge(int64_t node) const;
+  bool is_edge(const Line &) const;
+
   /** A stage: heat that was given to lines goes to the rates of nodes. */
   void begin_stage();
   void give(const Line &, double power);
@@ -92,6 +102,8 @@ class MPMHeatBody : protected Pointers {
   std::vector<std::array<int, 2>>
       images;    // a block with images, and one with nodes of which they are
   std::vector<double> heat;
+  std::vector<double> noted;    // [nnodes][NOTED] of edges
+  enum { NORMAL, PARTS = 3, OF_SURFACES, NOTED };
 
   void list_images();
   double node_circle(int64_t node) const;

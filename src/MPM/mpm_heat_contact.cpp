@@ -32,6 +32,7 @@
 
 #include "comm.h"
 #include "math_extra.h"
+#include "mpm_conduction.h"
 #include "mpm_field.h"
 #include "mpm_heat_thin.h"
 
@@ -140,6 +141,7 @@ bool MPMHeatContact::make_place(int axis, const int *index, int64_t a, int64_t b
   if (!(near > 0.0)) return false;
   place.area = place.share * near * std::min(place.line[0].area, place.line[1].area) /
       std::fabs(normal[axis]);
+  std::copy_n(normal, 3, place.normal);
   place.key = a * lattice.dim + axis;
   if (thin) {
     double at[3] = {(double) index[0], (double) index[1], (double) index[2]};
@@ -194,6 +196,31 @@ double MPMHeatContact::begin_step()
     most = std::max(most, place.rate);
   }
   return most;
+}
+
+void MPMHeatContact::note_edges() const
+{
+  for (const auto &place : places) {
+    if (!(place.rate > 0.0)) continue;
+    double into[3];
+    for (int k = 0; k < 2; k++) {
+      for (int d = 0; d < 3; d++) into[d] = k ? place.normal[d] : -place.normal[d];
+      body[k]->note(place.line[k], into, place.share);
+    }
+  }
+}
+
+void MPMHeatContact::limit(double cap)
+{
+  fastest = cap;
+  const double conduction =
+      std::min(body[0]->conduction->bound_of_rates(), body[1]->conduction->bound_of_rates());
+  for (auto &place : places) {
+    if (!(place.rate > conduction)) continue;
+    if (!body[0]->is_edge(place.line[0]) && !body[1]->is_edge(place.line[1])) continue;
+    place.area *= conduction / place.rate;
+    place.rate = conduction;
+  }
 }
 
 void MPMHeatContact::exchange(double &power) const

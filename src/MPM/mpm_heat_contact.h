@@ -42,8 +42,10 @@ class MPMHeatContact : protected Pointers {
   void find_contacts(MPMHeatThin *thin, int entry);
   /** What the capacities of nodes make of it. Returns the largest rate of exchange of this rank [1/time]. */
   double begin_step();
-  /** The difference of temperatures decays with this rate at the most: that of the fastest change otherwise. */
-  void limit(double cap) { fastest = cap; }
+  void note_edges() const;
+  /** The difference of temperatures decays with this rate at the most: that of the fastest change otherwise; at edges with that
+   *  of conduction. */
+  void limit(double cap);
   /** Gives heat to both bodies, whose rates have all other heat already; adds the power from a to b of this rank. */
   void exchange(double &power) const;
 
@@ -59,7 +61,8 @@ class MPMHeatContact : protected Pointers {
     MPMHeatBody::Line line[2];
     double area, share;    // of this axis, and of this rank
     double response;
-    double rate;    // at which the difference of temperatures decays
+    double rate;         // at which the difference of temperatures decays
+    double normal[3];    // from the first body to the second one
   };
 
   const std::array<MPMHeatBody *, 2> body;

@@ -252,6 +252,29 @@ void MPMHeatFaces::slow_down(Group &group, double conduction) const
   }
 }
 
+void MPMHeatFaces::note_edges(MPMHeatBody &body) const
+{
+  for (const auto &face : faces)
+    for (const auto &line : face.lines)
+      for (int k = 0; line.response > 0.0 && k < face.n; k++)
+        if (line.weight[k] > 0.0 && field.grid.owns(line.node[k]))
+          body.note_face(line.node[k], face.axis, face.face % 2 ? -line.weight[k] : line.weight[k]);
+}
+
+void MPMHeatFaces::slow_down_at_edges(const MPMHeatBody &body, double conduction)
+{
+  for (auto &face : faces)
+    for (auto &line : face.lines) {
+      if (!(line.response > 0.0) || !(line.rate > conduction)) continue;
+      bool at_edge = false;
+      for (int k = 0; k < face.n; k++)
+        at_edge = at_edge || (line.weight[k] > 0.0 && body.is_edge(line.node[k]));
+      if (!at_edge) continue;
+      line.area *= conduction / line.rate;
+      line.rate = conduction;
+    }
+}
+
 /** The lines of a group that are limited or held, if any is limited, and the factors L L^T of the matrix of their equations. */
 void MPMHeatFaces::set_up(Group &group) const
 {

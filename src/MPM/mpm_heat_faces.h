@@ -67,6 +67,10 @@ class MPMHeatFaces : protected Pointers {
    *  outside [1/time]. */
   void begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
                   const MPMHeatBody *body, const std::vector<double> &temperature, double rates[3]);
+  /** Lines for edges of other surfaces. */
+  void note_edges(MPMHeatBody &) const;
+  /** Where other surfaces have edges with faces, temperatures follow with the rate of conduction at the most. */
+  void slow_down_at_edges(const MPMHeatBody &, double conduction);
   /** They follow with this rate at the most. conduction: the bound of its rates; rates: those of all ranks. Returns a bound for
    *  nodes at edges and corners. */
   double limit(double cap, double conduction, const double rates[3]);

@@ -19,6 +19,13 @@
      P = (l/r) f (T_out - T) - (1 - l/r) s D/R,   D: rate of T by all other heat,
 
    which is f (T_out - T) when nothing changes, and with r -> infinity prescribes the temperature.
+
+   D has no heat of other lines of surfaces and contacts. Along a surface, lines of several axes through it share the area, and all
+   of them together are one. At edges, lines of surfaces with other normals have nodes in common with a line, and its power in the
+   steady state would depend on l, and so on the time step: with the others' heat D' in D, P = F + (r/l - 1) D'/R. Equations for all lines that
+   cross, as at faces of the box (mpm_heat_faces.cpp), would couple all of an inclined surface. Instead lines at edges get so little area
+   that r is at most the rate of conduction. Then they are never limited, P = F, and the temperature of the surface is in these few cells
+   that of a place about a quarter of a cell beyond it.
 ------------------------------------------------------------------------- */
 
 #include "mpm_heat_surface.h"
@@ -189,6 +196,7 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
     const double touches = body.touches(gap);
     if (!(touches > 0.0)) return;
     place.area = place.share * touches * place.line.area / std::fabs(into[a]);
+    std::copy_n(into, 3, place.into);
     place.condition = condition;
     place.key = node * lattice.dim + a;
     if (thin) look_behind(*thin, place, index, part, into);
@@ -342,6 +350,7 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
     place.share *= open;
     place.area = place.share * most * side * body.circle(a, index, index[a] + part) *
         lattice.cell_volume() / (h * std::fabs(into[a]));
+    std::copy_n(into, 3, place.into);
     place.condition = condition;
     place.key = node * dim + a;
     if (thin) look_behind(*thin, place, index, part, into);
@@ -394,6 +403,22 @@ double MPMHeatSurfaces::begin_step()
   return most;
 }
 
+void MPMHeatSurfaces::note_edges() const
+{
+  for (const auto &place : places)
+    if (place.share > 0.0) body.note(place.line, place.into, place.share);
+}
+
+void MPMHeatSurfaces::limit(double cap, double conduction)
+{
+  fastest = cap;
+  for (auto &place : places) {
+    if (!(place.share > 0.0) || !(place.rate > conduction) || !body.is_edge(place.line)) continue;
+    place.area *= conduction / place.rate;
+    place.rate = conduction;
+  }
+}
+
 void MPMHeatSurfaces::exchange(double *power) const
 {
   for (const auto &place : places) {
@@ -402,10 +427,13 @@ void MPMHeatSurfaces::exchange(double *power) const
     const auto &line = place.line;
     const double T = body.temperature(line);
     double P;
-    if (condition.kind == MPMHeatCondition::TEMPERATURE)
-      P = place.share * (fastest * (condition.now[0] - T) - body.drift(line)) / line.response;
-    else {
-      const double slower = place.rate > fastest ? fastest / place.rate : 1.0;
+    const bool limited = place.rate > fastest;
+    if (condition.kind == MPMHeatCondition::TEMPERATURE) {
+      P = std::min(place.rate, fastest) * (condition.now[0] - T);
+      if (limited) P -= body.drift(line);
+      P *= place.share / line.response;
+    } else {
+      const double slower = limited ? fastest / place.rate : 1.0;
       P = slower * place.area * condition.flux(T, sigma);
       if (slower < 1.0) P -= (1.0 - slower) * place.share * body.drift(line) / line.response;
     }

@@ -52,8 +52,9 @@ class MPMHeatSurfaces : protected Pointers {
   /** What the capacities and temperatures of nodes make of them. Returns the largest rate of this rank at which temperatures
    *  follow those outside [1/time]. */
   double begin_step();
-  /** They follow with this rate at the most. */
-  void limit(double cap) { fastest = cap; }
+  void note_edges() const;
+  /** They follow with this rate at the most, and at edges with that of conduction. */
+  void limit(double cap, double conduction);
   /** Gives heat to the body, whose rates have all other heat already; adds the power of this rank, one value for each
    *  condition. */
   void exchange(double *power) const;
@@ -67,6 +68,7 @@ class MPMHeatSurfaces : protected Pointers {
     MPMHeatBody::Line line;
     double share, area;    // of this axis, and of this rank
     double rate;           // at which the temperature follows that outside
+    double into[3];        // unit normal into the body
   };
   struct Wall {
     Region *region;    // null: free surface
