@@ -1,0 +1,89 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_SOLVE_RIM_FACTORS_H
+#define MPM_SOLVE_RIM_FACTORS_H
+
+#include <Eigen/SparseCholesky>
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+namespace MPM_NS {
+
+using LatticeIndex = std::array<int, 3>;
+
+inline uint64_t lattice_key(const LatticeIndex &index)
+{
+  uint64_t key = 0;
+  for (const int i : index) key = key << 21 | (uint64_t) (i + (1 << 20));
+  return key;
+}
+
+/** Nodes by their index, in the order in which they came. */
+struct LatticeNodes {
+  std::vector<LatticeIndex> index;
+  std::unordered_map<uint64_t, int> number;
+
+  int add(const LatticeIndex &at)
+  {
+    const auto inserted = number.emplace(lattice_key(at), (int) index.size());
+    if (inserted.second) index.push_back(at);
+    return inserted.first->second;
+  }
+  int find(const LatticeIndex &at) const
+  {
+    const auto found = number.find(lattice_key(at));
+    return found == number.end() ? -1 : found->second;
+  }
+};
+
+/** Keys of the nodes at the surface of a body: of those around them, up to reach along each axis, some do not exist.
+ *  period: in nodes, 0: none. */
+std::unordered_set<uint64_t> rim_of(const std::vector<LatticeIndex> &nodes, int dim, int reach,
+                                    const int *period);
+
+using CholeskyFactors = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+
+/** Factors of a symmetric matrix with a shift of its diagonal: functions that points cannot tell apart, and free bodies, make it
+ *  singular, and more than that where a tangent is not positive definite.  Factors are. */
+void factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &);
+
+/** An approximate inverse for nodes at the surface of a body.
+ *
+ *  There B-splines have little of the body in their support, and those of a corner are nearly dependent: the blocks of
+ *  single nodes are no smoother.  Chunks of the surface, which overlap, are factorized, and their solutions added. */
+class RimFactors {
+ public:
+  /** Nodes at the surface; width: values of each. */
+  void start(const std::vector<LatticeIndex> &nodes, int dim, int width);
+  int size() const { return first.empty() ? 0 : first.size() - 1; }
+  /** Have two nodes a chunk together? Only then their block of the matrix is wanted. */
+  bool together(int a, int b) const;
+  /** value: [width][width] of both triangles is added to the matrix, and its transposed if the nodes are not the same. */
+  void add(int row, int column, const double *value);
+  void factorize();
+  /** x, b: [node][width]. */
+  void solve(const double *b, double *x);
+  double memory_usage() const;
+
+ private:
+  int width = 0;
+  std::vector<int> first, chunk;    // copies of nodes, and the chunks that they are in
+  std::vector<Eigen::Triplet<double>> entries;
+  CholeskyFactors factors;
+  Eigen::VectorXd from, to;
+
+  double share(int node) const;
+};
+
+}    // namespace MPM_NS
+#endif

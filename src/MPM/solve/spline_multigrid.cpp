@@ -1,0 +1,832 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "solve/spline_multigrid.h"
+
+#include "solve/chebyshev.h"
+#include "solve/rim_factors.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+using namespace MPM_NS;
+
+// unknowns of a level that is factorized, by dimension
+static constexpr int FEW[] = {0, 0, 12000, 4000};
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+
+/** The functions of twice the spacing that have a function in them along an axis, and how much of it. */
+int parents(int order, int i, int *parent, double *weight)
+{
+  const int m = i >> 1;
+  const bool odd = i & 1;
+  const auto give = [&](int n, std::initializer_list<int> of, std::initializer_list<double> by) {
+    std::copy(of.begin(), of.end(), parent);
+    std::copy(by.begin(), by.end(), weight);
+    return n;
+  };
+  if (order == 1) return odd ? give(2, {m, m + 1}, {0.5, 0.5}) : give(1, {m}, {1.0});
+  if (order == 2)
+    return odd ? give(2, {m, m + 1}, {0.75, 0.25}) : give(2, {m - 1, m}, {0.25, 0.75});
+  return odd ? give(2, {m, m + 1}, {0.5, 0.5}) : give(3, {m - 1, m, m + 1}, {0.125, 0.75, 0.125});
+}
+
+struct Part {
+  int node;
+  double weight;
+};
+
+/** Calls f(index, weight) for all parents of a node. period: of the coarse level along each axis, 0: none. */
+template <class F>
+void each_parent(int order, int dim, const LatticeIndex &index, const int *period, const F &f)
+{
+  int parent[3][3], n[3] = {1, 1, 1};
+  double weight[3][3];
+  for (int d = 0; d < 3; d++) {
+    parent[d][0] = 0;
+    weight[d][0] = 1.0;
+    if (d >= dim) continue;
+    n[d] = parents(order, index[d], parent[d], weight[d]);
+    if (period[d] > 0)
+      for (int k = 0; k < n[d]; k++) parent[d][k] = (parent[d][k] + period[d]) % period[d];
+  }
+  for (int i = 0; i < n[0]; i++)
+    for (int j = 0; j < n[1]; j++)
+      for (int k = 0; k < n[2]; k++)
+        f(LatticeIndex{parent[0][i], parent[1][j], parent[2][k]},
+          weight[0][i] * weight[1][j] * weight[2][k]);
+}
+
+/** A block of an assembled matrix. */
+struct Block {
+  int row, column;
+  double value[9];
+};
+
+/** A number at random that depends on the place alone. */
+double noise(const LatticeIndex &index, int a)
+{
+  uint64_t seed = lattice_key(index) + 77 * a;
+  for (int k = 0; k < 3; k++) {
+    seed ^= seed >> 29;
+    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  }
+  return (double) (seed >> 33) / (1u << 30) - 1.0;
+}
+
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 3, 3>;
+
+/** Inverse of a symmetric matrix; directions without stiffness have a little. */
+Matrix inverse_of(const Matrix &A)
+{
+  const double scale = A.trace() / A.rows();
+  Eigen::SelfAdjointEigenSolver<Matrix> modes(A);
+  Eigen::VectorXd values = modes.eigenvalues();
+  for (int a = 0; a < values.size(); a++) values[a] = 1.0 / std::max(values[a], 1.0e-6 * scale);
+  return modes.eigenvectors() * values.asDiagonal() * modes.eigenvectors().transpose();
+}
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+struct SplineMultigrid::Levels {
+  const Grid &grid;
+  LatticeRanks &ranks;
+  const int width, order, dim, few;
+  int period[3] = {0, 0, 0};    // of the first coarse level
+
+  LinearSystem *system = nullptr;
+  std::vector<double> projection;    // [node][width][width], empty: none
+  std::vector<char> plain;           // [node] it has no constraint
+  std::vector<double> inverse;       // [node][width][width], 0 in the rim
+  std::vector<char> in_system;       // [node] it has a stiffness
+  std::vector<double> held_part;     // [node of the rim][width][width]
+  double largest = 0.0;
+  std::vector<double> work[3], rest;
+
+  // nodes at the surface, whose functions are nearly dependent: chunks of them are factorized, on all ranks
+  LatticeNodes rim;
+  std::vector<int> rim_number;       // [node] in the rim, -1: not in it
+  std::vector<int64_t> rim_owned;    // nodes of the rim that this rank owns
+  std::vector<int> rim_of_ranks;     // those of all ranks, by their number
+  std::vector<int> rim_local;        // of nodes
+  std::vector<double> rim_element;
+  std::vector<Block> rim_blocks;
+  std::unordered_map<uint64_t, int> rim_block_at;
+  RimFactors rim_factors;
+  std::vector<double> rim_x, rim_b;
+
+  // from the nodes of this rank to those of its part of the first coarse level, and from these to the level
+  LatticeNodes mine;
+  std::vector<int> first;    // [nodes + 1] range in parts
+  std::vector<Part> parts;
+  std::vector<int> number, of_ranks;
+  std::vector<double> partial;
+
+  // stiffness of points with the same nodes, and that of this rank
+  std::vector<int64_t> nodes;
+  std::vector<int> local,
+      place;    // coarse nodes of these, and the place of a coarse node in that list
+  std::vector<double> element, G, T;
+  bool held = false;
+  std::vector<Block> blocks;
+  std::unordered_map<uint64_t, int> block_at;
+
+  struct Level {
+    Sparse A, to_next;    // the latter: [unknown][unknown of the next level]
+    Eigen::VectorXd x, b;
+    // smoother, as on the finest level
+    std::vector<double> inverse, work[3];    // [node][width][width]
+    std::vector<int> rim;                    // [unknown of the rim] which one it is
+    std::unique_ptr<RimFactors> rim_factors;
+    std::vector<double> rim_b, rim_x;
+    double largest = 0.0;
+
+    void product(const double *x, double *y) const
+    {
+      Eigen::Map<Eigen::VectorXd>(y, A.rows()) = A * Eigen::Map<const Eigen::VectorXd>(x, A.rows());
+    }
+    void by_blocks(int width, const double *r, double *z);
+  };
+  std::vector<Level> coarse;
+  CholeskyFactors factors;
+
+  Levels(const Grid &grid, LatticeRanks &ranks, int width, int order, int few) :
+      grid(grid), ranks(ranks), width(width), order(order), dim(grid.lattice.dim), few(few)
+  {
+  }
+
+  const double *projection_of(int64_t node) const
+  {
+    return projection.data() + node * width * width;
+  }
+  static Block &block(std::vector<Block> &blocks, std::unordered_map<uint64_t, int> &at, int row,
+                      int column)
+  {
+    const auto inserted = at.emplace((uint64_t) row << 32 | (uint64_t) column, (int) blocks.size());
+    if (inserted.second) blocks.push_back({row, column, {}});
+    return blocks[inserted.first->second];
+  }
+  /** P from, or P^T from. */
+  void project(int64_t node, const double *from, bool transposed, double *to) const
+  {
+    for (int a = 0; a < width; a++) {
+      to[a] = from[a];
+      if (plain[node]) continue;
+      to[a] = 0.0;
+      const double *const P = projection_of(node);
+      for (int b = 0; b < width; b++)
+        to[a] += (transposed ? P[b * width + a] : P[a * width + b]) * from[b];
+    }
+  }
+  Block &block(int row, int column) { return block(blocks, block_at, row, column); }
+  LatticeIndex index_of(int64_t node) const
+  {
+    int at[3];
+    grid.node_index(node, at);
+    LatticeIndex index{0, 0, 0};
+    for (int d = 0; d < dim; d++) index[d] = grid.lattice.wrap(d, at[d]);
+    return index;
+  }
+  void find_rim(const double *given);
+  void factorize_rim(const double *mass);
+  void smoother_of(Level &, const LatticeNodes &, const int *cells);
+  void find_parents();
+  void start(int n, const int64_t *nodes);
+  void flush();
+  void add_masses(const double *mass);
+  void merge_ranks(LatticeNodes &all);
+  void coarsen(LatticeNodes level);
+  void invert_blocks(const double *given);
+  void estimate_largest();
+
+  void by_blocks(const double *r, double *z);
+  void smooth(const double *r, double *z, bool from_zero);
+  void cycle(std::size_t level);
+};
+
+SplineMultigrid::SplineMultigrid(const Grid &grid, LatticeRanks &ranks, int width, int order,
+                                 int few) :
+    on(new Levels(grid, ranks, width, order, few > 0 ? few : FEW[grid.lattice.dim]))
+{
+}
+
+SplineMultigrid::~SplineMultigrid() = default;
+
+void SplineMultigrid::begin(const double *projection, const double *blocks)
+{
+  const auto before = std::move(on);
+  on.reset(new Levels(before->grid, before->ranks, before->width, before->order, before->few));
+  const int64_t nnodes = on->grid.nnodes();
+  const int w = on->width;
+  on->plain.assign(nnodes, 1);
+  if (projection) {
+    on->projection.assign(projection, projection + nnodes * w * w);
+    for (int64_t node = 0; node < nnodes; node++)
+      for (int a = 0; a < w; a++)
+        for (int b = 0; b < w; b++)
+          if (projection[(node * w + a) * w + b] != (a == b ? 1.0 : 0.0)) on->plain[node] = 0;
+  }
+  on->find_parents();
+  on->find_rim(blocks);
+  on->invert_blocks(blocks);
+}
+
+/** Which nodes of this rank are in the rim: all ranks know all nodes that have a stiffness. */
+void SplineMultigrid::Levels::find_rim(const double *given)
+{
+  const int w = width;
+  const auto exists = [&](int64_t node) {
+    double trace = 0.0;
+    for (int a = 0; a < w; a++) trace += given[(node * w + a) * w + a];
+    return trace > 0.0;
+  };
+  std::vector<LatticeIndex> owned;
+  for (int64_t node = 0; node < grid.nnodes(); node++)
+    if (grid.owns(node) && exists(node)) owned.push_back(index_of(node));
+  const auto all = ranks.gather(owned);
+  int cells[3] = {0, 0, 0};
+  for (int d = 0; d < dim; d++) cells[d] = grid.lattice.periodic[d] ? grid.lattice.ncell[d] : 0;
+  const auto at_surface = rim_of(all, dim, order + 1, cells);
+  for (const auto &index : all)
+    if (at_surface.count(lattice_key(index))) rim.add(index);
+  rim_factors.start(rim.index, dim, width);
+  rim_number.assign(grid.nnodes(), -1);
+  std::vector<int> list;
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    const auto found = exists(node) ? rim.number.find(lattice_key(index_of(node)))
+                                    : rim.number.end();
+    if (found == rim.number.end()) continue;
+    rim_number[node] = found->second;
+    if (!grid.owns(node)) continue;
+    rim_owned.push_back(node);
+    list.push_back(found->second);
+  }
+  rim_of_ranks = ranks.gather(list);
+}
+
+void SplineMultigrid::Levels::find_parents()
+{
+  const auto &lattice = grid.lattice;
+  for (int d = 0; d < dim; d++) period[d] = lattice.periodic[d] ? (lattice.ncell[d] + 1) / 2 : 0;
+  first.assign(1, 0);
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    each_parent(order, dim, index_of(node), period, [&](const LatticeIndex &parent, double weight) {
+      parts.push_back({mine.add(parent), weight});
+    });
+    first.push_back(parts.size());
+  }
+  place.assign(mine.index.size(), -1);
+}
+
+/** The stiffness of points with other nodes. */
+void SplineMultigrid::Levels::start(int n, const int64_t *of)
+{
+  flush();
+  nodes.assign(of, of + n);
+  held = false;
+  for (const int64_t node : nodes) {
+    held = held || !plain[node];
+    for (int k = first[node]; k < first[node + 1]; k++)
+      if (place[parts[k].node] < 0) {
+        place[parts[k].node] = local.size();
+        local.push_back(parts[k].node);
+      }
+  }
+  element.assign(local.size() * local.size() * width * width, 0.0);
+  rim_local.clear();
+  for (int i = 0; i < n; i++)
+    if (rim_number[nodes[i]] >= 0) rim_local.push_back(i);
+  rim_element.assign(rim_local.size() * rim_local.size() * width * width, 0.0);
+}
+
+void SplineMultigrid::Levels::flush()
+{
+  const int n = local.size(), w = width;
+  for (int I = 0; I < n; I++)
+    for (int J = 0; J <= I; J++) {
+      const double *const K = element.data() + (I * n + J) * w * w;
+      // one triangle
+      const bool lower = local[I] >= local[J];
+      auto &to = lower ? block(local[I], local[J]) : block(local[J], local[I]);
+      for (int a = 0; a < w; a++)
+        for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
+    }
+  // of the rim, projected, between nodes of the same chunk
+  const int m = rim_local.size();
+  for (int I = 0; I < m; I++)
+    for (int J = 0; J <= I; J++) {
+      const int64_t i = nodes[rim_local[I]], j = nodes[rim_local[J]];
+      const int row = rim_number[i], column = rim_number[j];
+      if (!rim_factors.together(row, column)) continue;
+      Matrix K = Eigen::Map<const Matrix>(rim_element.data() + (I * m + J) * w * w, w, w);
+      if (!plain[i]) K = (Eigen::Map<const Matrix>(projection_of(i), w, w).transpose() * K).eval();
+      if (!plain[j]) K = (K * Eigen::Map<const Matrix>(projection_of(j), w, w)).eval();
+      const bool lower = row >= column;
+      if (!lower) K.transposeInPlace();
+      auto &to = lower ? block(rim_blocks, rim_block_at, row, column)
+                       : block(rim_blocks, rim_block_at, column, row);
+      for (int a = 0; a < w; a++)
+        for (int b = 0; b < w; b++) to.value[a * w + b] += K(a, b);
+    }
+  for (const int node : local) place[node] = -1;
+  local.clear();
+  nodes.clear();
+  rim_local.clear();
+}
+
+void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const double *gradient,
+                                const double *stiffness)
+{
+  auto &o = *on;
+  if ((int) o.nodes.size() != n || !std::equal(nodes, nodes + n, o.nodes.begin()))
+    o.start(n, nodes);
+  const int w = o.width, m = w * ngrad, nc = o.local.size();
+  const auto C = [&](int i, int j) {
+    return 0.5 * (stiffness[i * m + j] + stiffness[j * m + i]);
+  };
+  const int nr = o.rim_local.size();
+  o.T.assign(m * w, 0.0);
+  for (int J = 0; J < nr; J++) {
+    const double *const gJ = gradient + o.rim_local[J] * ngrad;
+    for (int i = 0; i < m; i++)
+      for (int b = 0; b < w; b++) {
+        double sum = 0.0;
+        for (int l = 0; l < ngrad; l++) sum += C(i, l * w + b) * gJ[l];
+        o.T[i * w + b] = sum;
+      }
+    for (int I = J; I < nr; I++) {
+      const double *const gI = gradient + o.rim_local[I] * ngrad;
+      double *const K = o.rim_element.data() + (I * nr + J) * w * w;
+      for (int l = 0; l < ngrad; l++)
+        for (int ab = 0; ab < w * w; ab++) K[ab] += gI[l] * o.T[l * w * w + ab];
+    }
+  }
+  if (!o.held) {
+    // G_J: [ngrad] gradient of a coarse function
+
+    o.G.assign(nc * ngrad, 0.0);
+    o.T.assign(m * w, 0.0);
+    for (int i = 0; i < n; i++)
+      for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
+        double *const g = o.G.data() + o.place[o.parts[k].node] * ngrad;
+        for (int l = 0; l < ngrad; l++) g[l] += o.parts[k].weight * gradient[i * ngrad + l];
+      }
+    for (int J = 0; J < nc; J++) {
+      const double *const gJ = o.G.data() + J * ngrad;
+      for (int i = 0; i < m; i++)
+        for (int b = 0; b < w; b++) {
+          double sum = 0.0;
+          for (int l = 0; l < ngrad; l++) sum += C(i, l * w + b) * gJ[l];
+          o.T[i * w + b] = sum;
+        }
+      for (int I = J; I < nc; I++) {
+        const double *const gI = o.G.data() + I * ngrad;
+        double *const K = o.element.data() + (I * nc + J) * w * w;
+        for (int l = 0; l < ngrad; l++)
+          for (int ab = 0; ab < w * w; ab++) K[ab] += gI[l] * o.T[l * w * w + ab];
+      }
+    }
+    return;
+  }
+
+  // G_J: [ngrad][width][width], of projected functions, which turn a value into others
+
+  o.G.assign((std::size_t) nc * m * w, 0.0);
+  o.T.assign(m * w, 0.0);
+  for (int i = 0; i < n; i++) {
+    const double *const P = o.projection_of(nodes[i]);
+    for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
+      double *const g = o.G.data() + (std::size_t) o.place[o.parts[k].node] * m * w;
+      for (int l = 0; l < ngrad; l++)
+        for (int ab = 0; ab < w * w; ab++)
+          g[l * w * w + ab] += o.parts[k].weight * gradient[i * ngrad + l] * P[ab];
+    }
+  }
+  for (int J = 0; J < nc; J++) {
+    const double *const gJ = o.G.data() + (std::size_t) J * m * w;
+    std::fill(o.T.begin(), o.T.end(), 0.0);
+    for (int i = 0; i < m; i++)
+      for (int j = 0; j < m; j++)
+        for (int b = 0; b < w; b++) o.T[i * w + b] += C(i, j) * gJ[j * w + b];
+    for (int I = J; I < nc; I++) {
+      const double *const gI = o.G.data() + (std::size_t) I * m * w;
+      double *const K = o.element.data() + (I * nc + J) * w * w;
+      for (int j = 0; j < m; j++)
+        for (int a = 0; a < w; a++)
+          for (int b = 0; b < w; b++) K[a * w + b] += gI[j * w + a] * o.T[j * w + b];
+    }
+  }
+}
+
+/** Each node on the rank that owns it. */
+void SplineMultigrid::Levels::add_masses(const double *mass)
+{
+  const int w = width;
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    if (!grid.owns(node) || !(mass[node] > 0.0)) continue;
+    double PP[9] = {0.0};
+    for (int a = 0; a < w; a++)
+      for (int b = 0; b < w; b++) {
+        PP[a * w + b] = a == b;
+        if (plain[node]) continue;
+        const double *const P = projection_of(node);
+        PP[a * w + b] = 0.0;
+        for (int c = 0; c < w; c++) PP[a * w + b] += P[c * w + a] * P[c * w + b];
+      }
+    for (int i = first[node]; i < first[node + 1]; i++)
+      for (int j = first[node]; j < first[node + 1]; j++) {
+        if (parts[j].node > parts[i].node) continue;
+        auto &to = block(parts[i].node, parts[j].node);
+        for (int ab = 0; ab < w * w; ab++)
+          to.value[ab] += parts[i].weight * parts[j].weight * mass[node] * PP[ab];
+      }
+  }
+}
+
+/** All nodes and blocks of the first coarse level on all ranks. */
+void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
+{
+  // nodes in the order of ranks, those that have a stiffness
+  const int w = width;
+  std::vector<char> used(mine.index.size(), 0);
+  for (const auto &b : blocks) used[b.row] = used[b.column] = 1;
+  std::vector<LatticeIndex> given;
+  for (std::size_t k = 0; k < used.size(); k++)
+    if (used[k]) given.push_back(mine.index[k]);
+  for (const auto &index : ranks.gather(given)) all.add(index);
+  number.assign(used.size(), -1);
+  std::vector<int> list;
+  for (std::size_t k = 0; k < used.size(); k++)
+    if (const auto found = all.number.find(lattice_key(mine.index[k])); found != all.number.end()) {
+      number[k] = found->second;
+      list.push_back(found->second);
+    }
+  of_ranks = ranks.gather(list);
+
+  for (auto &b : blocks) {
+    b.row = number[b.row];
+    b.column = number[b.column];
+    if (b.row >= b.column) continue;
+    std::swap(b.row, b.column);
+    double turned[9];
+    for (int i = 0; i < w; i++)
+      for (int j = 0; j < w; j++) turned[i * w + j] = b.value[j * w + i];
+    std::copy_n(turned, w * w, b.value);
+  }
+  const auto of_all = ranks.gather(blocks);
+  blocks = {};
+  block_at = {};
+
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(of_all.size() * w * w * 2);
+  for (const auto &b : of_all)
+    for (int i = 0; i < w; i++)
+      for (int j = 0; j < w; j++) {
+        const double value = b.value[i * w + j];
+        if (value == 0.0) continue;
+        entries.emplace_back(b.row * w + i, b.column * w + j, value);
+        if (b.row != b.column) entries.emplace_back(b.column * w + j, b.row * w + i, value);
+      }
+  const int n = all.index.size() * w;
+  coarse.emplace_back();
+  coarse[0].A.resize(n, n);
+  coarse[0].A.setFromTriplets(entries.begin(), entries.end());
+}
+
+void SplineMultigrid::Levels::coarsen(LatticeNodes level)
+{
+  int cells[3];
+  std::copy_n(period, 3, cells);
+  while (true) {
+    auto &now = coarse.back();
+    const int n = now.A.rows();
+    now.x.resize(n);
+    now.b.resize(n);
+    if (n <= few) return;
+
+    int half[3];
+    for (int d = 0; d < 3; d++) half[d] = (cells[d] + 1) / 2;
+    LatticeNodes next;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t k = 0; k < level.index.size(); k++)
+      each_parent(order, dim, level.index[k], half, [&](const LatticeIndex &parent, double weight) {
+        const int to = next.add(parent);
+        for (int a = 0; a < width; a++)
+          entries.emplace_back((int) k * width + a, to * width + a, weight);
+      });
+    if (next.index.size() >= level.index.size()) return;
+    smoother_of(now, level, cells);
+    now.to_next.resize(n, next.index.size() * width);
+    now.to_next.setFromTriplets(entries.begin(), entries.end());
+    const Sparse right = now.A * now.to_next;
+    Sparse A = Sparse(now.to_next.transpose()) * right;
+    coarse.emplace_back();
+    coarse.back().A = std::move(A);
+    level = std::move(next);
+    std::copy_n(half, 3, cells);
+  }
+}
+
+/** The blocks of nodes and of chunks of the rim of an assembled level. */
+void SplineMultigrid::Levels::smoother_of(Level &level, const LatticeNodes &nodes, const int *cells)
+{
+  const int w = width, nnodes = nodes.index.size();
+  const auto at_surface = rim_of(nodes.index, dim, order + 1, cells);
+  std::vector<int> number(nnodes, -1);
+  std::vector<LatticeIndex> rim_nodes;
+  level.inverse.assign((std::size_t) nnodes * w * w, 0.0);
+  for (int node = 0; node < nnodes; node++) {
+    if (at_surface.count(lattice_key(nodes.index[node]))) {
+      number[node] = rim_nodes.size();
+      rim_nodes.push_back(nodes.index[node]);
+      for (int a = 0; a < w; a++) level.rim.push_back(node * w + a);
+      continue;
+    }
+    Matrix D(w, w);
+    for (int a = 0; a < w; a++)
+      for (int b = 0; b < w; b++) D(a, b) = level.A.coeff(node * w + a, node * w + b);
+    if (D.trace() > 0.0)
+      Eigen::Map<Matrix>(level.inverse.data() + (std::size_t) node * w * w, w, w) = inverse_of(D);
+  }
+  level.rim_factors.reset(new RimFactors);
+  level.rim_factors->start(rim_nodes, dim, w);
+  for (std::size_t k = 0; k < level.rim.size(); k += w) {
+    // blocks of the lower triangle: the columns of all rows of a node are the same but for zeros
+    const int node = level.rim[k] / w;
+    std::vector<int> columns;
+    for (int a = 0; a < w; a++)
+      for (Sparse::InnerIterator it(level.A, node * w + a); it; ++it)
+        if (const int j = it.col() / w; number[j] >= 0 && number[j] <= number[node])
+          columns.push_back(j);
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    for (const int j : columns) {
+      if (!level.rim_factors->together(number[node], number[j])) continue;
+      double value[9];
+      for (int a = 0; a < w; a++)
+        for (int b = 0; b < w; b++) value[a * w + b] = level.A.coeff(node * w + a, j * w + b);
+      level.rim_factors->add(number[node], number[j], value);
+    }
+  }
+  level.rim_factors->factorize();
+  level.rim_b.resize(level.rim.size());
+  level.rim_x.resize(level.rim.size());
+
+  std::vector<double> start(level.A.rows());
+  for (std::size_t i = 0; i < start.size(); i++) start[i] = noise(nodes.index[i / w], i % w);
+  level.largest = largest_eigenvalue_of(
+      level.A.rows(), std::move(start),
+      [&](const double *x, double *y) {
+        level.product(x, y);
+      },
+      [&](const double *x, double *y) {
+        level.by_blocks(w, x, y);
+      },
+      [&](const double *x, const double *y) {
+        return Eigen::Map<const Eigen::VectorXd>(x, level.A.rows())
+            .dot(Eigen::Map<const Eigen::VectorXd>(y, level.A.rows()));
+      });
+}
+
+void SplineMultigrid::Levels::Level::by_blocks(int w, const double *r, double *z)
+{
+  for (int i = 0; i < (int) A.rows(); i++) {
+    double sum = 0.0;
+    const int node = i / w;
+    for (int b = 0; b < w; b++) sum += inverse[(std::size_t) i * w + b] * r[node * w + b];
+    z[i] = sum;
+  }
+  if (rim.empty()) return;
+  for (std::size_t k = 0; k < rim.size(); k++) rim_b[k] = r[rim[k]];
+  rim_factors->solve(rim_b.data(), rim_x.data());
+  for (std::size_t k = 0; k < rim.size(); k++) z[rim[k]] = rim_x[k];
+}
+
+/** Of nodes that are not in the rim. What is held has unity there, and nothing afterwards. */
+void SplineMultigrid::Levels::invert_blocks(const double *given)
+{
+  const int w = width;
+  inverse.assign(grid.nnodes() * w * w, 0.0);
+  in_system.assign(grid.nnodes(), 0);
+  held_part.assign(rim.index.size() * w * w, 0.0);
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    Matrix D = Eigen::Map<const Matrix>(given + node * w * w, w, w);
+    D = (0.5 * (D + D.transpose())).eval();
+    const double scale = D.trace() / w;
+    if (!(scale > 0.0)) continue;
+    in_system[node] = 1;
+    if (plain[node]) {
+      if (rim_number[node] < 0)
+        Eigen::Map<Matrix>(inverse.data() + node * w * w, w, w) = inverse_of(D);
+      continue;
+    }
+    const Matrix P = Eigen::Map<const Matrix>(projection_of(node), w, w);
+    const Matrix rest = Matrix::Identity(w, w) - P, held = scale * rest.transpose() * rest;
+    if (rim_number[node] >= 0) {
+      if (grid.owns(node))
+        Eigen::Map<Matrix>(held_part.data() + (std::size_t) rim_number[node] * w * w, w, w) = held;
+      continue;
+    }
+    const Matrix free = P.transpose() * D * P + held;
+    const Matrix inverted = P * inverse_of(free) * P.transpose();
+    Eigen::Map<Matrix>(inverse.data() + node * w * w, w, w) = inverted;
+  }
+}
+
+void SplineMultigrid::Levels::factorize_rim(const double *mass)
+{
+  const int w = width;
+  for (const int64_t node : rim_owned) {
+    const int k = rim_number[node];
+    auto &to = block(rim_blocks, rim_block_at, k, k);
+    Matrix PP = Matrix::Identity(w, w);
+    if (!plain[node]) PP = Eigen::Map<const Matrix>(projection_of(node), w, w);
+    PP = (PP.transpose() * PP).eval();
+    for (int ab = 0; ab < w * w; ab++)
+      to.value[ab] +=
+          held_part[(std::size_t) k * w * w + ab] + (mass ? mass[node] * PP(ab / w, ab % w) : 0.0);
+  }
+  const auto of_all = ranks.gather(rim_blocks);
+  rim_blocks = {};
+  rim_block_at = {};
+  for (const auto &b : of_all) rim_factors.add(b.row, b.column, b.value);
+  rim_factors.factorize();
+  rim_b.resize(rim.index.size() * w);
+  rim_x.resize(rim.index.size() * w);
+}
+
+void SplineMultigrid::Levels::by_blocks(const double *r, double *z)
+{
+  const int w = width;
+  for (int64_t node = 0; node < grid.nnodes(); node++)
+    for (int a = 0; a < w; a++) {
+      double sum = 0.0;
+      for (int b = 0; b < w; b++) sum += inverse[(node * w + a) * w + b] * r[node * w + b];
+      z[node * w + a] = sum;
+    }
+  if (rim.index.empty()) return;
+  partial.resize(rim_owned.size() * w);
+  for (std::size_t k = 0; k < rim_owned.size(); k++)
+    project(rim_owned[k], r + rim_owned[k] * w, true, partial.data() + k * w);
+  const auto all = ranks.gather(partial);
+  for (std::size_t k = 0; k < rim_of_ranks.size(); k++)
+    for (int a = 0; a < w; a++) rim_b[rim_of_ranks[k] * w + a] = all[k * w + a];
+  rim_factors.solve(rim_b.data(), rim_x.data());
+  for (int64_t node = 0; node < grid.nnodes(); node++)
+    if (rim_number[node] >= 0)
+      project(node, rim_x.data() + rim_number[node] * w, false, z + node * w);
+}
+
+void SplineMultigrid::Levels::estimate_largest()
+{
+  const int64_t n = grid.nnodes() * width;
+  std::vector<double> start(n);
+  for (int64_t i = 0; i < n; i++) start[i] = noise(index_of(i / width), i % width);
+  largest = largest_eigenvalue_of(
+      n, std::move(start),
+      [&](const double *x, double *y) {
+        system->apply(x, y);
+      },
+      [&](const double *x, double *y) {
+        by_blocks(x, y);
+      },
+      [&](const double *x, const double *y) {
+        return system->product(x, y);
+      });
+}
+
+void SplineMultigrid::finish(LinearSystem &system, const double *mass)
+{
+  auto &o = *on;
+  o.system = &system;
+  o.flush();
+  if (mass) o.add_masses(mass);
+  o.factorize_rim(mass);
+  LatticeNodes all;
+  o.merge_ranks(all);
+  o.coarsen(std::move(all));
+  factorize(o.coarse.back().A, o.factors);
+  o.estimate_largest();
+}
+
+void SplineMultigrid::Levels::smooth(const double *r, double *z, bool from_zero)
+{
+  chebyshev(
+      grid.nnodes() * width, largest, r, z, from_zero, work,
+      [&](const double *x, double *y) {
+        system->apply(x, y);
+      },
+      [&](const double *x, double *y) {
+        by_blocks(x, y);
+      });
+}
+
+/** x of a coarse level from its b. */
+void SplineMultigrid::Levels::cycle(std::size_t which)
+{
+  auto &level = coarse[which];
+  if (which + 1 == coarse.size()) {
+    if (level.b.size() > 0) level.x = factors.solve(level.b);
+    return;
+  }
+  const auto smooth_level = [&](bool from_zero) {
+    chebyshev(
+        level.A.rows(), level.largest, level.b.data(), level.x.data(), from_zero, level.work,
+        [&](const double *x, double *y) {
+          level.product(x, y);
+        },
+        [&](const double *x, double *y) {
+          level.by_blocks(width, x, y);
+        });
+  };
+  auto &next = coarse[which + 1];
+  level.x.setZero();
+  smooth_level(true);
+  next.b = level.to_next.transpose() * (level.b - level.A * level.x);
+  cycle(which + 1);
+  level.x += level.to_next * next.x;
+  smooth_level(false);
+}
+
+void SplineMultigrid::precondition(const double *r, double *z)
+{
+  auto &o = *on;
+  const int w = o.width;
+  const int64_t nnodes = o.grid.nnodes();
+  std::fill_n(z, nnodes * w, 0.0);
+  o.smooth(r, z, true);
+
+  // residuals of the nodes that this rank owns go to its part of the coarse level, and those of all ranks to the level
+
+  o.rest.resize(nnodes * w);
+  o.system->apply(z, o.rest.data());
+  auto &partial = o.partial;
+  partial.assign(o.number.size() * w, 0.0);
+  for (int64_t node = 0; node < nnodes; node++) {
+    if (!o.grid.owns(node) || !o.in_system[node]) continue;
+    double left[3], force[3];
+    for (int a = 0; a < w; a++) left[a] = r[node * w + a] - o.rest[node * w + a];
+    o.project(node, left, true, force);
+    for (int k = o.first[node]; k < o.first[node + 1]; k++)
+      for (int a = 0; a < w; a++) partial[o.parts[k].node * w + a] += o.parts[k].weight * force[a];
+  }
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < o.number.size(); k++)
+    if (o.number[k] >= 0) {
+      for (int a = 0; a < w; a++) partial[kept * w + a] = partial[k * w + a];
+      kept++;
+    }
+  partial.resize(kept * w);
+  const auto all = o.ranks.gather(partial);
+  auto &coarse = o.coarse[0];
+  coarse.b.setZero();
+  for (std::size_t k = 0; k < o.of_ranks.size(); k++)
+    for (int a = 0; a < w; a++) coarse.b[o.of_ranks[k] * w + a] += all[k * w + a];
+  o.cycle(0);
+
+  for (int64_t node = 0; node < nnodes; node++) {
+    if (!o.in_system[node]) continue;
+    double motion[3] = {0.0, 0.0, 0.0}, free[3];
+    for (int k = o.first[node]; k < o.first[node + 1]; k++)
+      if (const int from = o.number[o.parts[k].node]; from >= 0)
+        for (int a = 0; a < w; a++) motion[a] += o.parts[k].weight * coarse.x[from * w + a];
+    o.project(node, motion, false, free);
+    for (int a = 0; a < w; a++) z[node * w + a] += free[a];
+  }
+  o.smooth(r, z, false);
+}
+
+int SplineMultigrid::levels() const
+{
+  return 1 + on->coarse.size();
+}
+
+double SplineMultigrid::largest_eigenvalue() const
+{
+  return on->largest;
+}
+
+double SplineMultigrid::memory_usage() const
+{
+  double bytes = on->parts.capacity() * sizeof(Part);
+  for (const auto *vector :
+       {&on->projection, &on->inverse, &on->work[0], &on->work[1], &on->work[2], &on->rest})
+    bytes += vector->capacity() * sizeof(double);
+  for (const auto &level : on->coarse)
+    bytes += (level.A.nonZeros() + level.to_next.nonZeros()) * (sizeof(double) + sizeof(int));
+  return bytes;
+}

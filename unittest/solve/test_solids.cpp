@@ -1,0 +1,253 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: unit
+
+// Multigrid for the stiffness of points with B-splines: symmetry, exact solutions, and iterations, which must not depend on
+// the number of points.
+
+#include "solid_scenes.h"
+
+#include "gtest/gtest.h"
+
+using namespace MPM_NS;
+
+namespace {
+
+void clamp(double (*P)[3])
+{
+  for (int a = 0; a < 3; a++) P[a][a] = 0.0;
+}
+
+/** A square (or cube) of side 1 that is held at its left side, with n spacings along it. */
+SolidScene block(int dim, int n)
+{
+  SolidScene scene{dim, 1.0 / n, {0.0, 0.0, 0.0}, {1.0, 1.0, dim == 3 ? 1.0 : 0.0}};
+  scene.hold = [](const double *x, double(*P)[3]) {
+    if (x[0] < 1e-9) clamp(P);
+  };
+  return scene;
+}
+
+double weight(const double *, int a)
+{
+  return a == 1 ? -1.0 : 0.0;
+}
+
+/** Products with the matrix that conjugate gradients need for two decades, from those for eight; solutions are true. */
+double products(SolidSystem &system)
+{
+  system.setup();
+  const auto b = system.forces(weight);
+  auto x = system.zeros(), Ax = system.zeros();
+  system.napply = 0;
+  const auto report = system.solve(b, x, {1e-8, 0.0, 400});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  const double needed = system.napply / 4.0;
+  system.apply(x.data(), Ax.data());
+  for (std::size_t k = 0; k < b.size(); k++) Ax[k] -= b[k];
+  EXPECT_LT(std::sqrt(system.product(Ax.data(), Ax.data())), 2e-8 * report.right_side);
+  return needed;
+}
+
+double products(const SolidScene &scene)
+{
+  SolidSystem system(scene);
+  return products(system);
+}
+
+/** A plane with a slope of 3/4, on which nodes slide, up to a stop. */
+SolidScene slope(int n)
+{
+  SolidScene scene = block(2, n);
+  scene.inside = [](const double *x) {
+    return x[1] > 0.75 * x[0];
+  };
+  scene.hold = [](const double *x, double(*P)[3]) {
+    const double normal[2] = {-0.6, 0.8};
+    if (x[1] - 0.75 * x[0] < 0.05)
+      for (int a = 0; a < 2; a++)
+        for (int b = 0; b < 2; b++) P[a][b] = (a == b) - normal[a] * normal[b];
+    if (x[0] > 0.95 && x[1] < 0.9) {
+      clamp(P);
+      P[0][1] = P[1][0] = 0.0;
+    }
+  };
+  return scene;
+}
+
+}    // namespace
+
+// Symmetric and positive definite, with constraints that are not along axes, masses, an odd period, and in 3d.
+TEST(SplineMultigrid, IsSymmetric)
+{
+  auto ring = block(2, 13);
+  ring.periodic[1] = true;
+  auto heavy = slope(12);
+  heavy.density = 30.0;
+  for (const auto &scene : {slope(20), heavy, ring, block(3, 3)}) {
+    SolidSystem system(scene);
+    system.setup();
+    const auto noise = [&](int seed) {
+      auto a = system.forces([&](const double *x, int d) {
+        return std::sin(seed + 37.0 * x[0] + 51.0 * x[1] + 17.0 * x[2] * seed + d);
+      });
+      return a;
+    };
+    const auto a = noise(1), b = noise(2);
+    auto Ma = system.zeros(), Mb = Ma, PMa = Ma;
+    system.precondition(a.data(), Ma.data());
+    system.precondition(b.data(), Mb.data());
+    const double aa = system.product(a.data(), Ma.data());
+    EXPECT_GT(aa, 0.0);
+    EXPECT_NEAR(system.product(a.data(), Mb.data()), system.product(b.data(), Ma.data()),
+                1e-10 * aa);
+    // what is held stays
+    system.project(Ma.data(), PMa.data());
+    double size = 0.0;
+    for (const double value : Ma) size = std::max(size, std::fabs(value));
+    for (std::size_t k = 0; k < Ma.size(); k++) EXPECT_NEAR(PMa[k], Ma[k], 1e-12 * size);
+  }
+}
+
+// A bar that is pulled by its own weight along itself, without lateral strain: u' = g (1 - x)/M, exactly at the
+// second order of the functions.
+TEST(SplineMultigrid, BarUnderItsWeight)
+{
+  auto scene = block(2, 24);
+  scene.periodic[1] = true;
+  // spans of quadratic functions end between nodes
+  scene.low[0] = -0.5 / 24;
+  scene.high[0] = 1.0 - 0.5 / 24;
+  scene.hold = [](const double *x, double(*P)[3]) {
+    if (x[0] < -1e-9) clamp(P);
+  };
+  SolidSystem system(scene);
+  system.setup();
+  const auto b = system.forces([](const double *, int a) {
+    return a == 0 ? 1.0 : 0.0;
+  });
+  auto x = system.zeros();
+  ASSERT_TRUE(system.solve(b, x, {1e-12, 0.0, 200}).converged());
+  const double M = (1.0 - 0.3) / (1.3 * 0.4);
+  // displacement of the free end less that of the middle: (1/8)/M, within the square of the spacing
+  double u[2] = {0.0, 0.0};
+  for (std::size_t p = 0; p < system.npoints(); p++) {
+    const auto &point = system.points[p];
+    for (int k = 0; k < 2; k++) {
+      const double place = k ? 1.0 - 0.75 / 24 : 0.5 - 0.75 / 24;
+      if (std::fabs(point.x[0] - place) > 1e-9 || point.x[1] > 0.25 / 24) continue;
+      for (int i = 0; i < system.nnodes; i++)
+        u[k] += system.weights[p * system.nnodes + i] * x[2 * system.nodes[p * system.nnodes + i]];
+    }
+  }
+  // places 0.25 spacings from the free end, at 1 - 0.5/24
+  const auto exact = [&](double place) {
+    const double from_end = 1.0 - 0.5 / 24 - place;
+    return -0.5 * from_end * from_end / M;
+  };
+  EXPECT_NEAR(u[1] - u[0], exact(1.0 - 0.75 / 24) - exact(0.5 - 0.75 / 24), 1.0 / (24 * 24 * M));
+}
+
+// Products with the matrix for two decades: at most 25, and as many for 64 times as many points.
+TEST(SplineMultigrid, ProductsDoNotGrow)
+{
+  double coarsest = 0.0;
+  for (const int n : {8, 16, 32, 64}) {
+    const double needed = products(block(2, n));
+    if (n == 8) coarsest = needed;
+    EXPECT_LE(needed, 25.0) << n;
+    EXPECT_LE(needed, 1.3 * coarsest) << n;
+  }
+}
+
+// The same with five levels, and in 3d with three: coarse levels have the smoother of the finest one.
+TEST(SplineMultigrid, ManyLevels)
+{
+  auto many = block(2, 64);
+  many.few = 50;
+  SolidSystem system(many);
+  EXPECT_LE(products(system), 25.0);
+  EXPECT_GE(system.multigrid->levels(), 5);
+  auto ring = block(2, 33);
+  ring.periodic[1] = true;
+  ring.few = 50;
+  EXPECT_LE(products(ring), 25.0);
+  auto cube = block(3, 4);
+  cube.few = 250;
+  SolidSystem solid(cube);
+  EXPECT_LE(products(solid), 25.0);
+  EXPECT_EQ(solid.multigrid->levels(), 3);
+}
+
+TEST(SplineMultigrid, ProductsOfHardCases)
+{
+  // stiffnesses in a ratio from place to place; that of 1e4 needs 26, but no more with smaller spacings
+  const auto patches = [](int n, double ratio) {
+    auto scene = block(2, n);
+    scene.young = [ratio](const double *x) {
+      return ((int) (4.0 * x[0]) + (int) (4.0 * x[1])) % 2 ? ratio : 1.0;
+    };
+    return products(scene);
+  };
+  EXPECT_LE(patches(16, 10.0), 25.0);
+  EXPECT_LE(patches(16, 100.0), 25.0);
+  EXPECT_LE(patches(48, 1e4), 1.3 * patches(16, 1e4));
+  // cells that the surface cuts anywhere: a disk that is held in its middle
+  auto disk = block(2, 22);
+  disk.inside = [](const double *x) {
+    return std::hypot(x[0] - 0.5, x[1] - 0.5) < 0.45;
+  };
+  disk.hold = [](const double *x, double(*P)[3]) {
+    if (std::hypot(x[0] - 0.5, x[1] - 0.5) < 0.1) clamp(P);
+  };
+  EXPECT_LE(products(disk), 25.0);
+  EXPECT_LE(products(slope(24)), 25.0);
+  // strips two spacings thick
+  for (const int n : {40, 120}) {
+    auto strip = block(2, n);
+    strip.high[1] = 2.0 / n;
+    EXPECT_LE(products(strip), 25.0) << n;
+  }
+  // time steps: what is heavy needs less
+  auto heavy = block(2, 20);
+  heavy.density = 1e4;
+  EXPECT_LE(products(heavy), 10.0);
+  auto linear = block(2, 20);
+  linear.order = 1;
+  EXPECT_LE(products(linear), 25.0);
+  EXPECT_LE(products(block(3, 3)), 25.0);
+}
+
+// Levels of multigrid change the way and not the answer. Blocks of nodes as preconditioner need many times the products. A
+// few nodes of the slope have motions that no point sees: energies are compared.
+TEST(SplineMultigrid, SameSolutionAsBlocks)
+{
+  SolidSystem system(slope(16));
+  const double needed = products(system);
+  const auto b = system.forces(weight);
+  auto x = system.zeros(), y = system.zeros();
+  ASSERT_TRUE(system.solve(b, x, {1e-11, 0.0, 400}).converged());
+  system.preconditioner = SolidSystem::BLOCKS;
+  const auto report = system.solve(b, y, {1e-11, 0.0, 4000});
+  ASSERT_TRUE(report.converged());
+  const double energy = system.product(b.data(), y.data());
+  EXPECT_NEAR(system.product(b.data(), x.data()), energy, 1e-9 * energy);
+  EXPECT_GT(report.iterations, 3 * needed);
+}
+
+// Nothing holds a body: forces that balance move it by no more than its deformation, and are solved for.
+TEST(SplineMultigrid, FreeBody)
+{
+  auto scene = block(2, 16);
+  scene.hold = [](const double *, double(*)[3]) {
+  };
+  SolidSystem system(scene);
+  system.setup();
+  const auto b = system.forces([](const double *x, int a) {
+    return a == 0 ? x[0] - 0.5 : 0.0;
+  });
+  auto x = system.zeros();
+  const auto report = system.solve(b, x, {1e-8, 0.0, 100});
+  EXPECT_TRUE(report.converged()) << report.describe();
+}
