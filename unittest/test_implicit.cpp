@@ -523,3 +523,68 @@ SERIAL_TEST(Cylinder, BecomesPlastic)
   EXPECT_EQ(found, 3);
   EXPECT_LE(most, 6.0);
 }
+
+// forces are those of LAMMPS's units: a column that sinks by a hundredth of its length under its weight
+SERIAL_TEST(Forces, HaveUnits)
+{
+  for (const char *units : {"si", "metal", "real", "micro", "lj"}) {
+    const double M = 1000.0 * 0.75 / (1.25 * 0.5);
+    Scene run(
+        space(units, "f f f", "0 2 0 2 -2 10", 1, 0.3) +
+        body("block 0 2 0 2 0 10", "density 2.0 linear 1000 0.25", "1.0 frame total") +
+        "fix top all mpm/boundary zhi stick\nfix sides all mpm/boundary xlo xhi ylo yhi slip\n");
+    const double weight = 0.002 * M * 4.0 / run.lmp->force->nktv2p;
+    run.commands(strprintf("fix load all addforce 0 0 %.17g\n", -weight / run.n()) +
+                 "fix solve all mpm/implicit static\ncompute u all displace/atom\n"
+                 "compute low all reduce min c_u[3]\nthermo_style custom step c_low\n"
+                 "timestep 0.1\nrun 1\n");
+    EXPECT_NEAR(run.compute_scalar("low"), -0.01, 5e-5) << units;
+    EXPECT_NEAR(run.fix("top")->compute_vector(2) / -weight, 1.0, 1e-6) << units;
+    EXPECT_LT(run.fix("solve")->compute_vector(3) / weight, 1e-6) << units;
+  }
+}
+
+// a cylinder without friction that is pushed into rubber, at any place: what it feels the floor does, and energies close
+SERIAL_TEST(Indenter, IsInBalanceWithTheFloor)
+{
+  for (const char *options : {"", "frame total", "shape cubic", "shape linear transfer pic"}) {
+    Scene run(
+        plane("si", "p f", "-1 1 0 1.5", 1, 0.02) +
+        body("block INF INF 0 1 INF INF", "density 1000 neohookean 1e6 0.3",
+             std::string("0.05 ") + options) +
+        "fix floor all mpm/boundary ylo stick\nregion ball cylinder z 0.013 1.37 0.4 INF INF\n"
+        "fix push all mpm/boundary region ball slip velocity 0.01 -0.01 0\n"
+        "fix solve all mpm/implicit static tolerance 1e-10\ncompute e all mpm/energy\n"
+        "thermo_style custom step c_e\ntimestep 1.0\nrun 3\n");
+    const double push[2] = {run.fix("push")->compute_vector(0), run.fix("push")->compute_vector(1)};
+    EXPECT_GT(push[1], 2e4) << options;
+    for (int d = 0; d < 2; d++)
+      EXPECT_NEAR(run.fix("floor")->compute_vector(d), -push[d], 1e-7 * push[1]) << options;
+    const double *const e = run.compute_vector();
+    EXPECT_LT(std::fabs(e[10]), 1e-9 * e[6]) << options;
+    EXPECT_GT(e[6], e[1]) << "work of the last force of each step is more than what is stored";
+  }
+}
+
+// a slender cantilever with a force at its tip that keeps its direction, a load step of P L^2 / EI = 1 in each solve: benchmark
+// P1, with the values of plane strain
+SERIAL_TEST(Elastica, BendsAsFarAsTheory)
+{
+  const double h = 0.05 / 4;
+  Scene run(
+      plane("si", "f f", "0 1.2 -1 0.4", 1, 0.3 * h) +
+      body("block 0 1 0 0.05 INF INF", "density 1000 neohookean 1.2e8 0.3",
+           strprintf("%.17g frame total", h)) +
+      "fix clamp all mpm/boundary xlo stick\n" +
+      strprintf("region tip block %.17g INF INF INF INF INF\ngroup tip region tip\n", 1.0 - h) +
+      "variable f equal -step*1.2e8/(1-0.09)*0.05^3/12/count(tip)\n"
+      "fix load tip addforce 0 v_f 0\nfix solve all mpm/implicit static\n"
+      "compute u all displace/atom\ncompute w tip reduce ave c_u[2]\n"
+      "compute along tip reduce ave c_u[1]\nthermo_style custom step c_w c_along\n"
+      "timestep 1.0\nrun 2\n");
+  EXPECT_NEAR(measured("w/L", -run.compute_scalar("w")) / 0.30188, 1.0, 0.01);
+  EXPECT_NEAR(measured("u/L", -run.compute_scalar("along")) / 0.05634, 1.0, 0.01);
+  run.commands("run 4\n");
+  EXPECT_NEAR(measured("w/L", -run.compute_scalar("w")) / 0.71582, 1.0, 0.01);
+  EXPECT_NEAR(measured("u/L", -run.compute_scalar("along")) / 0.38796, 1.0, 0.01);
+}

@@ -342,16 +342,12 @@ void MPMImplicit::newton(std::vector<double> &u)
       now.failure = "the linear system " + solved.describe();
       return;
     }
-    // the energy has no minimum along some way, such as next to a state that is not stable: one that has
+    // the energy has no minimum along some way, such as next to a state that is not stable: the solution goes as far as it had
+    // one, and down the slope at least (T. Steihaug, SIAM J. Numer. Anal. 20 (1983) 626)
 
     if (solved.outcome == SolveReport::INDEFINITE) {
       now.indefinite++;
-      tangent.make_definite();
-      precondition_with_blocks();
-      std::fill(du.begin(), du.end(), 0.0);
-      const auto again = solver.solve(*this, free.data(), du.data(), goal);
-      now.linear += again.iterations;
-      if (!again.converged() && again.iterations == 0) precondition(free.data(), du.data());
+      if (solved.iterations == 0) precondition(free.data(), du.data());
     }
 
     const double slope = product(du.data(), free.data());

@@ -25,13 +25,13 @@ class MPMField;
 struct MPMImplicitOptions {
   enum Time { STATIC, EULER, NEWMARK };
   Time time = STATIC;
-  double gamma = 0.5;              ///< of Newmark's method
-  double tolerance = 1.0e-8;       ///< of the ratio of forces
-  double absolute = 0.0;           ///< sum of unbalanced forces that is as good [force]
-  int64_t most_iterations = 50;    ///< of Newton's method in a step
-  int64_t most_linear = 10000;     ///< of the linear solver in each of these
-  double least_accuracy = 0.1;     ///< of linear solutions
-  bool report = false;             ///< residuals of each step go to the log
+  double gamma = 0.5;                ///< of Newmark's method
+  double tolerance = 1.0e-8;         ///< of the ratio of forces
+  double absolute = 0.0;             ///< sum of unbalanced forces that is as good [force]
+  int64_t most_iterations = 50;      ///< of Newton's method in a step
+  int64_t most_linear = 10000;       ///< of the linear solver in each of these
+  double least_accuracy = 1.0e-3;    ///< of linear solutions
+  bool report = false;               ///< residuals of each step go to the log
 
   MPM_NS::Options declare();
   double beta() const { return 0.25 * (gamma + 0.5) * (gamma + 0.5); }

@@ -293,62 +293,6 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
   field.nodes.sum(blocks.data(), nL, 0, nL);
 }
 
-/* ----------------------------------------------------------------------
-   Eigenvalues by rotations (C.G.J. Jacobi, 1846); negative ones become zero (J. Teran, E. Sifakis, G. Irving, R. Fedkiw, Symp.
-   Computer Animation 2005, 181)
-------------------------------------------------------------------------- */
-
-static void remove_negative(int n, double *A)
-{
-  constexpr int SWEEPS = 30;
-  double V[10][10] = {{0.0}}, B[10][10], size = 0.0;
-  for (int i = 0; i < n; i++) {
-    V[i][i] = 1.0;
-    for (int j = 0; j < n; j++) {
-      B[i][j] = 0.5 * (A[n * i + j] + A[n * j + i]);
-      size = std::max(size, std::fabs(B[i][j]));
-    }
-  }
-  for (int sweep = 0; sweep < SWEEPS; sweep++) {
-    double left = 0.0;
-    for (int i = 0; i < n; i++)
-      for (int j = 0; j < i; j++) left = std::max(left, std::fabs(B[i][j]));
-    if (!(left > 1.0e-14 * size)) break;
-    for (int p = 0; p < n; p++)
-      for (int q = p + 1; q < n; q++) {
-        if (B[p][q] == 0.0) continue;
-        const double theta = 0.5 * (B[q][q] - B[p][p]) / B[p][q],
-                     t = (theta < 0.0 ? -1.0 : 1.0) /
-            (std::fabs(theta) + std::sqrt(theta * theta + 1.0)),
-                     c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
-        for (int k = 0; k < n; k++) {
-          const double a = B[k][p], b = B[k][q], v = V[k][p], w = V[k][q];
-          B[k][p] = c * a - s * b;
-          B[k][q] = s * a + c * b;
-          V[k][p] = c * v - s * w;
-          V[k][q] = s * v + c * w;
-        }
-        for (int k = 0; k < n; k++) {
-          const double a = B[p][k], b = B[q][k];
-          B[p][k] = c * a - s * b;
-          B[q][k] = s * a + c * b;
-        }
-      }
-  }
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) {
-      double sum = 0.0;
-      for (int k = 0; k < n; k++) sum += V[i][k] * std::max(B[k][k], 0.0) * V[j][k];
-      A[n * i + j] = sum;
-    }
-}
-
-void MPMTangent::make_definite()
-{
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) remove_negative(nH, &tangents[i * nH * nH]);
-}
-
 double MPMTangent::asymmetry() const
 {
   double mine[2] = {0.0, 0.0}, all[2];

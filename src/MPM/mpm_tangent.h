@@ -53,8 +53,6 @@ class MPMTangent : protected Pointers {
   void change_of_forces(const double *du, double *dforce);
   /** Minus the same, of each node by its own motion alone: [node][dim][dim]. Collective. */
   void diagonal(std::vector<double> &blocks);
-  /** Take the parts of symmetric tangents that are not positive: what is left has an energy with a minimum. */
-  void make_definite();
   /** Largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry. Collective. */
   double asymmetry() const;
 
