@@ -346,6 +346,55 @@ SERIAL_TEST(Free, PressureInside)
   }
 }
 
+// pressure of water at rest: the weight of the water in place of the body, upwards through its center (Archimedes), also of
+// a part that is below the water table only; a body with the density of water hangs where it is, with the pressure of the water
+// at each of its points inside
+SERIAL_TEST(Free, WaterAtRest)
+{
+  for (const char *options : {"", "frame total", "shape cubic"}) {
+    Scene run(
+        space("si", "f f f", "-1 1 -1 1 -1 1", 1, 0.03) + "fix grid all mpm 0.1 " + options +
+        "\nregion stone block -0.3 0.5 -0.2 0.2 -0.4 0.3\ncreate_points 1 region stone ppc 2\n"
+        "fix m all mpm/material density 1000 neohookean 1e8 0.3\n"
+        "variable p atom 9810*(0.6-z)\nfix load all mpm/traction free pressure v_p\n"
+        "timestep 1e-5\nrun 0\n");
+    const double *const values = run.fix_vector("load", 7), lift = 9810 * 0.8 * 0.4 * 0.7;
+    const double exact[7] = {0.0, 0.0, lift, 0.0, 0.0, -0.1 * lift, 0.0};
+    for (int k = 0; k < 7; k++) EXPECT_NEAR(values[k], exact[k], 1e-9 * lift) << k;
+    const auto before = run.sums();
+    run.commands("run 1\n");
+    const auto after = run.sums();
+    for (int d = 0; d < 3; d++)
+      EXPECT_NEAR((after.p[d] - before.p[d]) / 1e-5, exact[d], 1e-8 * lift) << options;
+  }
+  Scene half(
+      space("si", "f f f", "-1 1 -1 1 -1 1", 1, 0.03) +
+      "fix grid all mpm 0.1\nregion stone block -0.3 0.5 -0.2 0.2 -0.4 0.3\n"
+      "create_points 1 region stone ppc 2\nfix m all mpm/material density 1000 linear 1e8 0.3\n"
+      "variable p atom 9810*(0.0-z)*(z<0)\nfix load all mpm/traction free pressure v_p\n"
+      "timestep 1e-5\nrun 0\n");
+  EXPECT_NEAR(half.fix_vector("load", 7)[2], 9810 * 0.8 * 0.4 * 0.4, 1e-9 * 9810);
+
+  const auto hangs = plane("si", "f f", "-1 1 -1 1", 1, 0.03) +
+      "fix grid all mpm 0.1\nregion disk sphere 0.03 0.02 0 0.63\n"
+      "create_points 1 region disk ppc 2 outside ignore\n"
+      "fix m all mpm/material density 1000 neohookean 1e7 0.3\nfix g all gravity 9.81 vector 0 -1 "
+      "0\n"
+      "variable p atom v_T*(1-y)\n" +
+      replaced(at_rest(9810, 1e-4), "run 1000",
+               "fix load all mpm/traction free pressure v_p\nfix g all gravity v_g vector 0 -1 0\n"
+               "run 1000");
+  Scene run(replaced(hangs, "variable p", "variable g equal v_T/1000\nvariable p"));
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    double sigma[6];
+    run.points().cauchy(i, sigma);
+    for (const int c : {0, 1})
+      most = std::max(most, std::fabs(sigma[c] + 9810 * (1.0 - run.x()[i][1])));
+  }
+  EXPECT_LT(measured("error of the stress", most / 9810), 0.02);
+}
+
 // a hollow sphere under pressure around an axis of symmetry: displacements next to the bore by Lame's solution, to 1 % in the mean
 SERIAL_TEST(Sphere, Widens)
 {
@@ -400,6 +449,8 @@ SERIAL_TEST(Units, OfForce)
               "fix m all mpm/material density 2.0 linear 100 0.3\nregion top plane 0 7 0 0 -1 0\n"
               "fix load all mpm/traction region top pressure 3\ntimestep 1e-6\nrun 0\n");
     EXPECT_NEAR(run.fix_vector("load", 7)[1] * run.lmp->force->nktv2p, -18.0, 1e-10) << units;
+    run.commands("variable p atom 2*y\nfix sea all mpm/traction free pressure v_p\nrun 0\n");
+    EXPECT_NEAR(run.fix_vector("sea", 7)[1] * run.lmp->force->nktv2p, -72.0, 1e-8) << units;
   }
 }
 
@@ -443,8 +494,10 @@ SERIAL_TEST(Variables, InTimeAndPlace)
 
 TEST(Bar, RanksAndRestart)
 {
-  for (const char *surface : {"region end pressure 3e4 traction 0 2e4 -1e4", "free pressure 2e5"}) {
-    const auto scene = replaced(bar("", 0.4, "", ""), "region end", "timestep 2e-4\nregion end") +
+  for (const char *surface :
+       {"region end pressure 3e4 traction 0 2e4 -1e4", "free pressure 2e5", "free pressure v_p"}) {
+    const auto scene = replaced(bar("", 0.4, "", ""), "region end",
+                                "timestep 2e-4\nvariable p atom 1e5*(1+x+y*z)\nregion end") +
         "fix load all mpm/traction " + surface + "\n";
     OnRanks run(scene, "run 60\n");
     EXPECT_LT(run.difference(), 1e-11);
@@ -476,7 +529,7 @@ SERIAL_TEST(Traction, BadInput)
        {fix + "region end pressure v_none", "none for fix mpm/traction pressure does not exist"},
        {"variable s string one\n" + fix + "region end pressure v_s",
         "is not equal-style or atom-style"},
-       {"variable a atom x\n" + fix + "free pressure v_a", "is not equal-style"},
+       {"variable a atom 1/(x-x)\n" + fix + "free pressure v_a", "Divide by 0"},
        {"variable b equal 1/(step-1)\n" + fix + "region end pressure v_b", "Divide by 0"},
        {fix + "region end traction 1 0", "missing argument"},
        {fix + "region end pressure 1 area 0", "area"},

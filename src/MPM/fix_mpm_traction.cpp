@@ -123,26 +123,24 @@ FixMPMTraction::FixMPMTraction(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
   extscalar = extvector = 1;
   restart_global = 1;
   dynamic_group_allow = 0;
-  if (surface == FREE) return;
-  state.declare(rows, "area", WIDTH);
+  if (surface == FREE)
+    state.declare(inside, "pressure", INSIDE_WIDTH);
+  else
+    state.declare(rows, "area", WIDTH);
   keep_arrays();
 }
 
 void FixMPMTraction::find_load(int k)
 {
   auto &v = load(k);
-  const bool of_all = surface == FREE;
   if (v.variable.empty()) return;
   auto *const variables = input->variable;
   v.index = variables->find(v.variable.c_str());
-  const bool known = v.index >= 0, equal = known && variables->equalstyle(v.index),
-             of_points = known && variables->atomstyle(v.index);
-  if (equal || (of_points && !of_all)) return;
+  const bool known = v.index >= 0;
+  if (known && (variables->equalstyle(v.index) || variables->atomstyle(v.index))) return;
   error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/traction {} {}", v.variable,
              k < 3 ? "traction" : "pressure",
-             !known       ? "does not exist"
-                 : of_all ? "is not equal-style"
-                          : "is not equal-style or atom-style");
+             known ? "is not equal-style or atom-style" : "does not exist");
 }
 
 void FixMPMTraction::init()
@@ -172,7 +170,6 @@ bool FixMPMTraction::belongs(const MPMField &field, int i) const
 void FixMPMTraction::setup(int vflag)
 {
   if (surface != FREE && !defined) define();
-  volume_before = -1.0;
   post_force(vflag);
 }
 
@@ -269,7 +266,7 @@ void FixMPMTraction::evaluate_loads()
     input->variable->compute_atom(v.index, igroup, now[k].of_points.data(), 1, 0);
     for (int i = 0; i < atom->nlocal; i++) {
       double &value = now[k].of_points[i];
-      if (rows[i][AREA] != 0.0 && !std::isfinite(value))
+      if ((surface == FREE || rows[i][AREA] != 0.0) && !std::isfinite(value))
         error->one(FLERR, "Variable {} for fix mpm/traction {} is {} at point {}", v.variable, id,
                    value, atom->tag[i]);
       value *= unit;
@@ -343,20 +340,65 @@ void FixMPMTraction::add_forces()
 }
 
 /* ----------------------------------------------------------------------
-   pressure on all of the surface: the work is that on the volume
+   of the pressure at points: differences across a part of a cell, in which points differ from their neighbors
+------------------------------------------------------------------------- */
+
+void FixMPMTraction::find_gradient(std::vector<double> &gradient)
+{
+  gradient.assign(3 * (std::size_t) atom->nmax, 0.0);
+  if (now[3].of_points.empty()) return;
+  const int n = atom->nlocal, dim = domain->dimension;
+  double **const x = atom->x;
+  const double step = 0.25 * fields[0]->lattice.h, scale = 0.5 / (step * force->nktv2p);
+  std::vector<double> values(atom->nmax, 0.0), place(n);
+  for (int d = 0; d < dim; d++) {
+    for (int i = 0; i < n; i++) place[i] = x[i][d];
+    for (const double sign : {1.0, -1.0}) {
+      for (int i = 0; i < n; i++) x[i][d] = place[i] + sign * step;
+      input->variable->compute_atom(pressure.index, igroup, values.data(), 1, 0);
+      for (int i = 0; i < n; i++) gradient[3 * (std::size_t) i + d] += sign * scale * values[i];
+    }
+    for (int i = 0; i < n; i++) x[i][d] = place[i];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   pressure on all of the surface: where it depends on the place, there is a force on the volume besides the stress,
+   -int p N_i n da = -int (p grad N_i + N_i grad p) dv. The work is that on the volume, and of this force
 ------------------------------------------------------------------------- */
 
 void FixMPMTraction::press()
 {
   const auto *const points = MPMPoints::get(atom);
-  double volume = 0.0;
+  std::vector<double> gradient;
+  find_gradient(gradient);
   for (const auto *field : fields)
-    for (int i = 0; i < atom->nlocal; i++)
-      if (belongs(*field, i)) volume += atom->vfrac[i] * points->jacobian(i);
-  const double p = now[3].value;
-  if (volume_before >= 0.0) work[1] -= 0.5 * (pressure_before + p) * (volume - volume_before);
-  volume_before = volume;
-  pressure_before = p;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!belongs(*field, i)) continue;
+      double *const row = inside[i];
+      const double *const x = atom->x[i];
+      const double p = now[3].at(i), volume = atom->vfrac[i] * points->jacobian(i);
+      const bool known = row[VOLUME] > 0.0;
+      double moved[3], push[3], torque[3], place[3];
+      for (int d = 0; d < 3; d++) {
+        push[d] = -volume * gradient[3 * (std::size_t) i + d];
+        moved[d] = x[d] - row[AT + d];
+      }
+      nearest_image(*domain, moved);
+      if (known) work[1] -= 0.5 * (row[PRESSURE] + p) * (volume - row[VOLUME]);
+      domain->unmap(x, atom->image[i], place);
+      cross(place, push, torque);
+      for (int d = 0; d < 3; d++) {
+        if (known) work[0] += 0.5 * (row[PUSH + d] + push[d]) * moved[d];
+        row[PUSH + d] = push[d];
+        row[AT + d] = x[d];
+        atom->f[i][d] += push[d];
+        sums[d] += push[d];
+        sums[4 + d] += torque[d];
+      }
+      row[PRESSURE] = p;
+      row[VOLUME] = volume;
+    }
 }
 
 /* ----------------------------------------------------------------------
@@ -377,7 +419,8 @@ void FixMPMTraction::add_stress(const MPMField &field, int first, int n, double 
   for (int k = 0; k < n; k++, tau += 6) {
     const int i = first + k;
     if (surface == FREE) {
-      const double p = belongs(field, i) ? unit * now[3].value * field.points->jacobian(i) : 0.0;
+      const double p = belongs(field, i) ? unit * inside[i][PRESSURE] * field.points->jacobian(i)
+                                         : 0.0;
       for (int c = 0; c < 3; c++) tau[c] += p;
       continue;
     }

@@ -72,6 +72,9 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   // area and place [3], and J over the size of cof(F) times normal
   MPMRows rows;
   enum { AREA, STRESS, NORMAL, LOAD = NORMAL + 3, PLACE = LOAD + 3, HEIGHT = PLACE + 3, WIDTH };
+  // of a point with pressure on all of the surface, in the last step: pressure, volume, force of its gradient [3], place [3]
+  MPMRows inside;
+  enum { PRESSURE, VOLUME, PUSH, AT = PUSH + 3, INSIDE_WIDTH = AT + 3 };
   bool defined = false;    // which points belong to the surface
   std::vector<MPMField *> fields;
   static constexpr int NSUM = 7;                  // force [3], present area, torque [3]
@@ -88,15 +91,13 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   };
   Load now[4];
 
-  // pressure on all of the surface: volume of the group, this rank's share, and pressure in the last step
-  double volume_before = 0.0, pressure_before = 0.0;
-
   bool belongs(const MPMField &, int i) const;
   MPM_NS::NumberOrVariable &load(int k) { return k < 3 ? traction[k] : pressure; }
   void find_load(int k);
   void evaluate_loads();
   void define();
   void add_forces();
+  void find_gradient(std::vector<double> &gradient);
   void press();
 };
 
