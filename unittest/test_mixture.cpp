@@ -224,6 +224,82 @@ PARAMETER_TEST(Still, StaysAtRest, std::string,
   EXPECT_LT(fabs(run.compute_vector()[10]), 1.0e-12);
 }
 
+namespace {
+
+/** A bed of soil of 0.5 m under water up to this height, whose state at rest mpm_geostatic gives. The floor is off nodes by a part of a
+ *  cell. */
+std::string bed(int dim, double h, double height, const std::string &options, double offset)
+{
+  Column c;
+  c.h = h;
+  c.height = 1.5;
+  c.dim = dim;
+  c.soil[1] = 0.5;
+  c.water[1] = height;
+  c.E = 1.0e7;
+  c.options = options + strprintf(" origin 0 %.17g", offset * h) + (dim == 3 ? " 0" : "");
+  return c.text() + "fix walls all mpm/boundary ylo slip\nfix g all gravity 9.81 vector 0 -1 0\n";
+}
+const double BUOYANT = (1.0 - POROSITY) * (GRAINS - WATER) * G;
+
+}    // namespace
+
+// level ground in water at rest, as mpm_geostatic finds it: what is left of the forces of both, and the stress of soil
+TEST(Geostatic, StaysAtRest)
+{
+  const double dt = 2.0e-5;
+  for (const int dim : {2, 3})
+    for (const char *options : {"transfer apic", "transfer aflip 1.0", "transfer flip 1.0",
+                                "stress gradient", "shape cubic", "transfer apic smooth 0.5"})
+      for (const double offset : {0.0, 0.3})
+        for (const double height : {0.5, 0.9}) {
+          if (dim == 3 && (options[0] != 't' || height < 0.6)) continue;
+          if (offset > 0.0 && strcmp(options, "shape cubic") == 0) continue;
+          Scene run(bed(dim, 0.05, height, options, offset) + "mpm_geostatic s 0.4\n" +
+                    strprintf("timestep %g\nrun 1\n", dt));
+          double most[3] = {0.0, 0.0, 0.0};
+          for (const auto &s : run.gather())
+            for (int d = 0; d < dim; d++)
+              most[(int) s.type] = std::max(most[(int) s.type], fabs(s.v[d]) / (G * dt));
+          const auto name = strprintf("%dd %s, floor %g, water %g: ", dim, options, offset, height);
+          EXPECT_LT(measured(name + "force on soil over weight", most[1]), 1.0e-6);
+          EXPECT_LT(measured("on water", most[2]), 1.0e-6);
+          double worst = 0.0, top = 0.0;
+          for (const auto &s : run.gather())
+            if (s.type == 1) top = std::max(top, s.x[1] + 0.0125);
+          for (const auto &s : run.gather()) {
+            if (s.type != 1) continue;
+            EXPECT_NEAR(s.stress[0], 0.4 * s.stress[1], 1.0e-6 * BUOYANT);
+            if (s.x[1] > 0.15 && s.x[1] < 0.35)
+              worst = std::max(worst, fabs(s.stress[1] + BUOYANT * (top - s.x[1])));
+          }
+          // the surface of the soil in the water is where the volumes on nodes change
+          EXPECT_LT(measured("stress inside over the weight of a cell", worst / (BUOYANT * 0.05)),
+                    0.5);
+        }
+}
+
+// and later
+SERIAL_TEST(Geostatic, IsStillAtRestLater)
+{
+  Scene run(bed(2, 0.1, 0.9, "transfer apic", 0.3) +
+            "mpm_geostatic s 0.5\nfix step all mpm/dt 0.4\nrun 2000\n");
+  double fastest = 0.0;
+  for (const auto &s : run.gather()) fastest = std::max(fastest, fabs(s.v[1]));
+  EXPECT_LT(measured("velocity over that of free fall", fastest / (G * run.time())), 1.0e-6);
+  // pressure of the floor: all of the weight
+  const double weight = 0.2 * G * (WATER * (0.4 + 0.5 * POROSITY) + DRY * 0.5);
+  EXPECT_NEAR(measured("floor over weight", -run.fix_vector("walls", 6)[1] / weight), 1.0, 1.0e-6);
+}
+
+TEST(Geostatic, RanksAndRestart)
+{
+  const std::string scene = bed(2, 0.1, 0.9, "transfer apic", 0.3),
+                    start = "mpm_geostatic s 0.5\nvelocity soil set 0.01 0 0\ntimestep 5e-5\n";
+  OnRanks run(scene, start + "run 50\n");
+  EXPECT_LT(run.difference(), 1e-11);
+}
+
 // The standing wave of a sealed column: frequency and decay of equations for both velocities (u-v-p), whose roots are
 // those of data on saturated_modes: 4 ordinary differential equations, which are solved here.
 struct Mode {
@@ -747,6 +823,9 @@ SERIAL_TEST(Share, IsNoOverlapWithTheSoilAlone)
 
 SERIAL_TEST(Mixture, RefusesBadInput)
 {
+  expect_error(bed(2, 0.1, 0.9, "", 0.0) + "mpm_geostatic w 0.5\n", "name that of the soil, s");
+  expect_error(bed(2, 0.1, 0.9, "", 0.0) + "delete_atoms group water\nmpm_geostatic s 0.5\n",
+               "has no points of water");
   const std::string good =
       slump(2) + replaced(replaced(stuff, "fix mix all", "#"), "compute e", "#");
   const std::string fix = "fix mix all mpm/mixture ";

@@ -459,6 +459,16 @@ static double excess(double ratio)
   return ratio >= CERTAIN ? ratio : 1.0 + (CERTAIN - 1.0) * (ratio - NOISE) / (CERTAIN - NOISE);
 }
 
+MPMMixtureShares::MPMMixtureShares(double grains, double with_pores, double water)
+{
+  const double share =
+      std::min(1.0 - LEAST, grains / (with_pores * excess((grains + water) / with_pores)));
+  here = 1.0 - share;
+  porosity = std::max(LEAST, 1.0 - grains / with_pores);
+  filled = std::min(1.0, water / (HALF * porosity * with_pores));
+  of_soil = 1.0 - here * filled;
+}
+
 /* ----------------------------------------------------------------------
    shares of the volume at the nodes; false: nowhere are both
 ------------------------------------------------------------------------- */
@@ -490,12 +500,11 @@ bool FixMPMMixture::find_shares()
       const double mass = water.field->grid.record(node.water)[3];
       if (!(solid > 0.0 && wet > 0.0 && mass > 0.0 && soil.field->grid.record(node.soil)[3] > 0.0))
         continue;
-      const double share =
-          std::min(1.0 - LEAST, solid / (with_pores * excess((solid + wet) / with_pores)));
-      node.here = 1.0 - share;
-      node.porosity = std::max(LEAST, 1.0 - solid / with_pores);
-      node.filled = std::min(1.0, wet / (HALF * node.porosity * with_pores));
-      node.share = 1.0 - node.here * node.filled;
+      const MPMMixtureShares of(solid, with_pores, wet);
+      node.here = of.here;
+      node.porosity = of.porosity;
+      node.filled = of.filled;
+      node.share = of.of_soil;
       node.volume = node.filled * with_pores;
       node.wet = wet;
       node.density = mass / wet;

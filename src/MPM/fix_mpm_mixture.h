@@ -50,6 +50,17 @@ struct MPMMixtureOptions {
   bool drag_is_linear() const;
 };
 
+/** What soil and water have of the volume at a node, by the volumes there of the grains, of the soil with its pores, and of the
+ *  water. */
+struct MPMMixtureShares {
+  double here;        ///< porosity
+  double porosity;    ///< of the soil there, which may be more or less at the end of the soil
+  double filled;      ///< share of its pores
+  double of_soil;     ///< share of the pressure that the soil bears
+
+  MPMMixtureShares(double grains, double with_pores, double water);
+};
+
 /** Soil and water, each a field (fix mpm) with points and a velocity of its own, at the same place: they share the
  *  volume, the gradient of the pressure of the water, and, by drag, their momentum. */
 class FixMPMMixture :
@@ -87,6 +98,9 @@ class FixMPMMixture :
 
   /** Has one of these fields (IDs) the role that it has here, or the other one? */
   bool has(const std::string &field) const { return field == soil_id || field == water_id; }
+  const char *soil_field() const { return soil_id.c_str(); }    ///< its ID
+  const char *water_field() const { return water_id.c_str(); }
+  double density_of_grains() const { return grain_density; }
 
  private:
   struct Phase {

@@ -151,26 +151,42 @@ void MPMGeostatic::check_level()
 
 /* ---------------------------------------------------------------------- */
 
-int MPMGeostatic::parts(int i, Part list[BAND]) const
+int MPMGeostatic::planes(const MPMField &of, int i, Part list[BAND]) const
 {
   const auto &lattice = field.lattice;
-  const MPMStencil stencil(field);
-  int plane, count = 0;
+  const MPMStencil stencil(of);
+  int plane;
   double w[4], slope[4];
   const double t = (height(i) - where.up * lattice.origin[where.axis]) / lattice.h;
   const int n = stencil.weights(t, plane, w, slope);
-  const auto &o = field.options;
+  const auto &o = of.options;
   if (is_mls(o.shape, o.transfer) && o.stress != MPMFieldOptions::GRADIENT_STRESS)
     for (int j = 0; j < n; j++)    // moving least squares take these in the place of gradients
       slope[j] = shape_constants[o.shape].inv_moment * w[j] * (plane + j - t);
+  for (int j = 0; j < n; j++) list[j] = {plane + j - first, w[j], slope[j]};
+  return n;
+}
+
+int MPMGeostatic::function_of(int plane, double &value) const
+{
+  const int k = std::max(0, plane - (LOWEST - 1));
+  value = k == 0 ? plane + first - floor : 1.0;
+  return k;
+}
+
+int MPMGeostatic::parts(int i, Part list[BAND]) const
+{
+  Part all[BAND];
+  const int n = planes(field, i, all);
+  int count = 0;
   for (int j = 0; j < n; j++) {
-    const int k = std::max(0, plane + j - first - (LOWEST - 1));
-    const double size = k == 0 ? plane + j - floor : 1.0;
+    double size;
+    const int k = function_of(all[j].k, size);
     if (count && list[count - 1].k == k) {
-      list[count - 1].value += size * w[j];
-      list[count - 1].slope += size * slope[j];
+      list[count - 1].value += size * all[j].value;
+      list[count - 1].slope += size * all[j].slope;
     } else {
-      list[count++] = {k, size * w[j], size * slope[j]};
+      list[count++] = {k, size * all[j].value, size * all[j].slope};
     }
   }
   return count;
@@ -212,7 +228,8 @@ std::vector<double> MPMGeostatic::solve(std::vector<double> &a, std::vector<doub
 
 /* ---------------------------------------------------------------------- */
 
-void MPMGeostatic::set_stress(double K0, const std::function<double(int)> &pressure)
+void MPMGeostatic::set_stress(double K0, const std::function<double(int)> &pressure,
+                              const std::vector<double> &carried)
 {
   const double h = field.lattice.h, g = where.weight * force->nktv2p;
   const int n = nfunctions;
@@ -229,6 +246,7 @@ void MPMGeostatic::set_stress(double K0, const std::function<double(int)> &press
     mine[1] += list[0].value * field.points->jacobian(i) * atom->vfrac[i];
   }
   MPI_Allreduce(mine, lowest, 2, MPI_DOUBLE, MPI_SUM, world);
+  if (!carried.empty()) lowest[0] -= carried[0] / (g * h);
   const double density = lowest[0] / lowest[1];
   const auto guess = [&](int i) {
     return density * g * (height(i) - where.top);
@@ -248,6 +266,7 @@ void MPMGeostatic::set_stress(double K0, const std::function<double(int)> &press
     }
   }
   MPI_Allreduce(sums.data(), all.data(), (int) sums.size(), MPI_DOUBLE, MPI_SUM, world);
+  for (int k = 0; k < std::min(n, (int) carried.size()); k++) all[BAND * n + k] += carried[k];
   const auto factors = solve(all, std::vector<double>(all.begin() + BAND * n, all.end()));
 
   for (int i = 0; i < atom->nlocal; i++) {

@@ -40,18 +40,26 @@ class MPMGeostatic : protected Pointers {
   double height(int i) const;
 
   /** Gives all points of the field their effective stress, horizontal stress K0 times the vertical one; the
-   *  part of the pressure in internal forces of point i is pressure(i) [pressure]. Laws must keep a stress that
+   *  part of the pressure in internal forces of point i is pressure(i) [pressure]. carried: what else bears the weight,
+   *  for each function of the height (see function_of()) [pressure*volume], or empty. Laws must keep a stress that
    *  points have at first, or the elastic strain. Collective. */
-  void set_stress(double K0, const std::function<double(int)> &pressure);
+  void set_stress(double K0, const std::function<double(int)> &pressure,
+                  const std::vector<double> &carried = {});
 
   const Ground &ground() const { return where; }
 
- private:
-  /** A function of the height that the velocity of the nodes can have: its number, value, slope in node spacings. */
+  /** A function of the height: its number, value, slope in node spacings. */
   struct Part {
     int k;
     double value, slope;
   };
+  static constexpr int BAND = 4;
+
+  /** Those of the planes of nodes, from the lowest one that reaches the ground on, at point i of this field, or of another
+   *  one on the same lattice. */
+  int planes(const MPMField &, int i, Part list[BAND]) const;
+  /** The function of the height that the velocity of a plane of nodes belongs to, and its value there. */
+  int function_of(int plane, double &value) const;
 
   MPMField &field;
   const std::string who;
@@ -59,7 +67,6 @@ class MPMGeostatic : protected Pointers {
   double floor;      // in node spacings from the origin, upwards
   int first;         // lowest plane of nodes that reaches the ground
   int nfunctions;    // functions of the height
-  static constexpr int BAND = 4;
 
   int parts(int i, Part list[BAND]) const;
   void find_ground(const double *gravity);

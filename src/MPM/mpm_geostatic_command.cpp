@@ -8,8 +8,10 @@
 
 #include "mpm_geostatic_command.h"
 
+#include "fix_mpm_mixture.h"
 #include "mpm_field.h"
 #include "mpm_geostatic.h"
+#include "mpm_geostatic_water.h"
 #include "mpm_gravity.h"
 #include "mpm_input.h"
 #include "mpm_options.h"
@@ -19,7 +21,9 @@
 #include "force.h"
 #include "modify.h"
 
+#include <cstring>
 #include <string>
+#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -48,10 +52,14 @@ void MPMGeostaticCommand::command(int narg, char **arg)
 
   double gravity[3];
   MPMGravity(lmp, "Mpm_geostatic").find(gravity);
+  const auto *const mixture = mixture_of(*field);
   MPMGeostatic ground(lmp, *field, gravity, "Mpm_geostatic");
-  ground.set_stress(K0, [](int) {
+  std::vector<double> carried;
+  if (mixture) carried = MPMGeostaticWater(lmp, ground, *mixture, "Mpm_geostatic").set_pressure();
+  const auto none = [](int) {
     return 0.0;
-  });
+  };
+  ground.set_stress(K0, none, carried);
   const auto &where = ground.ground();
   if (comm->me == 0)
     utils::logmesg(lmp, "Level ground at rest: {:.6g} high, weight {:.6g} per mass, K0 {:.6g}\n",
@@ -67,10 +75,23 @@ void MPMGeostaticCommand::check_fixes()
   if (!modify->get_fix_by_style("^mpm/pore$").empty())
     error->all(FLERR, Error::NOLASTLINE,
                "Mpm_geostatic does not know pore water: use keyword geostatic of fix mpm/pore");
-  if (!modify->get_fix_by_style("^mpm/mixture$").empty())
-    error->all(FLERR, Error::NOLASTLINE,
-               "Mpm_geostatic does not know the buoyancy of fix mpm/mixture: define that fix after "
-               "this command for dry soil, or let soil in water come to rest");
+}
+
+/** That of which the field is the soil, or null. */
+const FixMPMMixture *MPMGeostaticCommand::mixture_of(const MPMField &field)
+{
+  for (auto *fix : modify->get_fix_by_style("^mpm/mixture$")) {
+    const auto *const mixture = dynamic_cast<FixMPMMixture *>(fix);
+    if (!mixture->has(field.id())) continue;
+    if (strcmp(mixture->soil_field(), field.id()) != 0)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Mpm_geostatic: fix mpm {} is the water of fix mpm/mixture {}: name that of the "
+                 "soil, {}, and the water gets its pressure, too",
+                 field.id(), fix->id, mixture->soil_field());
+    check_field(*MPMField::find(lmp, mixture->water_field()));
+    return mixture;
+  }
+  return nullptr;
 }
 
 void MPMGeostaticCommand::check_field(const MPMField &field)

@@ -28,6 +28,7 @@ class MPMGeostaticCommand : public Command {
  private:
   void check_fixes();
   void check_field(const class MPMField &);
+  const class FixMPMMixture *mixture_of(const class MPMField &);
 };
 
 }    // namespace LAMMPS_NS

@@ -1,0 +1,46 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_GEOSTATIC_WATER_H
+#define LMP_MPM_GEOSTATIC_WATER_H
+
+#include "mpm_geostatic.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPMMixture;
+
+/** Water at rest in level ground and above it, as a field of its own (fix mpm/mixture). See
+ *  mpm_geostatic_water.cpp. */
+class MPMGeostaticWater : protected Pointers {
+ public:
+  /** ground: the soil of the mixture. */
+  MPMGeostaticWater(class LAMMPS *, const MPMGeostatic &ground, const FixMPMMixture &,
+                    const std::string &who);
+
+  /** Gives all points of the water their pressure, by the change of their volume; returns what it carries of the
+   *  weight of the soil, for each function of the height (MPMGeostatic::set_stress()). Collective. */
+  std::vector<double> set_pressure();
+  double top() const { return surface; }    ///< height of the surface of the water [distance]
+
+ private:
+  const MPMGeostatic &ground;
+  const FixMPMMixture &mixture;
+  MPMField &soil, &water;
+  const std::string who;
+  double surface, density;
+  int nplanes = 0;
+
+  void find_water();
+  void find_volumes(std::vector<double> &volumes) const;
+  void strain(const std::vector<double> &pressure) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
