@@ -25,10 +25,11 @@ CASES = {"heat": (("heat", "yes"), ("none", "yes")), "heat_idle": (("heat_idle",
          "pore": (("pore", "no"), ("none", "no")), "pore_idle": (("pore_idle", "no"), ("none", "no"))}
 
 
-def seconds(lmp, physics, thermal, n, box, steps):
+def seconds(lmp, physics, thermal, n, box, steps, more=" "):
     """processor time of a run"""
     command = [lmp, "-in", os.path.join(HERE, "in.physics"), "-log", "none", "-nocite"]
-    for key, value in (("physics", physics), ("thermal", thermal), ("n", n), ("box", box), ("steps", steps)):
+    for key, value in (("physics", physics), ("thermal", thermal), ("n", n), ("box", box), ("steps", steps),
+                       ("more", more)):
         command += ["-var", key, str(value)]
     done = subprocess.run(command, env=dict(os.environ, OMP_NUM_THREADS="1"), stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True)

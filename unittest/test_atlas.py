@@ -5,7 +5,8 @@
 # sanitize: no
 # timeout: 300
 """The atlas of bench/atlas: its program goes on where it stopped, all scenes run and give what the tables
-in the repository say, and errors, fronts, and references follow from the tables as they should."""
+in the repository say, and errors, fronts, and references follow from the tables as they should. The same for its part of
+heat and pore water."""
 
 import os
 import sys
@@ -16,6 +17,7 @@ import mpm_testing as mt
 FOLDER = os.path.join(mt.ROOT, "bench", "atlas")
 sys.path.insert(0, FOLDER)
 import atlas    # noqa: E402
+import physics    # noqa: E402
 import results as rs    # noqa: E402
 import scenes as sc    # noqa: E402
 
@@ -96,6 +98,45 @@ def test_fronts_and_credited_errors():
     assert [(r["h"], r["transfer"]) for r in front] == [("0.2", "apic"), ("0.1", "apic")], front
     # schemes without a measurement: factor from the scene where all are measured
     assert data.cost_of("bar", ("quadratic", "apic", "musl", "updated", "2"))[0] is None
+
+
+def test_heat_and_water_give_the_errors_of_the_tables():
+    known, wrong = rs.read(os.path.join(FOLDER, "physics_runs.csv")), []
+    for name, methods in physics.METHODS.items():
+        for method in methods:
+            for scene, (_, _, spacings, _) in physics.SCENES[name].items():
+                row = physics.find(known, physics=name, method=method, scene=scene, h=spacings[0])
+                if "short" in scene:    # many steps
+                    continue
+                now = physics.measure(mt.LMP, name, method, scene, spacings[0])
+                if abs(float(now["error"]) / float(row["error"]) - 1) > 0.02:
+                    wrong.append("%s: now %s" % (row, now["error"]))
+                if (now["steps"], now["points"]) != (row["steps"], row["points"]):
+                    wrong.append("%s: now %s steps, %s points" % (row, now["steps"], now["points"]))
+    assert not wrong, "\n".join(wrong)
+
+
+def test_exact_solutions_of_heat_and_water():
+    """Tables of the literature: a slab that is cooled (Bi = 1, Fo = 0.5), roots of the fast and the slow wave of a sealed
+    column, and Terzaghi's pressure at the base at a time factor of 0.2, to what the inertia of the column changes."""
+    center, face = physics.exact_heat("convection", physics.np.array([0.0, 1.0]))
+    assert abs(center - 0.772526) < 1e-6 and abs(face - 0.504522) < 1e-6, (center, face)
+    middle = physics.exact_heat("end", physics.np.array([0.025]))[0]
+    assert abs(middle - 0.955416027) < 1e-8, middle
+    roots = sorted(physics.Soil(1990.0, 1e-3, physics.np.pi).s, key=lambda s: s.imag)
+    assert abs(roots[-1] - (-58.346773 + 1690.4476j)) < 1e-2, roots
+    assert min(abs(s + 13.263593) for s in roots) < 1e-3, roots
+    pressure = 0.0
+    for m in range(200):
+        k = (m + 0.5) * physics.np.pi
+        mode = physics.Soil(2002.0, 1e-3, k).loaded(0.2 / 1.339443 + 0.025, 0.05)
+        pressure -= 2 * (-1)**m * mode[3]
+    assert abs(pressure / (0.976109 * 0.772312) - 1) < 1e-3, pressure
+
+
+def test_cost_of_heat_and_water_is_measured():
+    row, = physics.costs(mt.LMP, "water", ["u-p"], 1, "8k")
+    assert row["size"] == "8000" and 1 < float(row["ratio"]) < 10, row
 
 
 def test_tables_of_convergence():

@@ -119,6 +119,64 @@ SERIAL_TEST(Insulated, PicDoesNotConverge)
   EXPECT_GT(rms[1], 0.03);
 }
 
+// the part of the temperatures that m transfers to the nodes and back take away, 1 - (1 - P)^m with P that of pic, in a body that
+// hardly conducts and whose points have different capacities: two materials, noise, uneven distances
+SERIAL_TEST(Xpic, UndoesSmoothing)
+{
+  const auto after = [](const std::string &transfer, int steps) {
+    Scene run(plane("lj", "f p", "0 6 0 6", 1, 0.1) +
+              "region one block 0 3.2 0 6 -0.5 0.5\nregion two block 3.2 5 0 6 -0.5 0.5\n"
+              "create_points 1 region one spacing 0.5\ncreate_points 1 region two spacing 0.45\n"
+              "group one region one\ngroup two region two\nfix grid all mpm 1.0\n"
+              "fix m one mpm/material density 1.0 eos linear 1e-6 thermal conducting 1 0 1e-13\n"
+              "fix n two mpm/material density 3.0 eos linear 1e-6 thermal conducting 2 0 1e-13\n"
+              "fix heat all mpm/heat transfer " +
+              transfer + "\n");
+    for (const char *id : {"m", "n"})
+      Warm(run, id).set([](const double *x) {
+        return 1.0 + std::sin(7.0 * x[0]) * std::cos(5.0 * x[1] + x[0]);
+      });
+    run.commands(strprintf("timestep 1.0\nrun %d\n", steps));
+    std::vector<double> T;
+    for (const auto &point : temperatures(run)) T.push_back(point.T);
+    return T;
+  };
+  const auto T0 = after("pic", 0), P1 = after("pic", 1), P2 = after("pic", 2), P3 = after("pic", 3);
+  const auto one = after("xpic 1", 1), two = after("xpic 2", 1), three = after("xpic 3", 1);
+  double most = 0.0;
+  for (std::size_t k = 0; k < T0.size(); k++) {
+    EXPECT_NEAR(one[k], P1[k], 1e-12);
+    EXPECT_NEAR(two[k], 2.0 * P1[k] - P2[k], 1e-12);
+    EXPECT_NEAR(three[k], 3.0 * P1[k] - 3.0 * P2[k] + P3[k], 1e-12);
+    most = std::max(most, std::fabs(three[k] - two[k]));
+  }
+  EXPECT_GT(measured("what the third term changes", most), 0.01);
+}
+
+// so that errors go away with the spacing, which those of pic do not, and short steps smooth no more than long ones; heat is kept
+PARAMETER_TEST(XpicOfOrder, CosineDecays, const char *, Values("3", "5", "20"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto error = [](int n, double step) {
+    Scene run(bar(n, std::string("transfer xpic ") + GetParam()));
+    Warm warm(run);
+    warm.set([](const double *x) {
+      return 1.0 + std::cos(PI * x[0]);
+    });
+    const double before = warm.heat();
+    run_to(run, 0.1, step / (n * n));
+    EXPECT_NEAR(warm.heat() / before, 1.0, 1e-13);
+    return measured(strprintf("%d cells, steps of %g limits, rms", n, step),
+                    warm.error([](const double *x) {
+                          return 1.0 + std::cos(PI * x[0]) * 0.372707839;
+                        })
+                        .rms);
+  };
+  const double coarse = error(20, 0.3), fine = error(40, 0.3), in_short_steps = error(20, 0.003);
+  EXPECT_GT(measured("order", std::log2(coarse / fine)), 1.9);
+  EXPECT_LT(in_short_steps, 2.0 * coarse);
+}
+
 // One end is heated, the other one held, the faces anywhere in a cell
 PARAMETER_TEST(Ends, HaveTheirTemperature, double, Values(0.0, 0.25, 0.5))
 {
@@ -504,9 +562,9 @@ PARAMETER_TEST(Melting, FrontMoves, const char *, Values("scheme usl", "scheme u
 }
 
 // heat is kept to round-off while bodies collide, and the ledger closes
-TEST(Closed, KeepsHeat)
+PARAMETER_TEST(Closed, KeepsHeat, const char *, Values("", "transfer xpic 4"))
 {
-  Scene run(disk("") + "compute e all mpm/energy\nrun 0\n");
+  Scene run(disk(GetParam()) + "compute e all mpm/energy\nrun 0\n");
   const double before = Warm(run, "m").heat() + Warm(run, "n").heat();
   const auto hottest = [&]() {
     const auto T = temperatures(run);
@@ -533,7 +591,7 @@ TEST(Ranks, Agree)
       replaced(disk("xlo temperature 3.0 xhi convection 0.5 0.0 ylo flux 0.3"), "boundary p p p",
                "boundary f f p") +
       "fix b all mpm/boundary xlo xhi ylo yhi slip\n";
-  for (const auto &scene : {disk(""), walls}) {
+  for (const auto &scene : {disk(""), disk("transfer xpic 4"), walls}) {
     OnRanks run(scene, "run 90\n");
     EXPECT_LT(run.difference(), 1e-12);
     EXPECT_LT(measured("difference", temperature_difference(run.serial, run.parallel)), 1e-12);
@@ -542,9 +600,9 @@ TEST(Ranks, Agree)
   }
 }
 
-TEST(Restart, Continues)
+PARAMETER_TEST(Restart, Continues, const char *, Values("affine", "xpic 4"))
 {
-  const std::string scene = disk("transfer affine source v_s");
+  const std::string scene = disk(std::string("transfer ") + GetParam() + " source v_s");
   const std::string first = "variable s atom 0.1*x\n";
   const std::string tail = scene.substr(scene.find("fix m one"));
   std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n" + first;
@@ -623,7 +681,9 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"variable H equal -1.0\nfix heat all mpm/heat xlo convection v_H 0.0",
                    "xlo: variable H = -1, but it must not be negative"},
                   {"fix heat all mpm/heat stages 0", "stages"},
-                  {"fix heat all mpm/heat transfer flip", "must be one of relax pic affine"},
+                  {"fix heat all mpm/heat transfer flip", "must be one of relax pic affine xpic"},
+                  {"fix heat all mpm/heat transfer xpic 0", "order"},
+                  {"fix heat all mpm/heat transfer xpic", "missing argument"},
                   {"group a type 1\nfix heat a mpm/heat", "use group all"},
                   {"fix heat all mpm/heat\nfix more all mpm/heat", "more than one"}},
                  "run 1\n");

@@ -97,6 +97,62 @@ SERIAL_TEST(Steady, FluxAndFaces)
     }
 }
 
+// the same with other shape functions, which for linear ones is exact only where points are in the middle of halves of cells
+PARAMETER_TEST(SteadyWithShapes, FluxAndFaces, const char *,
+               Values("shape linear", "shape cubic", "shape gimp", "shape cpdi"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const std::string shape = GetParam();
+  for (const double shift : {0.0, shape == "shape linear" ? 0.4 : 0.25, 0.5}) {
+    Bars bars;
+    bars.n = 20;
+    bars.shift = shift;
+    bars.heat = "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64";
+    bars.grid = shape;
+    Scene run(bars.text());
+    run_to(run, 5.0, 2.0 / (20 * 20));
+    const double *const power = run.fix_vector("heat", 10);
+    EXPECT_NEAR(measured(strprintf("%g q", shift), power[CONTACT] * 5.0) / (4.0 / 7.0), 1.0, 0.01);
+    EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-6);
+    EXPECT_NEAR(measured("face", face(run, "ma", 1.0, -1, 0.05)) / (3.0 / 7.0), 1.0, 0.01);
+    EXPECT_NEAR(measured("face", face(run, "mb", 1.0, 1, 0.05)) / (1.0 / 7.0), 1.0, 0.01);
+  }
+}
+
+// two tubes around an axis of symmetry, one in the other, of conductivity 1 and 4 from r = 1 to 1.5 to 2, between 1 and 0: the power is 2 pi over
+// the sum of ln(1.5), 1/(1.5 H), and ln(4/3)/4; also through an interface normal to the axis
+PARAMETER_TEST(Axis, HeatThroughTwoTubes, const char *, Values("", "shape cubic", "shape linear"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  constexpr double h = 0.05;
+  for (const double offset : {0.0, GetParam() == std::string("shape linear") ? 0.5 : 0.4})
+    for (const double H : {2.0, 1e9}) {
+      const std::string grid =
+          strprintf("%g origin %.17g 0 axisymmetric yes %s\n", h, 1.0 - offset * h, GetParam());
+      Scene run(plane("lj", "f p", strprintf("1 2 0 %g", 4 * h), 2, 0.1 * h) +
+                "region a block 1 1.5 INF INF INF INF\nregion b block 1.5 2 INF INF INF INF\n"
+                "group a empty\ngroup b empty\n"
+                "fix ga a mpm " +
+                grid + "fix gb b mpm " + grid +
+                strprintf("create_points 1 region a spacing %g\n", 0.5 * h) +
+                strprintf("create_points 2 region b spacing %g\n", 0.5 * h) +
+                "group a type 1\ngroup b type 2\n"
+                "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.5 1.0\n"
+                "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.5 4.0\n"
+                "fix touch all mpm/contact ga gb\n" +
+                strprintf("fix heat all mpm/heat contact ga gb conductance %g xlo temperature 1 "
+                          "xhi temperature 0 stages 64\n",
+                          H));
+      run_to(run, 2.0, 1.0 * h * h);
+      const double *const power = run.fix_vector("heat", 10);
+      const double exact =
+          2.0 * PI * 4.0 * h / (std::log(1.5) + 1.0 / (1.5 * H) + std::log(4.0 / 3.0) / 4.0);
+      EXPECT_NEAR(measured(strprintf("offset %g, H %g", offset, H), power[CONTACT] / exact), 1.0,
+                  0.01);
+      EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-5);
+    }
+}
+
 // half-spaces of effusivity 1 and 2, at 1 and 0, conductance 2, at t = 0.1: 0.628014, 0.185993, flux 0.884043. Lengths
 // here are in a unit in which that is t = 0.01, and h_c = 2 sqrt(10)
 SERIAL_TEST(HalfSpaces, Faces)

@@ -66,6 +66,52 @@ SERIAL_TEST(Functions, PointsAtNodes)
     EXPECT_LT(measured("rms", cosine_error(20, "shape linear", offset)), 0.05);
 }
 
+// fix mpm/dt knows how fast they conduct before the first step, wherever the cells begin, and when points come to other cells
+PARAMETER_TEST(FunctionsOfLightNodes, HaveATimeStep, const char *,
+               Values("shape linear", "shape bernstein frame total transfer apic",
+                      "shape linear axisymmetric yes"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const std::string options = GetParam();
+  for (const double offset : {0.0, 0.013, 0.03, 0.05, 0.071})
+    for (const int stages : {1, 32})
+      for (const double v : {0.0, 0.3}) {
+        Scene run(
+            plane("lj", "f f", "0 1 0 20", 1, 0.05) +
+            "region body block 0 1 0 1 -0.5 0.5\ncreate_points 1 region body spacing 0.05\n" +
+            strprintf("fix grid all mpm 0.1 origin %g %g %s\n", offset, offset, options.c_str()) +
+            "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e-2\n" +
+            strprintf("fix heat all mpm/heat xhi convection 100.0 0.0 ylo convection 100.0 0.0 "
+                      "stages %d\n",
+                      stages) +
+            strprintf("velocity all set 0 %g 0\nfix dt all mpm/dt 0.95\nfix side all mpm/boundary "
+                      "xlo slip\n",
+                      v));
+        const double before = Warm(run).heat();
+        EXPECT_EQ(run.error("run 12\n"), "") << options << " " << offset << " " << stages;
+        const double after = Warm(run).heat();
+        EXPECT_LT(after, before);
+        EXPECT_GT(after, 0.0);
+        EXPECT_GT(run.lmp->update->dt, v > 0.0 ? 1e-3 : 0.019);
+      }
+}
+
+// steady heat through a bar between faces of the box, wherever these are in a cell: exact as sums over points balance
+PARAMETER_TEST(EndsOfShapes, LetThroughAll, const char *,
+               Values("", "shape cubic", "shape gimp", "shape cpgimp", "shape cpdi", "shape cpdi2",
+                      "frame total"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const double offset : {0.0, 0.1, 0.25, 0.5, 0.8}) {
+    Scene run(bar(10, "xlo temperature 1.0 xhi temperature 0.0 stages 64", offset, GetParam()));
+    run_to(run, 4.0, 0.02);
+    const double *const power = run.fix_vector("heat", 7);
+    EXPECT_NEAR(measured(strprintf("%s, offset %g", GetParam(), offset), power[0] / 0.4), 1.0,
+                1e-4);
+    EXPECT_NEAR(power[1] / power[0], -1.0, 1e-4);
+  }
+}
+
 // One end is heated, the other one held
 PARAMETER_TEST(Ends, HaveTheirTemperature, const char *,
                Values("shape linear", "shape gimp", "shape cpdi", "shape cubic", "frame total"))

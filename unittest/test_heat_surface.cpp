@@ -74,6 +74,57 @@ PARAMETER_TEST(Convection, CoolsASlab, Slab,
     }
 }
 
+// the same with all shape functions, and where nodes belong to the reference configuration. Points that lie on the sides of cells are too
+// much for linear functions (shift 0.25)
+PARAMETER_TEST(ConvectionWithShapes, CoolsASlab, const char *,
+               Values("frame total", "frame total shape cubic", "shape linear",
+                      "frame total shape linear", "shape gimp", "shape cpgimp", "shape cpdi",
+                      "shape cpdi2"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const std::string options = GetParam();
+  const bool linear = options.find("linear") != std::string::npos;
+  constexpr int n = 40;
+  for (const Slab &slab : {Slab{1.0, 0.5, 0.504522}, Slab{10.0, 0.1, 0.170574}})
+    for (const char *kind : {"surface", "region wall"})
+      for (const double shift : {0.0, linear ? 0.4 : 0.25, 0.5}) {
+        Scene run(replaced(
+            bar_in_box(n, shift, strprintf("%s convection %g 0.0 stages 64", kind, slab.Bi), 1.0,
+                       WALL),
+            "fix m all",
+            "unfix grid\nfix grid all mpm 0.025 " + strprintf("origin %.17g 0 ", 1.0 - shift / n) +
+                options + "\nfix m all"));
+        const double before = Warm(run).heat();
+        run_to(run, slab.t, 1.0 / (n * n));
+        const double face =
+            measured(strprintf("%s, %g", kind, shift), end_temperature(run, 1.0, 1.0 / n));
+        EXPECT_NEAR(face / slab.face, 1.0, 0.01) << options;
+        EXPECT_NEAR((Warm(run).heat() - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
+      }
+}
+
+// linear functions with points at nodes, to rounding on one side or the other: nodes behind the surface have next to no capacity, but no heat is lost
+// in them, and the error is one of first order
+SERIAL_TEST(ConvectionOfLinear, PointsAtNodes)
+{
+  for (const char *kind : {"surface", "region wall"})
+    for (const double shift : {0.25, 0.25 - 1e-7, 0.25 + 1e-7, 0.26}) {
+      constexpr int n = 40;
+      Scene run(replaced(
+          bar_in_box(n, shift, strprintf("%s convection 1 0.0 stages 64", kind), 1.0, WALL),
+          "fix m all",
+          strprintf("unfix grid\nfix grid all mpm 0.025 origin %.17g 0 shape "
+                    "linear\nfix m all",
+                    1.0 - shift / n)));
+      const double before = Warm(run).heat();
+      run_to(run, 0.5, 1.0 / (n * n));
+      const double mean =
+          measured(strprintf("%s, %g, mean", kind, shift), Warm(run).heat() / before);
+      EXPECT_NEAR(mean / slab_mean(1.0, 0.5), 1.0, 1.0 / n);
+      EXPECT_NEAR((Warm(run).heat() - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
+    }
+}
+
 // one end is heated by a region with a temperature, the other one held at a face of the box: A6 a
 SERIAL_TEST(Temperature, OfARegion)
 {
@@ -137,8 +188,10 @@ SERIAL_TEST(Area, OfDisksAndSpheres)
     }
 }
 
-// a cylinder that cools by convection, Bi = 1, at t = 0.5: mean temperature by the series of Bessel functions
-SERIAL_TEST(Cylinder, Cools)
+namespace {
+
+/** Of a cylinder that cools by convection, Bi = 1, at t = 0.5: mean temperature by the series of Bessel functions. */
+double mean_of_cylinder()
 {
   // roots of b J1(b) = Bi J0(b) for Bi = 1
   double mean = 0.0;
@@ -154,6 +207,14 @@ SERIAL_TEST(Cylinder, Cools)
     }
     mean += 4.0 / (low * low * (low * low + 1.0)) * std::exp(-low * low * 0.5);
   }
+  return mean;
+}
+
+}    // namespace
+
+SERIAL_TEST(Cylinder, Cools)
+{
+  const double mean = mean_of_cylinder();
   for (const char *kind : {"surface", "region around"}) {
     double error[2];
     for (const int n : {8, 16}) {
@@ -165,6 +226,92 @@ SERIAL_TEST(Cylinder, Cools)
     }
     EXPECT_LT(error[1], 0.01);
   }
+}
+
+namespace {
+
+/** A body in the plane of an axis of symmetry, with n cells in a unit, whose material touches nothing but the axis; nodes at the axis,
+ *  or offset node spacings beyond. */
+std::string around_axis(int n, double offset, const std::string &body, const std::string &heat,
+                        double T0, const std::string &options, const std::string &sides = "f f")
+{
+  const double h = 1.0 / n;
+  return plane("lj", sides, strprintf("0 1.6 0 %g", sides == "f f" ? 3.2 : 4.0 * h), 1, 0.1 * h) +
+      body +
+      strprintf("fix grid all mpm %.17g origin %.17g 0 axisymmetric yes %s\n", h, -offset * h,
+                options.c_str()) +
+      strprintf("create_points 1 region body spacing %.17g\n", 0.5 * h) +
+      "fix b all mpm/boundary xlo slip\n" +
+      strprintf(
+             "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 %g 1.0\n",
+             T0) +
+      "fix heat all mpm/heat stages 64 " + heat + strprintf("\ntimestep %.17g\n", 0.05 * h * h);
+}
+
+const char *const LONG_CYLINDER = "region body block 0 1 INF INF INF INF\n"
+                                  "region around block 1 2 INF INF INF INF\n";
+const char *const SPHERE = "region whole sphere 0 1.6 0 1\nregion half block 0 2 INF INF INF INF\n"
+                           "region body intersect 2 whole half\n"
+                           "region around sphere 0 1.6 0 1 side out\n";
+
+}    // namespace
+
+// a long cylinder around an axis of symmetry cools as in the plane, and a sphere: mean temperatures at t = 0.5 and 0.1 with Bi = 1. Nodes are
+// at the axis; points of the sphere stand like steps
+PARAMETER_TEST(Axis, BodiesCool, const char *,
+               Values("", "shape cubic", "shape linear", "shape gimp", "frame total"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  double sphere = 0.0;
+  for (int k = 0; k < 40; k++) {
+    const double b = (k + 0.5) * PI;    // b cot(b) = 1 - Bi
+    sphere += 6.0 / (b * b * b * b) * std::exp(-b * b * 0.1);
+  }
+  for (const char *kind : {"surface", "region around"}) {
+    const std::string heat = std::string(kind) + " convection 1.0 0.0";
+    constexpr int n = 16;
+    Scene cylinder(around_axis(n, 0.0, LONG_CYLINDER, heat, 1.0, GetParam(), "f p"));
+    const double before = Warm(cylinder).heat();
+    EXPECT_NEAR(before / (PI * 4.0 / n), 1.0, 1e-10);
+    run_to(cylinder, 0.5, 0.4 / (n * n));
+    EXPECT_NEAR(measured(strprintf("cylinder, %s", kind), Warm(cylinder).heat() / before),
+                mean_of_cylinder(), 0.01 * mean_of_cylinder());
+    EXPECT_NEAR((Warm(cylinder).heat() - before) / cylinder.fix("heat")->compute_scalar(), 1.0,
+                1e-10);
+
+    Scene ball(around_axis(n, 0.0, SPHERE, heat, 1.0, GetParam()));
+    const double warm = Warm(ball).heat();
+    run_to(ball, 0.1, 0.4 / (n * n));
+    EXPECT_NEAR(measured("sphere", Warm(ball).heat() / warm) / sphere, 1.0, 0.01);
+    EXPECT_NEAR((Warm(ball).heat() - warm) / ball.fix("heat")->compute_scalar(), 1.0, 1e-10);
+  }
+}
+
+// surfaces around an axis have their area, also where this is not at nodes: a sphere, and a cylinder with its ends
+PARAMETER_TEST(AxisOfBodies, AreaOfTheirSurfaces, const char *,
+               Values("", "shape cubic", "frame total"))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const double offset : {0.0, 0.3, 0.5})
+    for (const char *kind : {"surface", "region around"}) {
+      const std::string heat = std::string(kind) + " flux 1.0";
+      constexpr int n = 20;
+      Scene ball(around_axis(n, offset, SPHERE, heat, 0.0, GetParam()) + "run 1\n");
+      EXPECT_NEAR(measured(strprintf("%s, offset %g, sphere", kind, offset),
+                           ball.fix_vector("heat", 10)[9]) /
+                      (4.0 * PI),
+                  1.0, 0.015);
+      Scene cylinder(around_axis(n, offset,
+                                 "region body block 0 1 0.6 2.6 INF INF\n"
+                                 "region around block -2 1 0.6 2.6 INF INF side out\n",
+                                 heat, 0.0, GetParam()) +
+                     "run 1\n");
+      // edges lose cells as in the plane: 0.5, and in a container, whose edges are in the same place, 1
+      const double area = measured("cylinder", cylinder.fix_vector("heat", 10)[9]);
+      const double lost = (kind[0] == 's' ? 0.5 : 1.0) / n;
+      EXPECT_LT(area, 6.0 * PI * 1.005);
+      EXPECT_GT(area, 6.0 * PI * 0.995 - 4.0 * PI * lost);
+    }
 }
 
 // a thin plate of aluminum that radiates from both of its surfaces, from 1000 K to 300 K: 484.5102 K after 600 s (M2 b)
@@ -280,17 +427,38 @@ TEST(Thin, IsNotSaidOfCorners)
   }
 }
 
-TEST(Ranks, Agree)
+PARAMETER_TEST(RanksWithShapes, Agree, const char *,
+               Values("", "shape linear", "shape gimp", "shape cpdi", "frame total"))
 {
   const std::string scene =
-      round(6, 0.2, 2, "surface convection 2.0 0.3 region hot temperature 3.0", 1.0);
-  OnRanks run(replaced(scene, "region around", "region hot sphere 0 1.6 0 0.63\nregion around") +
-                  "velocity all set 0.2 0.3 0\n",
-              "run 40\n");
+      round(6, 0.2, 2, "surface convection 2.0 0.3 region hot temperature 3.0 stages 64", 1.0);
+  OnRanks run(
+      replaced(replaced(scene, "region around", "region hot sphere 0 1.6 0 0.63\nregion around"),
+               "fix m all",
+               std::string("unfix grid\nfix grid all mpm 0.16666666666666666 origin "
+                           "0.033 0.023 ") +
+                   GetParam() + "\nfix m all") +
+          "velocity all set 0.2 0.3 0\n",
+      "run 40\n");
   EXPECT_LT(run.difference(), 1e-12);
   const double one = run.serial.fix("heat")->compute_scalar();
   EXPECT_GT(std::fabs(one), 1e-3);
   EXPECT_NEAR(run.parallel.fix("heat")->compute_scalar() / one, 1.0, 1e-11);
+}
+
+TEST(Ranks, AgreeAroundAnAxis)
+{
+  const std::string hot = "region hot sphere 0 2.9 0 0.4\n";
+  for (const char *options : {"", "shape linear", "frame total"}) {
+    OnRanks run(around_axis(8, 0.0, SPHERE + hot,
+                            "surface convection 2.0 0.3 region hot temperature 3.0", 1.0, options) +
+                    "velocity all set 0 0.3 0\n",
+                "run 20\n");
+    EXPECT_LT(run.difference(), 1e-12);
+    const double one = run.serial.fix("heat")->compute_scalar();
+    EXPECT_GT(std::fabs(one), 1e-3);
+    EXPECT_NEAR(run.parallel.fix("heat")->compute_scalar() / one, 1.0, 1e-11);
+  }
 }
 
 namespace {
@@ -420,6 +588,9 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"fix heat all mpm/heat region wall flux 1 region wall flux 2", "given twice"},
                   {"region open block 1 2 INF INF INF INF open 1\n"
                    "fix heat all mpm/heat region open flux 1.0",
-                   "open faces"}},
+                   "open faces"},
+                  {"unfix grid\nfix grid all mpm 0.25 shape bernstein frame total transfer apic\n"
+                   "fix heat all mpm/heat surface flux 1.0",
+                   "use another shape"}},
                  "run 1\n");
 }

@@ -345,6 +345,29 @@ TEST(TotalPeriodic, MovingIsAtRest)
 }
 
 // ---------------------------------------------------------------------- what is refused
+// points that lie where functions of other nodes begin, to rounding: all nodes that either side of it reaches have their blocks
+TEST(TotalReach, KnowsRounding)
+{
+  Scene run(plane("lj", "f p", "0 1.5 0 0.1", 1, 0.0025) +
+            "region bar block 0 1 INF INF INF INF\ncreate_points 1 region bar spacing 0.0125\n"
+            "fix grid all mpm 0.025 origin 0.99375 0 frame total\n"
+            "fix m all mpm/material density 1.0 eos linear 1e-6\ntimestep 0.001\nrun 1\n");
+  const auto &grid = run.grid();
+  int sides = 0;
+  for (int i = 0; i < run.n(); i++) {
+    const double t = (run.x()[i][0] - 0.99375) / 0.025 - 0.5;
+    sides += std::fabs(t - std::lround(t)) < 1e-9;
+    for (const double rounding : {-1e-9, 1e-9}) {
+      const int first = (int) std::floor(t + rounding);
+      for (int node = first; node < first + 3; node++) {
+        const int block[3] = {node >> grid.shift_bits, 0, 0};
+        EXPECT_GE(grid.find(block), 0) << node;
+      }
+    }
+  }
+  EXPECT_GT(sides, 0);
+}
+
 TEST(TotalInput, IsRefused)
 {
   const std::string head = space("lj", "f f f", "0 8 0 8 0 8"),

@@ -79,6 +79,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   bool looks_beyond_points() const override { return false; }
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override;
   bool decides_contact(const MPMField &) const override;
+  bool is_projection() const override { return !decides(); }
   void act(double dt, Stage) override;
 
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */

@@ -32,6 +32,10 @@
    to a node, add up to one where they touch, whatever the position of the interface relative to the
    nodes, and to less while there is a gap or beyond the end of one of them. What of this volume is
    outside of fixed faces of the box does not count (Room).
+
+   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (fix_mpm_boundary.cpp). Friction is
+   that of the rest, which is between grains: J_t <= mu (J_n - J_w). Where J_n would be below J_w, grains part, and the water alone
+   pushes. Of two bodies with water, which do not exchange any, the mean counts.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_contact.h"
@@ -49,6 +53,7 @@
 #include "mpm_image.h"
 #include "mpm_node_sums.h"
 #include "mpm_options.h"
+#include "mpm_physics.h"
 #include "mpm_point_map.h"
 #include "mpm_state.h"
 #include "mpm_stencil.h"
@@ -77,6 +82,11 @@ static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;
 // decide whether they touch
 
 static constexpr double ROUNDING = 1.0e-8;
+
+// with pore water, of which each node between bodies bears a part, bodies touch at sums that are not smaller than this; and where it is
+// told that some of them do not
+
+static constexpr double SLACK = 0.02, NEARLY = 0.8;
 
 // bodies that slide along each other approach each other by rounding, which must not decide whether
 // they stick: at least by this part of their speeds
@@ -195,7 +205,7 @@ void FixMPMContact::init()
                  "Fix mpm/contact {}: {} is not the ID of a fix mpm: define one fix mpm for each "
                  "body",
                  id, name);
-    bodies.push_back({field, {}, {}, {}, {}, {}, {}, {}});
+    bodies.push_back({field, {}, {}, {}, {}, {}, {}, {}, {}});
   }
   const MPMField &first = *bodies[0].field;
   for (const auto &body : bodies) {
@@ -238,6 +248,7 @@ void FixMPMContact::init()
   look = true;
   steps = 0;
   unsolved.begin();
+  told_of_water = false;
 }
 
 /** Called by fix mpm, whose init() may come before this one; a missing field is found here. */
@@ -439,6 +450,9 @@ bool FixMPMContact::map_bodies()
     map_gradient(*body.field, normal_by == MASS ? Weight::MASS : Weight::VOLUME, body.near,
                  body.gradient);
     if (gap || look) map_volume(*body.field, body.near, body.share);
+    body.water.clear();
+    if (pressure_of_physics(*body.field))
+      surface_force_of_physics(*body.field, body.near, body.water);
   }
   return true;
 }
@@ -736,7 +750,57 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
     const double opening = std::max(0.0, full - volume_share) * cell / pair.area;
     pair.fade = std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
   }
-  return !gap || volume_share >= full * (1.0 - ROUNDING) || pair.fade > 0.0;
+  pair.water = 0.0;
+  const bool wet = is_wet(pair);
+  const bool touches = !gap || volume_share >= full * (1.0 - (wet ? SLACK : ROUNDING)) ||
+      pair.fade > 0.0;
+  if (wet) {
+    pair.water = water_between(pair);
+    if ((touches || volume_share > NEARLY * full) && (c.owned >> n & 1))
+      water_sums[touches ? 0 : 1] += std::fabs(pair.water);
+  }
+  return touches;
+}
+
+/** Impulse along the normal that water bears in this step, positive if it pushes. */
+double FixMPMContact::water_between(const Pair &pair) const
+{
+  double sum = 0.0;
+  int wet = 0;
+  for (const int k : {pair.a, pair.b}) {
+    const Body &body = bodies[k];
+    if (body.water.empty()) continue;
+    Grid &grid = body.field->grid;
+    const double *const record = k == pair.a ? pair.ra : pair.rb;
+    const int64_t node = (record - grid.nodes()) / grid.nreal;
+    const double along = MathExtra::dot3(&body.water[3 * node], pair.n);
+    sum += k == pair.a ? along : -along;
+    wet++;
+  }
+  return wet ? dt_last * sum / wet : 0.0;
+}
+
+/** Collective, where bodies have water: one warning if a part of its force is at nodes where they are not in contact, though they
+ *  nearly fill them. */
+void FixMPMContact::report_missed_water()
+{
+  constexpr double MOST = 0.05;
+  if (told_of_water || std::all_of(bodies.begin(), bodies.end(), [](const Body &body) {
+        return !pressure_of_physics(*body.field);
+      }))
+    return;
+  double all[2];
+  MPI_Allreduce(water_sums, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  std::fill_n(water_sums, 2, 0.0);
+  if (!(all[0] > 0.0 && all[1] > MOST * all[0])) return;
+  told_of_water = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/contact {}: {:.2g} of the force of pore water between bodies is at "
+                   "nodes that these fill nearly, but where they are not in contact, so that it "
+                   "counts as one of grains: use gap yes with a smaller share; this is said only "
+                   "once",
+                   id, all[1] / (all[0] + all[1]));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -755,8 +819,10 @@ void FixMPMContact::find_contacts()
       Pair pair;
       for (int a = 0; a < nfields; a++)
         for (int b = a + 1; b < nfields; b++)
-          if (node.record[a] && node.record[b] && make_pair(c, n, a, b, volume_share, pair))
+          if (node.record[a] && node.record[b] && make_pair(c, n, a, b, volume_share, pair)) {
+            pair.water /= count_bodies(node) - 1;    // bodies at several others share it
             pairs.push_back(pair);
+          }
       node.last = (int) pairs.size();
       if (node.last > node.first) nodes.push_back(node);
     }
@@ -827,16 +893,19 @@ void FixMPMContact::apply(Pair &pair, int nothers, double &largest, double dt, b
     if (pair.state == OPEN) normal = 0.0;
   } else {
     const double unit = force->ftm2v / force->nktv2p * pair.area * pair.fade * dt;
-    normal = std::max(normal, law == ADHESIVE ? -normal_strength * unit : 0.0);
+    const double by_water = std::max(pair.water, 0.0);
+    normal = std::max(normal, by_water - (law == ADHESIVE ? normal_strength * unit : 0.0));
     if (law == STICK) {
       double speeds[2] = {0.0, 0.0};
       for (int d = 0; d < dim; d++) {
         speeds[0] += pair.ra[d] * pair.ra[d];
         speeds[1] += pair.rb[d] * pair.rb[d];
       }
-      if (normal <= APPROACH * m * (sqrt(speeds[0]) + sqrt(speeds[1]))) normal = 0.0;
+      if (normal - by_water <= APPROACH * m * (sqrt(speeds[0]) + sqrt(speeds[1])))
+        normal = by_water;
     }
-    const double push = std::max(normal, 0.0), bond = shear_strength * unit;
+    const double push = normal > by_water ? normal - pair.water : 0.0;
+    const double bond = shear_strength * unit;
     const double limit = static_friction * push + bond;
     keep = 1.0;
     if (law == STICK)
@@ -1175,7 +1244,10 @@ void FixMPMContact::act(double dt, Stage stage)
     for (auto &body : bodies) foresee_walls(body);
   }
   resolve_all(dt, !count);
-  if (count && ++steps % LOOK_EVERY == 1) report_unsolved();
+  if (count && ++steps % LOOK_EVERY == 1) {
+    report_unsolved();
+    report_missed_water();
+  }
 }
 
 /* ----------------------------------------------------------------------

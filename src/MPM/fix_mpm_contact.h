@@ -94,6 +94,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     double n[3];             // unit normal from a to b
     double area;             // of the interface at the node
     double fade;             // share of the adhesive strength that is left at this gap
+    double water;            // impulse on b along n that water in pores bears
     struct Walls {           // what they will do to a body after contact
       char held;             // components to which they give their velocity, bits
       char mirrored;         // and that move with those of the images of the node
@@ -145,6 +146,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
     std::vector<char> near;          // [slot] a block where bodies share nodes
     std::vector<double> gradient;    // of the volume (or mass) at the nodes
     std::vector<double> share;       // volume at the nodes / node volume
+    std::vector<double> water;       // [node][3] of MPMPhysics::surface_force(); empty: none
     std::vector<char> held;          // bits, FixMPMBoundary::mark_held()
     FixMPMBoundary::Foreseen foreseen;
 
@@ -178,6 +180,9 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
 
   bigint steps = 0;            // of this fix in this run
   MPMFirstNote<4> unsolved;    // step and place
+  double water_sums[2] = {
+      0.0, 0.0};    // of the impulse of water at nodes in contact, and at those that are nearly
+  bool told_of_water = false;
 
   // of group_meetings()
 
@@ -200,6 +205,12 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void find_contacts();
   void separate_points();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);
+  bool is_wet(const Pair &pair) const
+  {
+    return !bodies[pair.a].water.empty() || !bodies[pair.b].water.empty();
+  }
+  double water_between(const Pair &) const;
+  void report_missed_water();
   bool begin(Node &, Velocities &start);
   int count_bodies(const Node &) const;
   void set_velocities(const Meeting &);

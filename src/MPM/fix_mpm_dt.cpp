@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "error.h"
 #include "fix_mpm_elements.h"
+#include "fix_mpm_incompressible.h"
 #include "fix_mpm_rigid.h"
 #include "force.h"
 #include "integrate.h"
@@ -19,6 +20,7 @@
 #include "mpm_field.h"
 #include "mpm_grains.h"
 #include "mpm_options.h"
+#include "mpm_physics.h"
 #include "mpm_time_limit.h"
 #include "neighbor.h"
 #include "output.h"
@@ -95,8 +97,9 @@ FixMPMDt::~FixMPMDt() = default;
 
 void FixMPMDt::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/dt needs a fix mpm");
+  if (modify->get_fix_by_style("^mpm$").empty() &&
+      modify->get_fix_by_style("^mpm/incompressible$").empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/dt needs a fix mpm or mpm/incompressible");
   for (auto *ifix : modify->get_fix_list()) {
     if (ifix == this) continue;
     const std::string other = ifix->style;
@@ -146,8 +149,9 @@ FixMPMDt::Limit FixMPMDt::point_limit() const
     compare(field->time_limit->stable_dt(tag, speed), field->options.every);
   for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
     compare(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
-  tag = 0;
   speed = 0.0;
+  for (const auto *flow : find_fixes<FixMPMIncompressible>(lmp)) compare(flow->stable_dt(tag));
+  tag = 0;
   for (auto *ifix : modify->get_fix_by_style("^mpm/rigid$"))
     compare(dynamic_cast<FixMPMRigid *>(ifix)->stable_dt());
   return smallest(mine);

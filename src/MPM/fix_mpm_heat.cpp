@@ -114,7 +114,13 @@ Options MPMHeatOptions::declare(int dim)
                       "heat crosses a cell")}},
              {"pic", MPMHeatTransfer::PIC, "points get the temperature of the nodes"},
              {"affine", MPMHeatTransfer::AFFINE,
-              "points get the temperature of the nodes, and its gradient"}})});
+              "points get the temperature of the nodes, and its gradient"},
+             {"xpic",
+              MPMHeatTransfer::XPIC,
+              "points get the change of the nodes, and keep of their temperature what nodes see of "
+              "it",
+              {integer(transfer.order, "order", {1, 100, true},
+                       "terms of the inverse of the matrix of capacities")}}})});
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
   o.add("grains", {yes_no(grains)},
@@ -176,8 +182,7 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
-  if (transfer.kind != MPMHeatTransfer::PIC)
-    state.declare(gradients, "mpm/heat:gradient", domain->dimension);
+  if (transfer.has_slopes()) state.declare(gradients, "mpm/heat:gradient", domain->dimension);
   grains_said = options.given("grains");
   if (grains) {
     state.declare(waiting, "mpm/heat:waiting", 1);
@@ -258,7 +263,7 @@ void FixMPMHeat::init()
 /** Do faces of the box take their weights from the surface that nodes know (MPMHeatBody)? */
 static bool weighs_faces(const MPMField &field)
 {
-  return field.options.shape == QUADRATIC || field.options.shape == CUBIC;
+  return field.options.shape != LINEAR && field.options.shape != BERNSTEIN;
 }
 
 /** Temperatures in kelvins for radiation, and variables. */
@@ -284,16 +289,17 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
                   {o.axisymmetric && domain->boxlo[0] <= 1.0e-6 * field->lattice.h &&
                        conditions[0].kind != MPMHeatCondition::INSULATED,
                    "a condition at xlo, which is the axis of symmetry", "leave xlo insulated"}});
-    if (!surfaces.empty() || std::any_of(pairs.begin(), pairs.end(), [&](const auto &p) {
-          return p.field[0] == field->id() || p.field[1] == field->id();
-        })) {
-      const std::string what = "with regions, free surfaces, or contact";
-      refuse_field(lmp, *this, *field,
-                   {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape " + what,
-                     "use shape quadratic or cubic"},
-                    {o.total, "frame total " + what, "use frame updated"},
-                    {o.axisymmetric, "axisymmetric " + what, "use a plane or 3d"}});
-    }
+    const bool touches = std::any_of(pairs.begin(), pairs.end(), [&](const auto &p) {
+      return p.field[0] == field->id() || p.field[1] == field->id();
+    });
+    refuse_field(lmp, *this, *field,
+                 {{o.shape == BERNSTEIN && (touches || !surfaces.empty()),
+                   "shape bernstein with regions, free surfaces, or contact",
+                   "what its nodes see of a surface depends on where they are in a cell: use "
+                   "another shape"},
+                  {o.total && touches, "frame total with contact",
+                   "its nodes are not where the body is, and do not know where bodies touch: use "
+                   "frame updated"}});
     if (gradients) field->slopes.push_back(&gradients);
     fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
     fields.back()->init(sigma(), !surfaces.empty() || !pairs.empty());

@@ -80,7 +80,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
  private:
   using Heats = MPMConduction::Heats;
 
-  MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic
+  MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic and xpic
   MPMRows waiting;      // [n][1] heat that grains have given to points, see MPMGrainHeat
   std::unique_ptr<MPMGrainHeat> grain_heat;    // null: not asked for
   bool grains_said = false;                    // is the keyword there?

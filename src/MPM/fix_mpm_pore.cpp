@@ -384,15 +384,16 @@ void FixMPMPore::init()
   }
 }
 
+/** Rigid bodies touch nodes inside of them, while the force of the water is at all nodes next to their surface. */
 void FixMPMPore::warn_of_contact() const
 {
   if (comm->me || wet.empty()) return;
-  for (const char *style : {"mpm/contact", "mpm/rigid"})
-    for (const auto *fix : modify->get_fix_by_style(std::string("^") + style + "$"))
-      error->warning(FLERR,
-                     "Fix {} {} takes the pressure of pore water for one between grains: friction "
-                     "and separation of soils of fix mpm/pore {} are those of the total stress",
-                     style, fix->id, id);
+  for (const auto *fix : modify->get_fix_by_style("^mpm/rigid$"))
+    error->warning(FLERR,
+                   "Fix mpm/rigid {} takes the pressure of pore water for one between grains: "
+                   "friction and separation of soils of fix mpm/pore {} are those of the total "
+                   "stress",
+                   fix->id, id);
 }
 
 void FixMPMPore::init_physics(MPMPlan &plan)

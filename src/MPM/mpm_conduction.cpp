@@ -12,13 +12,16 @@
      C_i = sum_p C_p N_ip,  T_i = sum_p C_p N_ip [T_p + g_p (x_i - x_p)]/C_i,
      C_i dT_i/dt = - sum_p V_p k_p (sum_j T_j grad N_jp) . grad N_ip + sum_p V_p s_p N_ip + faces,
 
-   with the gradient g_p of each point but for the transfer pic, and sources s_p. Then points get
+   with the gradient g_p of each point but for the transfers pic and xpic, and sources s_p. Then points get
 
      T_p = sum_i N_ip T_i                                                  (pic, affine)
      T_p = sum_i N_ip T_i + e (T_p - sum_i N_ip T_i of the start)          (relax)
+     T_p = sum_i N_ip (T_i - T_i of the start + u_i)                       (xpic)
      g_p = D^-1 sum_i N_ip T_i (x_i - x_p),  D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T
 
-   All of them keep sum_p C_p T_p: the sum of weights is one, and sum_i N_ip (x_i - x_p) = 0.
+   with the terms u of MPMNodeScalar::add_terms() for the temperatures of nodes that would give points theirs (XPIC, C.C.
+   Hammerquist, J.A. Nairn, Comput. Methods Appl. Mech. Eng. 318 (2017) 724, of the momentum there). All of them keep sum_p C_p T_p: the
+   sum of weights is one, and sum_i N_ip (x_i - x_p) = 0.
 
    Without g_p, nodes at faces, whose points are all on one side, would have the temperature of another place: an
    error of first order in the heat that flows. With pic each step smoothes, as a conductivity of the order of h^2/dt
@@ -81,6 +84,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// of nodes that points hardly reach, in units of the bound of rates inside of a body
+static constexpr double MOST_AT_LIGHT_NODES = 4.0;
+
 /* ---------------------------------------------------------------------- */
 
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
@@ -126,7 +132,7 @@ void MPMConduction::init(double sigma, bool surfaces)
   keep_present(mine);
   faces.init(sigma);
   wants_volumes = faces.any() || (surfaces && thermals.size() < field.materials.size());
-  scalar.init(transfer.kind != MPMHeatTransfer::PIC, wants_volumes);
+  scalar.init(transfer.has_slopes(), wants_volumes);
 }
 
 std::size_t MPMConduction::index_of(const FixMPMMaterial *fix) const
@@ -348,7 +354,6 @@ double MPMConduction::bound(const Thermal &t, int i, double volume) const
  *  Nodes with a much greater one have next to no capacity: points conduct less there. */
 double MPMConduction::row_bound(double usual)
 {
-  static constexpr double MOST = 4.0;    // in units of the usual one
   double mine[2] = {usual, 0.0}, all[2];
   mine[1] = scalar.greatest_rate(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
@@ -362,7 +367,7 @@ double MPMConduction::row_bound(double usual)
       });
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   shares.clear();
-  const double limit = MOST * all[0];
+  const double limit = MOST_AT_LIGHT_NODES * all[0];
   if (all[1] <= limit) return mine[1];
 
   field.nodes.complete(rate.data(), 1, 1);
@@ -440,11 +445,29 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
         return true;
       },
       transfer.kind == MPMHeatTransfer::RELAX);
+  if (transfer.kind == MPMHeatTransfer::XPIC) find_unseen();
   if (simple)
     most *= steepest;
   else if (!field.boxes && !field.domains && steepest == 0.0)
     most = row_bound(4.0 * dim / (field.lattice.h * field.lattice.h) * most);
   return most;
+}
+
+/** XPIC: the place of the temperatures before gets by how much these are above those of the series, so that points get the new
+ *  temperature less this. */
+void MPMConduction::find_unseen()
+{
+  std::vector<double> &unseen = scalar.before;
+  unseen = temperature;
+  scalar.add_terms(
+      transfer.order,
+      [this](const MPMPointMap::Run &run, int first, int n, double *C) {
+        const Thermal *const t = thermal(run.material);
+        Conduction room;
+        for (int p = 0; p < n; p++) C[p] = atom->rmass[first + p] * t->at(first + p, room).capacity;
+      },
+      unseen);
+  for (std::size_t k = 0; k < unseen.size(); k++) unseen[k] = temperature[k] - unseen[k];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -489,7 +512,8 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
   const double crossings = slowest * field.step_dt() / (field.lattice.h * field.lattice.h);
-  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
+  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX,
+             xpic = transfer.kind == MPMHeatTransfer::XPIC;
   const double keep = relaxes ? exp(-transfer.relax * crossings) : 0.0;
   double got = 0.0;
   scalar.nodes_to_points(
@@ -501,7 +525,9 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
         for (int p = 0; p < n; p++) {
           double *const history = t->fix->history[first + p], &T = history[t->temperature];
           if (t->varies) c = t->fix->material->conduction(history);
-          const double now = relaxes ? q[p][3] + keep * (T - before[p]) : q[p][3];
+          double now = q[p][3];
+          if (relaxes) now += keep * (T - before[p]);
+          if (xpic) now -= before[p];
           sum += atom->rmass[first + p] * c.capacity * (now - T);
           if (c.by_enthalpy) {
             t->fix->material->warm(history, c.capacity * (now - T));
@@ -513,7 +539,7 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
         if (gradients) copy_rows(dim, n, q[0], 4, gradients[first], dim);
         got += sum;
       },
-      relaxes);
+      relaxes || xpic);
   return got;
 }
 
@@ -535,8 +561,8 @@ double MPMConduction::greatest_possible() const
   return all;
 }
 
-/** Functions that points alone do not bound, and domains, have the bound of the last step, and before the first one
- *  what they have inside of a body that is not deformed. */
+/** Domains have the bound of the last step, and before the first one what they have inside of a body that is not deformed.
+ *  Functions that points alone do not bound have that of light nodes, which are there as soon as a point comes to another cell. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
   if (!active) return 0.0;
@@ -555,13 +581,13 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
       here = bound(*t, i, volume_of(i));
       // of interfaces what is possible, and not what is there at present: the same after a restart
       if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
-    } else if (conducted == 0.0) {
+    } else if (!field.domains || conducted == 0.0) {
       double k[3][3], x[24], least = 1.0;
       tensor(*t, i, k);
       if (field.domains) field.domains->corners_of_box(i, x);
       for (int d = 0; field.domains && d < dim; d++)
         for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
-      const double steep = field.domains ? 1.0 / (least * least) : 4.0 * dim;
+      const double steep = field.domains ? 1.0 / (least * least) : MOST_AT_LIGHT_NODES * 4.0 * dim;
       here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
           (atom->rmass[i] * t->at(i, room).capacity);
     }
@@ -569,7 +595,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     most = here;
     tag = atom->tag[i];
   }
-  return bounded || conducted == 0.0 ? most : conducted;
+  return field.domains && conducted > 0.0 ? conducted : most;
 }
 
 double MPMConduction::memory_usage() const

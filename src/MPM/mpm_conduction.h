@@ -23,11 +23,15 @@ namespace LAMMPS_NS {
 
 /** How temperatures go from nodes to points. */
 struct MPMHeatTransfer {
-  enum Kind { RELAX, PIC, AFFINE };
+  enum Kind { RELAX, PIC, AFFINE, XPIC };
 
   Kind kind = RELAX;
+  int order = 1;    ///< terms of the inverse of the matrix of capacities, of XPIC
   double relax =
       1.0;    ///< how fast points take that of the nodes, in units of conduction over a cell
+
+  /** Do points keep gradients of the temperature? */
+  bool has_slopes() const { return kind == RELAX || kind == AFFINE; }
 };
 
 /** Conduction of heat between the points of one field: temperatures of the nodes, and their rates. The temperatures
@@ -50,7 +54,7 @@ class MPMConduction : protected Pointers {
   void init(double sigma, bool surfaces);
 
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
-   *  the transfer pic. Returns the bound of the rates of conduction of this rank [1/time]. */
+   *  the transfers pic and xpic. Returns the bound of the rates of conduction of this rank [1/time]. */
   double points_to_nodes(const MPMRows &gradients);
   /** The bound of the rates of conduction on all ranks. */
   void keep_rate(double conduction) { conducted = conduction; }
@@ -121,6 +125,7 @@ class MPMConduction : protected Pointers {
   double steepness(int i) const;
   double row_bound(double usual);
   void init_layers();
+  void find_unseen();
 };
 
 /** Conductivities of a material along the axes of a point with the deformation gradient F, which are the rows of n, unit

@@ -139,6 +139,7 @@ void MPMField::init(MPMPlan *plan_of_all)
 {
   plan = plan_of_all;
   running = time_limit->watch_volume = keep_old = keep_old_now = false;
+  time_limit->bound = true;
   check_box();
   frame->check();
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();

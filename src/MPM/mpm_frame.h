@@ -90,6 +90,8 @@ class MPMFrame : protected Pointers {
    *  a known one, it may be too high, but not above that. */
   virtual double speed(int i, double &c, double known) const;
 
+  /** Distance of a point from the axis of symmetry; x: its first coordinate at the start of the step. */
+  virtual double radius(int /*i*/, double x) const { return x; }
   /** Length of the circle with radius r around the axis of symmetry; 1 without one. */
   virtual double circle(double /*r*/) const { return 1.0; }
   /** The same of a node: at the axis and beyond that of a quarter of a cell from it. */
@@ -106,8 +108,6 @@ class MPMFrame : protected Pointers {
  protected:
   MPMField &field;
 
-  /** Distance of a point from the axis; x: its first coordinate at the start of the step. */
-  virtual double radius(int /*i*/, double x) const { return x; }
   /** Strain A_zz of this step in 2d, of the points from first on; null: there is none. Around an axis
    *  of symmetry, or else what stretch() makes of plane strain. */
   virtual const double *hoop_strain(int first) const

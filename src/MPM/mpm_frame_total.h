@@ -36,11 +36,9 @@ class MPMFrameTotal : public MPMFrame {
   void lattice_F(int i, double F[3][3]) const override;
   double lattice_jacobian(int i) const override;
   double speed(int i, double &c, double known) const override;
+  double radius(int i, double x) const override;
   void start_counting() override { nupdate = 0; }
   std::string report() const override;
-
- protected:
-  double radius(int i, double x) const override;
 
  private:
   bigint nupdate = 0;         // of the reference in this run

@@ -22,6 +22,11 @@
    at most what is above with V_i = sum_p V_p N instead of C_i, and with the factor min(1, 2 f) of the share f of V_i that conducts,
    w^2/C_i is bounded again. What these factors leave of the weights is the share of the area through which heat goes.
 
+   Linear functions have no such bound: a point just inside of a cell gives the node behind it a gradient, but next to no capacity. There
+   the factor is min(1, 2 V_i/V) of what the volume V of a node with this surface is, as at faces of the box (mpm_heat_faces.cpp),
+   which makes the place at which a temperature is taken wrong by a part of a cell. And where the volume of the points ends is known to
+   half of their spacing only, as all places of a point in a cell are the same to its gradients.
+
    The area of a line is that of the whole line where the body fills all that is behind its surface, and less at the sides of
    the body and of the box. The sum of n.G has the noise of sums over points that are no integrals.
 
@@ -53,6 +58,8 @@ static constexpr double LEAST =
 static constexpr double ENOUGH = 0.5;    // of the volume of a node, that conducts, for its weight
 // sums over points are not exactly integrals: a line from here on is full, and what is between
 static constexpr double FULL = 0.95, NOT_FULL = 0.8;
+// gaps up to which all heat goes through, and from which on none, in node spacings
+static constexpr double TOUCHES = 0.2, IS_APART = 0.4, MORE_WITH_LINEAR = 0.1;
 
 MPMHeatBody::MPMHeatBody(LAMMPS *lmp, MPMField &field, MPMConduction *conduction) :
     Pointers(lmp), field(field), conduction(conduction), profile(field)
@@ -108,6 +115,23 @@ void MPMHeatBody::find_surface()
     if (near[of]) near[image] = 1;
   map_surface(field, near, gradient);
   map_volume(field, near, share);
+  if (!field.options.axisymmetric) return;
+  for (int64_t node = 0; node < field.grid.nnodes(); node++)
+    for (int d = 0; d < field.lattice.dim; d++) gradient[3 * node + d] /= node_circle(node);
+}
+
+double MPMHeatBody::node_circle(int64_t node) const
+{
+  return field.frame->node_circle((int) (node / NODES_PER_BLOCK), (int) (node % NODES_PER_BLOCK));
+}
+
+/** Of lines along the axis of symmetry that of their nodes, which next to the axis have a mean radius. */
+double MPMHeatBody::circle(int axis, const int *index, double at) const
+{
+  if (!field.options.axisymmetric) return 1.0;
+  const auto &lattice = field.lattice;
+  const double r = lattice.origin[0] + (axis == 0 ? at : index[0]) * lattice.h;
+  return field.frame->circle(std::max(r, axis == 0 ? 0.0 : 0.25 * lattice.h));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -133,26 +157,50 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *
   }
   if (!(sum > LEAST * full_area)) return false;
   line.place = moment / sum;
-  double there = 0.0, full = 0.0;
+  double there = 0.0, full = 0.0, full_at = 0.0;
   for (int k = 0; k < line.n; k++) {
     line.weight[k] /= sum;
     if (line.node[k] >= 0) there += w[k] * share[line.node[k]];
     full += w[k] * profile.volume((first + k - line.place) * into[axis]);
+    full_at += w[k] * profile.volume((first + k - at) * into[axis]);
   }
-  const double part = there / full;
-  line.area = full_area *
+  const bool linear = field.options.shape == LINEAR;
+  const double part = there / (linear ? std::min(full, full_at) : full);
+  line.area = full_area * circle(axis, base, at) *
       std::min(1.0,
                part < NOT_FULL
                    ? part
                    : NOT_FULL + (part - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL));
-  return true;
+  return !linear || weigh_by_functions(first, at, part, into[axis], w, line);
+}
+
+/** Weights w of the functions at the surface, in proportion to the volume of a node if that is less than half of what it has where
+ *  material fills this part of the line. */
+bool MPMHeatBody::weigh_by_functions(int first, double at, double part, double into,
+                                     const double *w, Line &line) const
+{
+  double sum = 0.0;
+  for (int k = 0; k < line.n; k++) {
+    line.weight[k] = 0.0;
+    if (line.node[k] < 0 || !(share[line.node[k]] > 0.0)) continue;
+    const double whole = std::min(1.0, part) * profile.volume((first + k - at) * into);
+    line.weight[k] = w[k] * std::min(1.0, share[line.node[k]] / (ENOUGH * whole));
+    sum += line.weight[k];
+  }
+  for (int k = 0; k < line.n; k++) line.weight[k] /= sum;
+  return sum > LEAST;
+}
+
+double MPMHeatBody::touches(double gap) const
+{
+  const double more = field.options.shape == LINEAR ? MORE_WITH_LINEAR : 0.0;
+  return std::clamp((IS_APART + more - gap) / (IS_APART - TOUCHES), 0.0, 1.0);
 }
 
 double MPMHeatBody::conducting(int64_t node) const
 {
   if (!conduction->conducts_in_part()) return 1.0;
-  const double all = share[node] * field.lattice.cell_volume() *
-      field.frame->node_circle((int) (node / NODES_PER_BLOCK), (int) (node % NODES_PER_BLOCK));
+  const double all = share[node] * field.lattice.cell_volume() * node_circle(node);
   return all > 0.0 ? std::min(1.0, conduction->node_volume()[node] / (ENOUGH * all)) : 0.0;
 }
 

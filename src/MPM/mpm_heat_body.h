@@ -52,7 +52,8 @@ class MPMHeatBody : protected Pointers {
   void want_all() { near.assign(near.size(), 1); }
   /** Sums over points in these blocks. Collective. */
   void find_surface();
-  /** Of nodes: volume in cells, and sum of V grad N, which points out of the body. */
+  /** Of nodes: volume in cells, and sum of V grad N, which points out of the body; around an axis of symmetry for each unit of
+   *  length around it. Total frame: of the reference configuration. */
   std::vector<double> share, gradient;
 
   /** The line along an axis through a place on it (in node spacings), base: a node of it; into: the unit normal
@@ -63,6 +64,8 @@ class MPMHeatBody : protected Pointers {
   /** What the weight of a node counts, as material there conducts: 1 down to half of its volume, and in proportion below, so
    *  that no node gets heat that it has no capacity for. */
   double conducting(int64_t node) const;
+  /** Share of the heat that goes through a gap (in node spacings). */
+  double touches(double gap) const;
   double temperature(const Line &) const;
   /** Rate of this temperature by all other heat. */
   double drift(const Line &) const;
@@ -71,6 +74,10 @@ class MPMHeatBody : protected Pointers {
   void begin_stage();
   void give(const Line &, double power);
   void end_stage();
+
+  /** Length around an axis of symmetry of the surface at a place on the line of nodes along an axis through a node (in node
+   *  spacings); 1 without one. */
+  double circle(int axis, const int *index, double at) const;
 
   /** Share of the function of a node along an axis that is inside of fixed faces of the box. */
   double room(int axis, int index) const;
@@ -87,6 +94,9 @@ class MPMHeatBody : protected Pointers {
   std::vector<double> heat;
 
   void list_images();
+  double node_circle(int64_t node) const;
+  bool weigh_by_functions(int first, double at, double part, double into, const double *w,
+                          Line &) const;
 };
 
 /* ---------------------------------------------------------------------- */

@@ -41,9 +41,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// gaps up to which all heat goes through, and from which on none, in node spacings
-static constexpr double TOUCHES = 0.2, IS_APART = 0.4;
-
 MPMHeatContact::MPMHeatContact(LAMMPS *lmp, MPMHeatBody &a, MPMHeatBody &b,
                                const MPMHeatPair &pair) :
     Pointers(lmp),
@@ -139,7 +136,7 @@ bool MPMHeatContact::make_place(int axis, const int *index, int64_t a, int64_t b
     if (!body[k]->make_line(axis, index, index[axis] + part, k ? normal : back, place.line[k]))
       return false;
   const double gap = (place.line[1].place - place.line[0].place) * normal[axis];
-  const double near = std::min(1.0, (IS_APART - gap) / (IS_APART - TOUCHES));
+  const double near = body[0]->touches(gap);
   if (!(near > 0.0)) return false;
   place.area = place.share * near * std::min(place.line[0].area, place.line[1].area) /
       std::fabs(normal[axis]);

@@ -62,6 +62,8 @@ using namespace MPM_NS;
 // sum of weights by the surface, of the area
 static constexpr double THICK = 0.9;
 static constexpr double ENOUGH = 0.5;    // of the volume of a node, for its whole weight
+static constexpr double LIGHT =
+    0.1;    // of a cell: nodes whose points do not tell how full a line is
 // from how near on material touches a face, and is all at it
 static constexpr double TOUCHES = 0.6, IS_AT_FACE = 0.75;
 // sums over points are not exactly integrals: a line from here on is full, and what is between
@@ -71,18 +73,6 @@ static constexpr double FIGHTS = 4.0;
 static constexpr double STIFFEST = 1.0e9;    // of equations: a prescribed temperature
 
 /* ---------------------------------------------------------------------- */
-
-/** Weights of nodes at a place along an axis. Functions of points of finite size depend on the point: a face has the linear
- *  ones, which they are made of. */
-static int weights_at(const MPMField &field, const MPMStencil &stencil, double t, int &first,
-                      double *w)
-{
-  if (!field.boxes) return stencil.weights(t, first, w);
-  first = static_cast<int>(std::floor(t));
-  w[1] = t - first;
-  w[0] = 1.0 - w[1];
-  return 2;
-}
 
 void MPMHeatFaces::init(double sigma_of_units)
 {
@@ -100,7 +90,7 @@ void MPMHeatFaces::init(double sigma_of_units)
     f.axis = face / 2;
     const double x = f.x = face % 2 ? domain->boxhi[f.axis] : domain->boxlo[f.axis];
     const double at = (x - lattice.origin[f.axis]) / lattice.h;
-    f.n = weights_at(field, stencil, at, f.first, f.weight);
+    f.n = stencil.weights(at, f.first, f.weight);
 
     // integrals of functions over the inside, by the midpoint rule
 
@@ -109,7 +99,7 @@ void MPMHeatFaces::init(double sigma_of_units)
       const double depth = (k + 0.5) / SAMPLES;
       int first;
       double w[MOST];
-      const int n = weights_at(field, stencil, face % 2 ? at - depth : at + depth, first, w);
+      const int n = stencil.weights(face % 2 ? at - depth : at + depth, first, w);
       for (int j = 0; j < n; j++)
         if (first + j >= f.first && first + j < f.first + f.n)
           f.full[first + j - f.first] += w[j] / SAMPLES;
@@ -356,7 +346,7 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
     full += face.weight[k] * face.full[k];
     if (!(face.full[k] > 0.0) || !(capacity[line.node[k]] > 0.0)) continue;
     part[k] = V / face.full[k];
-    if (face.weight[k] > 0.0) most = std::max(most, part[k]);
+    if (face.weight[k] > 0.0 && face.full[k] > LIGHT) most = std::max(most, part[k]);
   }
   if (!(most > 0.0)) return;
   const double near = there / (full * most);
@@ -393,7 +383,7 @@ bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line, const MPMHeatB
   if (!body) return false;
   double weight[MOST], sum = 0.0;
   for (int k = 0; k < face.n; k++) {
-    const double G = body->gradient[3 * line.node[k] + face.axis] / circle(line.node[k]);
+    const double G = body->gradient[3 * line.node[k] + face.axis];
     weight[k] = std::max(0.0, face.face % 2 ? G : -G) * body->conducting(line.node[k]);
     sum += weight[k];
   }

@@ -39,8 +39,6 @@ using namespace MPM_NS;
 
 static constexpr double FAR =
     4.0;    // distances from regions beyond are not needed, in node spacings
-// gaps to a region up to which all heat goes through, and from which on none
-static constexpr double TOUCHES = 0.2, IS_APART = 0.4;
 static constexpr double COVERED = 0.5;    // free surfaces that are as near to a region are not free
 static constexpr double ALL_ROOM = 0.999;
 static constexpr int INSIDE = 3;                      // nodes from which on a body is whole
@@ -188,7 +186,7 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
     const double at = index[a] + part;
     if (place.share == 0.0 || !body.make_line(a, index, at, into, place.line)) return;
     const double gap = (place.line.place - at) * into[a];
-    const double touches = std::min(1.0, (IS_APART - gap) / (IS_APART - TOUCHES));
+    const double touches = body.touches(gap);
     if (!(touches > 0.0)) return;
     place.area = place.share * touches * place.line.area / std::fabs(into[a]);
     place.condition = condition;
@@ -342,7 +340,8 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
     const double open = std::min(1.0, (HIDDEN - hidden) / (HIDDEN - OPEN));
     if (!(open > 0.0) || !body.make_line(a, index, index[a] + part, into, place.line)) return;
     place.share *= open;
-    place.area = place.share * most * side * lattice.cell_volume() / (h * std::fabs(into[a]));
+    place.area = place.share * most * side * body.circle(a, index, index[a] + part) *
+        lattice.cell_volume() / (h * std::fabs(into[a]));
     place.condition = condition;
     place.key = node * dim + a;
     if (thin) look_behind(*thin, place, index, part, into);

@@ -44,7 +44,7 @@ using namespace MPM_NS;
 
 // differences of means, and slopes of them per node spacing, below which a point sees one conductivity only
 static constexpr double SAME = 1.0e-9;
-static constexpr double LEAST = 1.0e-200;    // conductivity
+static constexpr double LEAST = 1.0e-100;    // conductivity; its inverse has a square
 
 void MPMLayerMean::find(const Fill &fill)
 {

@@ -17,8 +17,8 @@
 
 namespace LAMMPS_NS {
 
-/** Conductivities of points next to interfaces of materials that conduct differently: the harmonic mean across an
- *  interface and, if this is wanted, the arithmetic one along it, over about a node spacing. */
+/** Conductivities of points next to interfaces of materials that conduct heat, or water in their pores, differently: the
+ *  harmonic mean across an interface and, if this is wanted, the arithmetic one along it, over about a node spacing. */
 class MPMLayerMean {
  public:
   /** Conductivities [n] > 0 and volumes [n] of points; false: this run does not conduct. */

@@ -69,6 +69,39 @@ void MPMLedger::account_for_points()
 }
 
 /* ----------------------------------------------------------------------
+   what n points from first on lose to the nodes by their stress, rows.tau: sum of V tau : grad v, with velocities
+   and their gradients L from the nodes
+------------------------------------------------------------------------- */
+
+double MPMLedger::stress_power(PointRows &rows, int first, int n, const double *L) const
+{
+  const int dim = field.lattice.dim, nL = dim * dim;
+  MPMFrame::ForceRows room;
+  const double *const f = rows.f, *const v = rows.velocity;
+  double power = 0.0;
+  field.frame->forces(rows, first, n, room);
+  for (int p = 0; p < n; p++) {
+    const double *const G = L + nL * p;
+    if (rows.f != f)    // hoop stress
+      for (int d = 0; d < dim; d++)
+        power -= force->nktv2p * (rows.f[3 * p + d] - f[3 * p + d]) * v[3 * p + d];
+    double rate = 0.0;
+    if (rows.P) {
+      for (int k = 0; k < nL; k++) rate += rows.P[nL * p + k] * G[k];
+    } else {
+      const double *const tau = rows.tau + 6 * p;
+      if (dim == 3)
+        rate = tau[0] * G[0] + tau[1] * G[4] + tau[2] * G[8] + tau[3] * (G[1] + G[3]) +
+            tau[4] * (G[2] + G[6]) + tau[5] * (G[5] + G[7]);
+      else
+        rate = tau[0] * G[0] + tau[1] * G[3] + tau[3] * (G[1] + G[2]);
+    }
+    power += rows.vol0[p] * rate;
+  }
+  return power;
+}
+
+/* ----------------------------------------------------------------------
    work of the forces on points (atom->f) and of their stress, at the mean of the old and the final
    velocity of the nodes, which go to the points by the weights and gradients with which P2G has
    brought the forces to the nodes. What elements put on atom->f is internal
@@ -76,14 +109,12 @@ void MPMLedger::account_for_points()
 
 void MPMLedger::account_for_forces()
 {
-  const int dim = field.lattice.dim, nL = dim * dim;
   field.nodes.complete_velocities();
   PointRows r = field.rows();
   if (field.options.averages_stress()) r.tau = field.locking->stress();
   const TransferStep s = field.step_data();
-  double outer = 0.0, inner = 0.0, stress = 0.0;
+  double outer = 0.0, inner = 0.0, stress = 0.0, loads = 0.0;
   double L[9 * BATCH], velocity[3 * BATCH] = {};    // no velocity along z in 2d
-  MPMFrame::ForceRows room;
   const double *const pressure = pressure_of_physics(field);
   double total_stress[6 * BATCH + 8];
 
@@ -100,30 +131,19 @@ void MPMLedger::account_for_forces()
     if (!run.material) return;    // nodes of elements
 
     if (pressure) add_pressure(pressure, b, first, n, total_stress);
-    field.frame->forces(b, first, n, room);
-    for (int p = 0; p < n; p++) {
-      const double *const G = L + nL * p;
-      if (b.f != f)    // hoop stress
-        for (int d = 0; d < dim; d++)
-          stress -= force->nktv2p * (b.f[3 * p + d] - f[3 * p + d]) * v[3 * p + d];
-      double rate = 0.0;
-      if (b.P) {
-        for (int k = 0; k < nL; k++) rate += b.P[nL * p + k] * G[k];
-      } else {
-        const double *const tau = b.tau + 6 * p;
-        if (dim == 3)
-          rate = tau[0] * G[0] + tau[1] * G[4] + tau[2] * G[8] + tau[3] * (G[1] + G[3]) +
-              tau[4] * (G[2] + G[6]) + tau[5] * (G[5] + G[7]);
-        else
-          rate = tau[0] * G[0] + tau[1] * G[3] + tau[3] * (G[1] + G[2]);
-      }
-      stress += b.vol0[p] * rate;
-    }
+    stress += stress_power(b, first, n, L);
+    if (!physics_adds_stress(field, first, first + n)) return;
+    std::fill_n(total_stress, 6 * n, 0.0);
+    add_stress_of_physics(field, first, n, total_stress);
+    b = rows_from(field, r, first);
+    b.velocity = velocity;
+    b.tau = total_stress;
+    loads += stress_power(b, first, n, L);
   };
   points_from_step(field, account, true);
 
   const double unit = force->mvv2e * s.dt;
-  external += unit * s.force_scale * (outer - inner);
+  external += unit * (s.force_scale * (outer - inner) - s.stress_scale * loads);
   internal += unit * (s.stress_scale * stress - s.force_scale * inner);
 }
 

@@ -13,12 +13,17 @@
 
 #include <vector>
 
+namespace MPM_NS {
+struct PointRows;
+}
+
 namespace LAMMPS_NS {
 class MPMField;
 
 /** Energy spent or gained by a field since the first step with a ledger, this rank's share [energy]. */
 struct MPMEnergies {
-  double external;    ///< work of atom->f (gravity, contact by pair styles, walls, ...)
+  double
+      external;    ///< work of atom->f (gravity, contact by pair styles, walls, ...) and of loads that are a stress
   double boundary;    ///< work of node actions of kind boundary
   double contact;     ///< work of node actions between fields
   double internal;    ///< work of stress at the mean of old and new velocity: taken from the motion
@@ -84,6 +89,7 @@ class MPMLedger : protected Pointers, public MPMEnergies {
 
   double *impulse(const double *record);
   void account_for_forces();
+  double stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;
 };
 
 }    // namespace LAMMPS_NS

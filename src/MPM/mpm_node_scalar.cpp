@@ -112,6 +112,38 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
 
 /* ---------------------------------------------------------------------- */
 
+void MPMNodeScalar::add_terms(int terms, const GiveValues &capacities, std::vector<double> &u)
+{
+  const std::vector<double> first_term = u;
+  std::vector<double> &mapped = rate;    // has nothing yet that is needed
+  double values[BATCH], of_points[BATCH];
+  double *const tile = tiles[0].data(), *const from = tiles[1].data();
+  for (int term = 2; term <= terms; term++) {
+    field.nodes.complete(u.data(), 1, 1);
+    std::fill(mapped.begin(), mapped.end(), 0.0);
+    for (const auto &block : field.map->active) {
+      if (box_of(block)[0] > box_of(block)[3]) continue;
+      const int *const slot = field.grid.blocks[block.slot].slot;
+      kernels.load(from, u.data(), slot, box_of(block));
+      visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
+        prepare();
+        kernels.get_values(stencil, from, of_points);
+        capacities(run, first, n, values);
+        for (int p = 0; p < n; p++) values[p] *= of_points[p];
+        kernels.add_values(stencil, values, tile);
+        return true;
+      });
+      kernels.flush(tile, mapped.data(), slot, box_of(block));
+    }
+    sum(mapped);
+    for (std::size_t k = 0; k < u.size(); k++)
+      if (capacity[k] > 0.0) u[k] += first_term[k] - mapped[k] / capacity[k];
+  }
+  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+}
+
+/* ---------------------------------------------------------------------- */
+
 void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void()> &more)
 {
   std::fill(rate.begin(), rate.end(), 0.0);
@@ -244,13 +276,12 @@ void MPMNodeScalar::add_up(const GiveValues &give, std::vector<double> &nodes)
   double *const tile = tiles[0].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
-    visit(block, GRADIENT_SLOPES, nullptr,
-          [&](const auto &run, int first, int n, const auto &prepare) {
-            prepare();
-            give(run, first, n, values);
-            kernels.add_values(stencil, values, tile);
-            return true;
-          });
+    visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
+      prepare();
+      give(run, first, n, values);
+      kernels.add_values(stencil, values, tile);
+      return true;
+    });
     kernels.flush(tile, nodes.data(), field.grid.blocks[block.slot].slot, box_of(block));
   }
   sum(nodes);

@@ -64,6 +64,13 @@ class MPMNodeScalar {
   void init(bool slopes, bool volumes);
   /** Capacities, volumes, and values of nodes; keeps: before = value. */
   void points_to_nodes(const Fill &, bool keeps);
+  /** Capacities C_p of the points of a run that has a part, as in points_to_nodes(). */
+  using GiveValues =
+      std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
+  /** u: in: values of nodes that points without slopes gave; out: this many terms of the series for those that would give
+   *  the points their values, u <- u + (value - S+ S u), with S from nodes to points and S+ back by capacities. sum_i C_i u_i
+   *  stays what it is. As XPIC and FMPM do with velocities, see mpm_stage_series.cpp. */
+  void add_terms(int terms, const GiveValues &capacities, std::vector<double> &u);
   /** Rates of the values of nodes. more: adds to their rates times capacity what this rank knows of, before ranks
    *  are summed. */
   void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
@@ -76,8 +83,6 @@ class MPMNodeScalar {
   /** Gradients and values at points. */
   void gradients_to_points(const Conduct &);
   /** Sums sum_p q_p N_ip of numbers q_p that points give, of runs that have a part. */
-  using GiveValues =
-      std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
   void add_up(const GiveValues &, std::vector<double> &nodes);
 
   double memory_usage() const;

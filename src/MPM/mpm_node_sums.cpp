@@ -64,11 +64,12 @@ static void map_gradient_with(const TransferKernels &with, MPMField &field, Weig
   s.stress_scale = 1.0;
 
   const int nreal = with.nreal, lane = nreal == 8 ? 4 : 0;
+  const MPMRows places = frame.places();
   map_some(field, with, r, s, with.p2g_force, near, lane, 3, [&](int i) {
     double *const tau = r.tau + 6 * (std::size_t) i;
     const double weight =
         (content == Weight::MASS ? r.mass[i] / r.vol0[i] : frame.lattice_jacobian(i)) /
-        frame.circle(field.atom->x[i][0]);
+        frame.circle(places[i][0]);
     for (int k = 0; k < 6; k++) tau[k] = k < 3 ? -weight : 0.0;
   });
   gradient.resize(3 * field.grid.nnodes());
@@ -126,15 +127,16 @@ void LAMMPS_NS::map_volume(MPMField &field, const std::vector<char> &near,
   volumes.resize(std::max(volumes.size(), (std::size_t) field.atom->nmax));
   PointRows r = field.rows();
   r.mass = volumes.data();
-  map_some(field, field.kernel, r, field.step_data(), field.kernel.p2g_momentum, near, 3, 1,
-           [&](int i) {
-             volumes[i] = field.atom->vfrac[i] * field.points->jacobian(i) /
-                 field.frame->circle(field.atom->x[i][0]);
-           });
+  const MPMFrame &frame = *field.frame;
+  const MPMRows places = frame.places();
+  const TransferKernels &with = frame.is_total() ? field.pic : field.kernel;
+  map_some(field, with, r, field.step_data(), with.p2g_momentum, near, 3, 1, [&](int i) {
+    volumes[i] = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(places[i][0]);
+  });
   const double inverse = 1.0 / field.lattice.cell_volume();
   share.resize(field.grid.nnodes());
   for (int64_t n = 0; n < field.grid.nnodes(); n++)
-    share[n] = inverse * field.work.nodes[n * field.kernel.nreal + 3];
+    share[n] = inverse * field.work.nodes[n * with.nreal + 3];
 }
 
 /* ---------------------------------------------------------------------- */

@@ -57,6 +57,11 @@ class MPMPhysics {
    *  keep as their stress is the effective one. */
   virtual const double *pressure_in_forces(const MPMField &) const { return nullptr; }
 
+  /** Kirchhoff stress that internal forces have besides that of points, as a load on these: its work is external. Have any of
+   *  the points [first,last) one? If so, add it to that of n points from first on, tau: [n][6], xx yy zz xy xz yz. */
+  virtual bool adds_stress(const MPMField &, int /*first*/, int /*last*/) const { return false; }
+  virtual void add_stress(const MPMField &, int /*first*/, int /*n*/, double * /*tau*/) const {}
+
   /** The part of forces on walls that the contact of points does not bear, such as that of water in pores: at nodes of blocks
    *  that are marked in near (and others), force[node][3] is the integral of N p n over the surface of the body [mass
    *  acceleration], n outward; it is of the pressure_in_forces(). Returns false, and leaves force alone, where there is none.
@@ -89,6 +94,10 @@ class MPMPhysics {
 
 /** What the physics of a field add to internal forces: J times a pressure for each point, or null. */
 const double *pressure_of_physics(const MPMField &);
+/** Has any physics a load that is a stress of points [first,last)? */
+bool physics_adds_stress(const MPMField &, int first, int last);
+/** Add the loads of all of them, see MPMPhysics::add_stress(). */
+void add_stress_of_physics(const MPMField &, int first, int n, double *tau);
 /** MPMPhysics::surface_force() of the physics that has one. */
 bool surface_force_of_physics(MPMField &, const std::vector<char> &near,
                               std::vector<double> &force);

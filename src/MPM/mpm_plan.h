@@ -32,7 +32,8 @@ class MPMPlan : protected Pointers {
   enum Place {
     BEFORE_POINTS_TO_NODES,    ///< positions and forces of the start of the step
     BEFORE_SOLVE,              ///< nodes have mass and momentum, summed over ranks
-    AFTER_SOLVE,               ///< nodes have their new velocities, points are where they were
+    AFTER_MOMENTUM,    ///< the momentum equation gave them velocities, which node actions have not seen
+    AFTER_SOLVE,      ///< nodes have their new velocities, points are where they were
     BEFORE_STRAIN,    ///< of usl and musl: the same, with the velocities that strain the points
     AFTER_MOTION      ///< the step has ended but for its checks
   };

@@ -9,10 +9,8 @@
 #include "mpm_point_map.h"
 
 #include "atom.h"
-#include "atom_vec.h"
 #include "comm.h"
 #include "fix_mpm_material.h"
-#include "group.h"
 #include "memory.h"
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
@@ -21,6 +19,7 @@
 #include "mpm_halo.h"
 #include "mpm_passes.h"
 #include "mpm_plan.h"
+#include "mpm_point_order.h"
 #include "neighbor.h"
 #include "platform.h"
 
@@ -237,10 +236,11 @@ void MPMPointMap::find_blocks()
   // at the latest: all around the block, if nothing else bounds the drift
 
   const double least = field.domains ? 1.0e-6 : 0.0;    // see MPMCpdi::update()
-  const double drift = field.frame->is_total() ? 0.0
+  constexpr double ROUNDING =
+      1.0e-6;    // of places, in cells; kernels may see them in the next cell
+  const double drift = field.frame->is_total() ? ROUNDING
       : watch_drift                            ? grid.side
                     : std::max(least, std::min(1.0, 0.5 * neighbor->skin / grid.lattice.h));
-  constexpr double ROUNDING = 1.0e-6;    // of places, in cells
   const int nactive = active.size(), order = stencil_order(field.options.shape),
             cell = shape_constants[field.options.shape].cell;
   int nodes_low[3] = {INT_MAX, INT_MAX, INT_MAX}, nodes_high[3] = {INT_MIN, INT_MIN, INT_MIN};
@@ -338,67 +338,14 @@ void MPMPointMap::sort()
     key[i] = index * keys_per_block + m * NODES_PER_BLOCK + cell;
   }
 
-  // blocks in order of their coordinates; atoms that are no points come last. A group that LAMMPS
-  // wants to be first (atom_modify first) stays so, and has the same order in itself
+  // blocks in order of their coordinates
 
   std::vector<int> rank(index_of_block.size());
   int nblocks = 0;
   for (const auto &entry : index_of_block) rank[entry.second] = nblocks++;
-  const int nkeys = nblocks * keys_per_block;
-  const int firstbit = atom->firstgroupname ? group->bitmask[atom->firstgroup] : 0;
-  const int others = firstbit ? nkeys + 1 : 0;
-  const int all_keys = others + nkeys + 1;
-  std::vector<int> start_of_key(all_keys + 1, 0);
-  for (int i = 0; i < nlocal; i++) {
-    if (key[i] < 0)
-      key[i] = nkeys;
-    else
-      key[i] = rank[key[i] / keys_per_block] * keys_per_block + key[i] % keys_per_block;
-    if (!(atom->mask[i] & firstbit)) key[i] += others;
-    start_of_key[key[i] + 1]++;
-  }
-  for (int k = 0; k < all_keys; k++) start_of_key[k + 1] += start_of_key[k];
-  std::vector<int> permute(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
-  for (int i = 0; i < nlocal; i++) permute[next[key[i]]++] = i;
-  const tagint *tag = atom->tag;
-  for (int k = 0; k < all_keys; k++)
-    if (k != nkeys && k != others + nkeys && start_of_key[k + 1] - start_of_key[k] > 1)
-      std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
-                [tag](int i, int j) {
-                  return tag[i] < tag[j];
-                });
-
-  // ghosts refer to the old order, and the first of them is in the free place that is used below: the
-  // map must forget them before
-
-  const bool mapped = atom->map_style != Atom::MAP_NONE;
-  const bool moves = !std::is_sorted(permute.begin(), permute.end());
-  bigint renew = atom->nghost + (moves && mapped), renew_all;
-  MPI_Allreduce(&renew, &renew_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (renew_all) {
-    if (mapped) atom->map_clear();    // as in exchange(), for borders()
-    atom->nghost = 0;                 // else borders() appends to them
-    atom->avec->clear_bonus();
-  }
-
-  // move the atoms, cycle by cycle, through the free place at the end
-
-  if (nlocal == atom->nmax) atom->avec->grow(0);
-  std::vector<int> &current = key;
-  for (int i = 0; i < nlocal; i++) current[i] = i;
-  for (int i = 0; i < nlocal; i++) {
-    if (current[i] == permute[i]) continue;
-    atom->avec->copy(i, nlocal, 0);
-    int empty = i;
-    while (permute[empty] != i) {
-      atom->avec->copy(permute[empty], empty, 0);
-      empty = current[empty] = permute[empty];
-    }
-    atom->avec->copy(nlocal, empty, 0);
-    current[empty] = permute[empty];
-  }
-
-  if (renew_all) comm->borders();
+  for (auto &k : key)
+    if (k >= 0) k = rank[k / keys_per_block] * keys_per_block + k % keys_per_block;
+  put_in_order(lmp, key, nblocks * keys_per_block);
 
   sorted_disorder = -1;    // to be counted with the next topology
   extra_disorder = 0;

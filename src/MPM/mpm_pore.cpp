@@ -101,6 +101,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
   if (surface.any()) surface.init(dries);
   suction.reset();
   if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
+  init_layers();
 
   const MPMStencil stencil(field);
   constexpr int SAMPLES = 4096;
@@ -113,6 +114,29 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
       if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
     steepest = std::max(steepest, sum);
   }
+}
+
+/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp), where the flow is
+ *  the gradient times a number. In soil that dries the permeability changes by orders of magnitude within a front, and with
+ *  means across it water would not get into dry soil. */
+void MPMPore::init_layers()
+{
+  layers.reset();
+  if (motion || suction || !quadratic.empty()) return;
+  bool differ = false;
+  double greatest = 0.0, fastest_soil = 0.0;
+  for (const auto &s : soils) {
+    const auto &first = soils.front().of;
+    differ = differ || s.of.law == MPMPoreSoil::FORMULA || s.of.law != first.law ||
+        s.of.permeability != first.permeability;
+    greatest = std::max(greatest, s.of.permeability);
+    fastest_soil = std::max(fastest_soil, s.of.permeability / s.of.storage_at(1.0, water));
+  }
+  if (!differ) return;
+  // with formulas the permeabilities are not known, while capacities hardly differ
+  const bool along = greatest <= MPMLayerMean::MOST * fastest_soil * least_storage;
+  layers = std::make_unique<MPMLayerMean>(field, along);
+  layers->init();
 }
 
 void MPMPore::weigh_points(const MPMRows &state) const
@@ -168,8 +192,25 @@ double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, cons
 
 /* ---------------------------------------------------------------------- */
 
+void MPMPore::find_layers(const double *formula)
+{
+  volumes.resize(atom->nmax);
+  layers->find([&](const MPMPointMap::Run &run, int first, int n, double *k, double *V) {
+    const Soil *const s = soil(run.material);
+    if (!s) return false;
+    double room[BATCH];
+    const double *const ratios = field.jacobians.get(field, first, n, room);
+    for (int p = 0; p < n; p++) {
+      k[p] = mobility(*s, first + p, ratios[p], formula);
+      V[p] = volumes[first + p] = ratios[p] * atom->vfrac[first + p];
+    }
+    return true;
+  });
+}
+
 void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 {
+  if (layers) find_layers(formula);
   const int dim = field.lattice.dim;
   for (auto *list : {&capacity, &conductance, &mean, &squeezed}) list->resize(atom->nmax);
   in_forces.assign(atom->nmax, 0.0);
@@ -196,7 +237,8 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           double through = surface.any() ? V * at_surface(*s, i, J, k, mine) : 0.0;
           if (suction)
             suction->begin_point(i, s->of, J, V, mine[0], C[p], K[p], through, in_forces[i]);
-          if (K[p] > most * C[p]) most = K[p] / C[p];    // hardly ever: no division
+          const double greatest = layers ? V * layers->most(i) : K[p];
+          if (greatest > most * C[p]) most = greatest / C[p];    // hardly ever: no division
           if (surface.any()) points.volume[p] = through;
           points.capacity[p] = C[p];
           points.row[p][3] = mine[0];
@@ -369,8 +411,9 @@ void MPMPore::find_rates(std::vector<double> &inflow)
       if (motion) {
         motion->discharge(i, q[p]);
       } else {
-        double K = conductance[i];
+        double K = layers ? volumes[i] : conductance[i];
         for (int d = 0; d < 3; d++) q[p][d] = along[d] - q[p][d];
+        if (layers) layers->multiply(i, q[p]);
         if (!quadratic.empty() && K > 0.0) {
           const double V = field.points->jacobian(i) * atom->vfrac[i];
           const double size = sqrt(MPM_NS::dot(q[p], q[p]));
@@ -483,8 +526,9 @@ double MPMPore::memory_usage() const
   double bytes =
       nodes.memory_usage() + surface.memory_usage() + (motion ? motion->memory_usage() : 0.0);
   if (suction) bytes += suction->memory_usage();
+  if (layers) bytes += layers->memory_usage();
   for (const auto *list :
-       {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic, &of_flow})
+       {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic, &volumes, &of_flow})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

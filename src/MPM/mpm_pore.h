@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_PORE_H
 #define LMP_MPM_PORE_H
 
+#include "mpm_layer_mean.h"
 #include "mpm_node_scalar.h"
 #include "mpm_pore_motion.h"
 #include "mpm_pore_soil.h"
@@ -98,6 +99,8 @@ class MPMPore : protected Pointers {
   double fastest = 0.0;     // largest of the points in the last step
   double exchange = 0.0;    // rate of exchange through the surface in the last step
   std::unique_ptr<MPMPoreSuction> suction;    // of soils that can dry
+  std::unique_ptr<MPMLayerMean>
+      layers;    // soils differ in permeability; null: points have their own
 
   // of points in this step
 
@@ -107,8 +110,11 @@ class MPMPore : protected Pointers {
   std::vector<double> mean;           // [n] pressure by the nodes, at the start
   std::vector<double> squeezed;       // [n] rate of the volume of water that the motion drives out
   std::vector<double> quadratic;      // [n] of the resistance, if there is any
+  std::vector<double> volumes;        // [n] with layers
   std::vector<double> of_flow;        // [node][8] next to the surface
 
+  void init_layers();
+  void find_layers(const double *formula);
   void points_to_nodes(const MPMRows &state, const double *formula);
   const Soil *soil(const FixMPMMaterial *) const;
   double rate_of_waves() const;

@@ -33,6 +33,19 @@ const double *LAMMPS_NS::pressure_of_physics(const MPMField &field)
   return nullptr;
 }
 
+bool LAMMPS_NS::physics_adds_stress(const MPMField &field, int first, int last)
+{
+  const auto &all = field.plan->physics;
+  return std::any_of(all.begin(), all.end(), [&](const auto *physics) {
+    return physics->adds_stress(field, first, last);
+  });
+}
+
+void LAMMPS_NS::add_stress_of_physics(const MPMField &field, int first, int n, double *tau)
+{
+  for (const auto *physics : field.plan->physics) physics->add_stress(field, first, n, tau);
+}
+
 bool LAMMPS_NS::surface_force_of_physics(MPMField &field, const std::vector<char> &near,
                                          std::vector<double> &force)
 {
@@ -65,7 +78,10 @@ void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
 {
   double *const tile = field.map->tile;
   const double *const pressure = pressure_of_physics(field);
-  if ((!field.frame->changes_forces() && !pressure) || p2g == field.kernel.p2g_momentum) {
+  const bool loaded =
+      p2g != field.kernel.p2g_momentum && physics_adds_stress(field, run.first, run.last);
+  if ((!field.frame->changes_forces() && !pressure && !loaded) ||
+      p2g == field.kernel.p2g_momentum) {
     p2g(rows, step, run.first, run.last, base, tile, box);
     return;
   }
@@ -75,6 +91,11 @@ void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
     const int n = std::min(BATCH, run.last - i);
     PointRows b = rows_from(field, rows, i);
     if (pressure) add_pressure(pressure, b, i, n, stress);
+    if (loaded) {
+      if (!pressure) std::copy_n(b.tau, 6 * n, stress);
+      add_stress_of_physics(field, i, n, stress);
+      b.tau = stress;
+    }
     field.frame->forces(b, i, n, room);
     p2g(b, step, 0, n, base, tile, box);
   }

@@ -132,6 +132,7 @@ void begin_with_forces(MPMPlan &plan)
 void solve(MPMPlan &plan)
 {
   plan.each("momentum equation", momentum_equation);
+  plan.place(MPMPlan::AFTER_MOMENTUM);
   plan.node_actions(MPMNodeAction::STEP);
   const auto refine = [&plan]() {
     fmpm(plan);

@@ -44,7 +44,7 @@ void MPMTimeLimit::setup()
     error->all(FLERR, Error::NOLASTLINE,
                "Time step {:.6g} is below the smallest one of fix mpm, {:.6g}", field.step_dt(),
                SMALLEST);
-  if (update->nsteps <= 0 || !field.options.dt_check) return;
+  if (update->nsteps <= 0 || !field.options.dt_check || !bound) return;
   check();
   warn();
   if (field.plan->fields[0] == &field) warn_of_small();
@@ -121,7 +121,7 @@ void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
 
 void MPMTimeLimit::check()
 {
-  if (!field.options.dt_check || update->ntimestep < next_check) return;
+  if (!field.options.dt_check || !bound || update->ntimestep < next_check) return;
   next_check = update->ntimestep + CHECK_EVERY;
   for (auto *ifix : field.elements)
     if (field.plan->fields[0] == &field) ifix->check_dt();

@@ -28,6 +28,8 @@ class MPMTimeLimit : protected Pointers {
   } volume_rate = {0.0, 0};
   /** Below that, forces that are impulses over the time step may be beyond the largest number. */
   static constexpr double SMALLEST = 1.0e-150;
+  bool bound =
+      true;    ///< the step is explicit; set to false by the init_physics() of one that is not
   bool watch_volume = false;    ///< keep volume_rate; set at the start of a run by fix mpm/dt
 
   MPMTimeLimit(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}

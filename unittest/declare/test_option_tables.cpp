@@ -22,12 +22,15 @@
 #include "fix_mpm_handshake.h"
 #include "fix_mpm_heat.h"
 #include "fix_mpm_immersed.h"
+#include "fix_mpm_incompressible.h"
 #include "fix_mpm_mixture.h"
 #include "fix_mpm_pore.h"
 #include "fix_mpm_relax.h"
 #include "fix_mpm_rigid.h"
 #include "fix_mpm_surface.h"
+#include "fix_mpm_traction.h"
 #include "mpm_field_options.h"
+#include "mpm_implicit.h"
 #include "mpm_point.h"
 #include "pair_mpm_penalty.h"
 
@@ -55,11 +58,14 @@ std::map<std::string, std::string> files()
   add("fix_mpm_handshake", MPMHandshakeOptions().declare());
   add("fix_mpm_heat", MPMHeatOptions().declare(3));
   add("fix_mpm_immersed", MPMImmersedOptions().declare(3));
+  add("fix_mpm_incompressible", MPMIncompressibleOptions().declare(3));
   add("fix_mpm_mixture", MPMMixtureOptions().declare());
   add("fix_mpm_pore", MPMPoreOptions().declare(3));
+  add("fix_mpm_implicit", MPMImplicitOptions().declare());
   add("fix_mpm_relax", MPMRelaxOptions().declare());
   add("fix_mpm_rigid", MPMRigidOptions().declare());
   add("fix_mpm_surface", MPMSurfaceOptions().declare());
+  add("fix_mpm_traction", MPMTractionOptions().declare(3));
   add("mpm_point", MPMPointOptions().declare());
   add("pair_mpm_penalty", MPMPenaltyOptions().declare());
   add("pair_mpm_penalty_coeff", MPMPenaltyCoeff().declare());

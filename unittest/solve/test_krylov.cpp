@@ -5,58 +5,15 @@
 
 // Krylov methods on small systems whose solutions are known.
 
+#include "small_systems.h"
 #include "solve/krylov.h"
 
 #include "gtest/gtest.h"
 
 #include <cmath>
-#include <functional>
 #include <vector>
 
 using namespace MPM_NS;
-
-namespace {
-
-/** A system given by functions, on one rank. */
-class System : public LinearSystem {
- public:
-  using Operator = std::function<void(const double *, double *)>;
-  System(int n, Operator A, Operator M = nullptr) : n(n), A(std::move(A)), M(std::move(M)) {}
-  int64_t size() const override { return n; }
-  void apply(const double *x, double *y) override { A(x, y); }
-  void precondition(const double *r, double *z) override
-  {
-    if (M)
-      M(r, z);
-    else
-      LinearSystem::precondition(r, z);
-  }
-  void products(int m, const double *const *a, const double *const *b, double *value) override
-  {
-    for (int k = 0; k < m; k++) {
-      value[k] = 0.0;
-      for (int i = 0; i < n; i++) value[k] += a[k][i] * b[k][i];
-    }
-  }
-
- private:
-  int n;
-  Operator A, M;
-};
-
-/** A rod of n springs between fixed ends (held), or free at both. */
-System::Operator rod(int n, bool held)
-{
-  return [=](const double *x, double *y) {
-    for (int i = 0; i < n; i++) {
-      const double left = i ? x[i - 1] : (held ? 0.0 : x[i]),
-                   right = i < n - 1 ? x[i + 1] : (held ? 0.0 : x[i]);
-      y[i] = 2.0 * x[i] - left - right;
-    }
-  };
-}
-
-}    // namespace
 
 // A load on each node of a rod: x_i = i (n + 1 - i)/2, exactly; in exact arithmetic after n/2 iterations as load and rod
 // are symmetric.

@@ -15,9 +15,9 @@ using namespace MPM_NS;
 
 std::string SolveReport::describe() const
 {
-  static const char *const meanings[] = {"converged", "did not converge",
-                                         "is not positive definite",
-                                         "has a residual that is not a number"};
+  static const char *const meanings[] = {
+      "converged", "did not converge", "is not positive definite",
+      "is singular, and the right side not in its range,", "has a residual that is not a number"};
   char text[64];
   std::string all = std::string(meanings[outcome]) + " after " + std::to_string(iterations) +
       " iterations, residuals";

@@ -28,7 +28,8 @@ struct SolveReport {
   enum Outcome {
     CONVERGED,
     TOO_MANY,    ///< iterations
-    INDEFINITE,    ///< the operator or its preconditioner is not positive definite, as conjugate gradients need
+    INDEFINITE,    ///< the operator or its preconditioner is not positive definite, as the method needs
+    SINGULAR,     ///< no more can be gained: the right side is not in the range of the operator
     NOT_FINITE    ///< a residual is not a number
   };
   Outcome outcome = CONVERGED;

@@ -1,0 +1,308 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_implicit.h"
+
+#include "mpm_affine.h"
+#include "mpm_field.h"
+#include "mpm_ledger.h"
+#include "mpm_node_action.h"
+#include "mpm_options.h"
+#include "mpm_state.h"
+#include "mpm_time_limit.h"
+#include "transfer/kernels.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "modify.h"
+#include "platform.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/implicit static|euler|newmark keyword value ...
+------------------------------------------------------------------------- */
+
+Options MPMImplicitOptions::declare()
+{
+  using namespace option;
+  Options options("fix mpm/implicit");
+  options.argument(
+      word(time,
+           {{"static", STATIC, "without inertia: each step ends in equilibrium"},
+            {"euler", EULER, "backward Euler: first order in time, damps what is fast"},
+            {"newmark", NEWMARK,
+             "Newmark's method: second order and without damping for gamma = 1/2"}}));
+  options.add("gamma",
+              {number(gamma, "G", {0.5, 1.0, true, true}, "",
+                      "of Newmark's method; more than 1/2 damps, in first order")});
+  options.add("tolerance",
+              {number(tolerance, "R", {0.0, 1.0, false, false}, "",
+                      "forces are balanced when what is left is this share of all forces")});
+  options
+      .add(
+          "absolute",
+          {number(absolute, "F", NOT_NEGATIVE, "force", "or when the sum of what is left is this")})
+      .standard("0, which is never");
+  options.add(
+      "iterations",
+      {integer(most_iterations, "N", POSITIVE, "largest number of Newton iterations in a step")});
+  options.add("linear",
+              {integer(most_linear, "N", POSITIVE,
+                       "largest number of iterations of the linear solver in one of these")});
+  options.add("accuracy",
+              {number(least_accuracy, "R", {0.0, 1.0, false, false}, "",
+                      "largest relative residual of the linear solutions")});
+  options.add("report", {yes_no(report)}, "forces before each Newton iteration to screen and log");
+  options.refuse([=] {
+    return OptionRules{
+        {time != NEWMARK, "gamma", "is of Newmark's method: use newmark, or remove it"}};
+  });
+  return options;
+}
+
+FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  if (igroup != 0)
+    error->all(FLERR, 1, "Fix mpm/implicit steps all points of a fix mpm: use group all");
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
+  scalar_flag = vector_flag = 1;
+  size_vector = 8;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  restart_global = 1;
+  time_depend = 1;
+  dynamic_group_allow = 1;
+}
+
+void FixMPMImplicit::init()
+{
+  if (modify->get_fix_by_style("^mpm$").empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/implicit needs a fix mpm");
+  if (modify->get_fix_by_style("^mpm/implicit$").size() > 1)
+    error->all(FLERR, Error::NOLASTLINE, "There is more than one fix mpm/implicit: remove one");
+  for (auto *ifix : modify->get_fix_list()) {
+    const std::string other = ifix->style;
+    if (other == "mpm/dt" || other == "dt/reset")
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit takes steps of any size, but fix {} {} sets that of explicit steps: "
+          "remove it, and use timestep",
+          other, ifix->id);
+    if (other == "mpm/elements")
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit does not know the forces of fix {} {}: use points instead of "
+                 "elements, or explicit steps",
+                 other, ifix->id);
+  }
+}
+
+void FixMPMImplicit::init_physics(MPMPlan &plan)
+{
+  if (plan.fields.size() > 1)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/implicit solves for the nodes of one fix mpm, but there are {}: let bodies share "
+        "one, or use explicit steps",
+        plan.fields.size());
+  field = plan.fields[0];
+  const auto &options = field->options;
+  refuse_field(
+      lmp, *this, *field,
+      {{options.scheme != MPMFieldOptions::USL, "scheme",
+        "implicit steps end with the stress that goes with their velocities: use scheme usl"},
+       {options.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
+        "forces are balanced with the lumped mass: use transfer apic or flip"},
+       {time == STATIC && adds_change(options.transfer), "transfer flip",
+        "points have no velocity in statics: use transfer pic, which has the same forces, or apic"},
+       {time == NEWMARK && !(options.transfer == FLIP && options.flip == 1.0), "this transfer",
+        "points move with another velocity than they have at the end of the step: use transfer "
+        "flip 1.0, "
+        "or euler instead of newmark"},
+       {has_domain(options.shape), "shape cpdi and cpdi2",
+        "their nodes are not reached by trial motions: use B-splines or gimp"},
+       {options.locking != MPMFieldOptions::NO_CURE, "locking",
+        "averages over points are not in the tangent: use shape quadratic or cubic without "
+        "locking"},
+       {options.modified_edges, "edges modified", "use edges plain, the default"},
+       {options.smooths_volumes(), "smooth", "it is for fluids in explicit steps"},
+       {options.has_light_nodes(), "light",
+        "nodes with next to no mass are no problem in implicit steps: remove it"},
+       {options.heats(), "heat", "the time step is not in its balance: remove it"},
+       {options.every > 1, "every", "implicit steps are long already: use every 1"}});
+  for (auto *other : plan.physics)
+    if (other != this)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit cannot be used with fix {}, which acts on explicit steps: remove one "
+          "of them",
+          dynamic_cast<Fix *>(other)->style);
+  for (auto *action : plan.actions)
+    if (!action->is_projection())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit holds nodes by linear constraints, and fix {} {} is none: use fix "
+          "mpm/boundary with stick, or slip without friction, or explicit steps",
+          dynamic_cast<Fix *>(action)->style, dynamic_cast<Fix *>(action)->id);
+  field->keep_old = true;
+  field->time_limit->bound = false;
+  const MPMImplicitOptions &mine = *this;
+  solver = std::make_unique<MPMImplicit>(lmp, *field, mine);
+}
+
+void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
+{
+  if (place == MPMPlan::AFTER_MOMENTUM)
+    plan.together("implicit step", [this]() {
+      step();
+    });
+  if (place == MPMPlan::AFTER_SOLVE)
+    plan.together("implicit step", [this]() {
+      solver->finish();
+    });
+  if (place == MPMPlan::AFTER_MOTION && time == STATIC)
+    plan.together("implicit step", [this]() {
+      rest();
+    });
+}
+
+void FixMPMImplicit::setup(int)
+{
+  solver->init();
+  seconds = 0.0;
+  std::copy_n(total, (int) NTOTAL, at_start);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMImplicit::step()
+{
+  const double begin = platform::walltime();
+  const double energy = solver->step(field->step_dt()) * force->mvv2e;
+  seconds += platform::walltime() - begin;
+  field->ledger.take(-energy);
+  taken[0] -= energy;
+  const auto &now = solver->report();
+  total[STEPS]++;
+  total[NEWTON] += now.iterations;
+  total[LINEAR] += now.linear;
+  total[CUTS] += now.cuts;
+  std::string list;
+  if ((report || !now.converged) && comm->me == 0)
+    for (const double r : now.residuals) list += fmt::format(" {:.9g}", r / force->ftm2v);
+  if (!now.converged)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/implicit {}: no equilibrium in step {} after {} Newton iterations, {}; sums of "
+        "forces:{}; ratio {:.3g}; {} tangents were not positive definite. Use smaller steps of "
+        "load or "
+        "time, hold bodies that can move freely, or let it be less accurate (keyword tolerance)",
+        id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite);
+  if (report && comm->me == 0)
+    utils::logmesg(lmp, "  implicit step {}: {} linear iterations, {} not definite, forces{}\n",
+                   update->ntimestep, now.linear, now.indefinite, list);
+}
+
+/* ----------------------------------------------------------------------
+   statics: points have moved, and are at rest again. What they had, nodes got in step(), less what transfers lose. The work of forces is counted with the velocities of points at the
+   start of each step (MPMEnergyWatch), when there are none
+------------------------------------------------------------------------- */
+
+void FixMPMImplicit::rest()
+{
+  const double energy = field->ledger.point_kinetic_energy();
+  field->ledger.take(energy);
+  taken[0] += energy;
+  double power = 0.0;
+  const int nC = field->affine ? field->affine->size() : 0,
+            nQ = field->affine && field->affine->Q ? poly_size(field->lattice.dim) : 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field->is_point(i)) continue;
+    for (int d = 0; d < 3; d++) power += atom->f[i][d] * atom->v[i][d];
+    std::fill_n(atom->v[i], 3, 0.0);
+    if (nC) std::fill_n(field->affine->C[i], nC, 0.0);
+    if (nQ) std::fill_n(field->affine->Q[i], nQ, 0.0);
+  }
+  taken[1] -= power * field->step_dt();
+}
+
+std::vector<MPMPhysics::Account> FixMPMImplicit::accounts() const
+{
+  if (time != STATIC) return {};
+  return {{"rest", false}, {"work at rest", false, true}};
+}
+
+void FixMPMImplicit::account(double *values) const
+{
+  for (int k = 0; k < 2 && time == STATIC; k++) values[k] -= taken[k];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMImplicit::post_run()
+{
+  const double steps = total[STEPS] - at_start[STEPS];
+  if (comm->me || steps == 0.0 || update->nsteps == 0) return;
+  utils::logmesg(lmp,
+                 "Fix mpm/implicit {}: {:.2f} Newton iterations in a step, {:.1f} of the linear "
+                 "solver in each; "
+                 "last ratio of forces {:.3g}; {:.3g} ms a step\n",
+                 id, (total[NEWTON] - at_start[NEWTON]) / steps,
+                 (total[LINEAR] - at_start[LINEAR]) /
+                     std::max(1.0, total[NEWTON] - at_start[NEWTON]),
+                 solver->report().ratio, 1000.0 * seconds / steps);
+}
+
+double FixMPMImplicit::compute_scalar()
+{
+  return solver ? solver->report().ratio : 0.0;
+}
+
+double FixMPMImplicit::compute_vector(int k)
+{
+  const MPMImplicit::Report none, &now = solver ? solver->report() : none;
+  const double values[8] = {(double) now.iterations, (double) now.linear,
+                            (double) now.cuts,       now.unbalanced / force->ftm2v,
+                            now.asymmetry,           total[NEWTON],
+                            total[LINEAR],           total[CUTS]};
+  return values[k];
+}
+
+double FixMPMImplicit::memory_usage()
+{
+  return solver ? solver->memory_usage() : 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMImplicit::write_restart(FILE *fp)
+{
+  keep_totals(world, taken, 2);
+  if (comm->me) return;
+  double list[NTOTAL + 2];
+  std::copy_n(total, (int) NTOTAL, list);
+  std::copy_n(taken, 2, list + NTOTAL);
+  const int size = sizeof(list);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list, size, 1, fp);
+}
+
+void FixMPMImplicit::restart(char *buf)
+{
+  const auto *const list = (const double *) buf;
+  std::copy_n(list, (int) NTOTAL, total);
+  if (comm->me == 0) std::copy_n(list + NTOTAL, 2, taken);
+}

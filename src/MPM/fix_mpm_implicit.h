@@ -1,0 +1,63 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/implicit,FixMPMImplicit);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_IMPLICIT_H
+#define LMP_FIX_MPM_IMPLICIT_H
+
+#include "fix.h"
+#include "mpm_implicit.h"
+#include "mpm_physics.h"
+
+#include <memory>
+
+namespace LAMMPS_NS {
+
+/** Implicit steps of a field: in the place of the momentum equation, the velocities of nodes are solved for with the stress
+ *  of the end of the step, with inertia or as a sequence of states of equilibrium. */
+class FixMPMImplicit : public Fix, public MPMPhysics, private MPMImplicitOptions {
+ public:
+  FixMPMImplicit(class LAMMPS *, int, char **);
+  int setmask() override { return FixConst::POST_RUN; }
+  void init() override;
+  void setup(int) override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void init_physics(MPMPlan &) override;
+  void add_stages(MPMPlan &, MPMPlan::Place) override;
+  bool looks_beyond_points() const override { return false; }
+  std::vector<Account> accounts() const override;
+  void account(double *values) const override;
+
+ private:
+  MPMField *field = nullptr;
+  std::unique_ptr<MPMImplicit> solver;
+  enum { STEPS, NEWTON, LINEAR, CUTS, NTOTAL };
+  double total[NTOTAL] = {};    // so far
+  double taken[2] =
+      {};    // static: kinetic energy that points had, and work in a step; this rank's share [energy]
+  double at_start[NTOTAL] = {};    // of this run
+  double seconds = 0.0;            // in this run
+
+  void step();
+  void rest();
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

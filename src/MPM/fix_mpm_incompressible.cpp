@@ -1,0 +1,590 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_incompressible.h"
+
+#include "mpm_flow_air.h"
+#include "mpm_flow_pressure.h"
+#include "mpm_flow_transfer.h"
+#include "mpm_flow_viscosity.h"
+#include "mpm_options.h"
+#include "mpm_points.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "math_extra.h"
+#include "modify.h"
+#include "output.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace MPM_NS;
+
+// layers of faces in the air that have velocities of the water: those that a point which is just below the surface
+// reaches, also from where it is after half a step
+static constexpr int AIR_LAYERS = 3;
+// residuals that are as small as this share of speed/spacing are rounding
+static constexpr double ROUNDING = 1.0e-14;
+// relative difference of densities that counts as none
+static constexpr double SAME_DENSITY = 1.0e-9;
+// the tolerance of points that spread, which is not seen but by other numbers of processes
+static constexpr double SPREAD_TOLERANCE = 1.0e-8;
+// passes that find the gradients of velocities that points begin with: a pass leaves some (kh)^2 of what is missing
+static constexpr int FITS = 3;
+
+/* ----------------------------------------------------------------------
+   fix ID group mpm/incompressible H DENSITY keyword value ...
+------------------------------------------------------------------------- */
+
+Options MPMIncompressibleOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/incompressible");
+  o.argument(number(h, "node spacing", POSITIVE, "distance"));
+  o.argument(number(density, "density", POSITIVE, "density"));
+  o.add("viscosity", {number(viscosity, "mu", NOT_NEGATIVE, "pressure*time", "dynamic viscosity")});
+  o.add("transfer",
+        {word(transfer,
+              {{"apic", APIC, "points have gradients of the velocity"},
+               {"flip",
+                FLIP,
+                "points keep this share of what the lattice does not see of their velocity",
+                {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
+               {"pic", PIC, "points have the velocity of the lattice"}})});
+  o.add("reflect",
+        {number(reflect, "R", FRACTION, "1",
+                "share of the change by the pressure that points get once more")});
+  std::vector<OptionWord> faces;
+  for (int d = 0; d < dim; d++)
+    for (int s = 0; s < 2; s++)
+      faces.push_back({std::string(1, (char) ('x' + d)) + (s ? "hi" : "lo"), 2 * d + s,
+                       2 * d + s == 2 * dim - 1 ? "this face of the box" : ""});
+  std::vector<OptionWord> kinds = {
+      {"slip", 0, "without friction"},
+      {"stick",
+       1,
+       "without slip",
+       {optional(axes(wall.v, dim, "vx vy vz", ANY_NUMBER, "velocity", "velocity of the wall"))}}};
+  o.add("wall",
+        {word(
+             [this] {
+               return 2 * axis + side;
+             },
+             [this](int k) {
+               axis = k / 2;
+               side = k % 2;
+               std::fill_n(wall.v, 3, 0.0);
+             },
+             faces),
+         word(
+             [this] {
+               return wall.sticks ? 1 : 0;
+             },
+             [this](int k) {
+               wall.sticks = k == 1;
+             },
+             kinds)})
+      .then([this] {
+        wall.named = true;
+        walls[axis][side] = wall;
+      })
+      .standard("slip, all faces that are not periodic");
+  o.add("spread",
+        {number(spread, "S", FRACTION, "1",
+                "share of an excess of points in a cell that goes elsewhere in a step")});
+  o.add("tolerance",
+        {number(tolerance, "tol", {0.0, 1.0e-2, false, true}, "1",
+                "divergence that is left, as a share of the one before")});
+  o.add("iterations",
+        {integer(most_iterations, "N", POSITIVE, "largest number of iterations of the pressure")});
+  return o;
+}
+
+static MPM_NS::Lattice lattice_of(LAMMPS *lmp, int narg, char **arg)
+{
+  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/incompressible", lmp->error);
+  if (!MPMPoints::get(lmp->atom))
+    lmp->error->all(
+        FLERR,
+        "Fix mpm/incompressible requires material points: use atom_style mpm, or hybrid "
+        "with mpm");
+  if (!lmp->domain->box_exist)
+    lmp->error->all(FLERR,
+                    "Fix mpm/incompressible needs the simulation box: define it with create_box "
+                    "before");
+  const double h = utils::numeric(FLERR, arg[3], false, lmp);
+  return {lmp->domain->dimension, h, {0.0, 0.0, 0.0}, {}, {1, 1, 1}};
+}
+
+FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
+    FixMPMState(lmp, narg, arg), cells(lmp, lattice_of(lmp, narg, arg), groupbit)
+{
+  const int dim = domain->dimension;
+  auto options = declare(dim);
+  read_options(lmp, options, narg, arg, 3);
+  for (int d = 0; d < dim; d++)
+    for (int s = 0; s < 2; s++) cells.walls[d][s] = walls[d][s];
+  cells.check_box(style);
+  for (int d = 0; d < dim; d++)
+    for (int s = 0; s < 2; s++) {
+      const auto name = std::string(1, (char) ('x' + d)) + (s ? "hi" : "lo");
+      if (walls[d][s].named && cells.lattice.periodic[d])
+        error->all(FLERR,
+                   "Fix mpm/incompressible wall {} is a periodic face: use boundary f for a wall",
+                   name);
+      if (walls[d][s].v[d] != 0.0)
+        error->all(FLERR,
+                   "Fix mpm/incompressible wall {} cannot move out of its plane: its velocity "
+                   "along {} must "
+                   "be zero",
+                   name, (char) ('x' + d));
+    }
+  if (!atom->tag_enable)
+    error->all(FLERR,
+               "Fix mpm/incompressible tells points from each other by their IDs: remove "
+               "atom_modify id no");
+
+  pressure = std::make_unique<MPMFlowPressure>(lmp, cells);
+  air = std::make_unique<MPMFlowAir>(cells);
+  if (viscosity > 0.0) {
+    viscous = std::make_unique<MPMFlowViscosity>(cells, *pressure);
+    cells.wants_around = true;
+  }
+  if (transfer == APIC) state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
+
+  time_integrate = 1;
+  dynamic_group_allow = 0;
+  scalar_flag = vector_flag = 1;
+  size_vector = 13;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  restart_global = 1;
+  keep_arrays();
+}
+
+FixMPMIncompressible::~FixMPMIncompressible() = default;
+
+int FixMPMIncompressible::setmask()
+{
+  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMIncompressible::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/incompressible requires run_style verlet");
+  if (update->whichflag == 2)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/incompressible cannot be used with minimize: minimize before the fix is "
+               "defined");
+  if (domain->box_change_size || domain->box_change_shape)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/incompressible requires a box of constant size and shape: remove the fix "
+               "that changes it");
+  cells.check_box(style);
+
+  // points need no ghosts, see FixMPM::init()
+
+  const double nothing = 1.0e-8 * h;
+  if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
+  if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
+  atom->sortfreq = 0;
+}
+
+void FixMPMIncompressible::setup_pre_exchange()
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!cells.is_point(i)) continue;
+    for (int d = 0; d < domain->dimension; d++)
+      if (!domain->periodicity[d] &&
+          !(atom->x[i][d] >= domain->boxlo[d] && atom->x[i][d] <= domain->boxhi[d]))
+        error->one(FLERR, Error::NOLASTLINE,
+                   "Point {} of fix {} is outside of the box, whose fixed faces are walls",
+                   atom->tag[i], style);
+  }
+}
+
+void FixMPMIncompressible::setup_pre_neighbor()
+{
+  check_points();
+  cells.sort();
+}
+
+/** Mass of points that have none yet; who else moves them. */
+void FixMPMIncompressible::check_points()
+{
+  bigint mine[2] = {0, 0}, all[2];    // points, and those of another density
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!cells.is_point(i)) continue;
+    if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = density * atom->vfrac[i];
+    mine[0]++;
+    if (std::fabs(atom->rmass[i] / (density * atom->vfrac[i]) - 1.0) > SAME_DENSITY) mine[1]++;
+    for (int d = 0; d < domain->dimension; d++)
+      if (!std::isfinite(atom->v[i][d]) || !std::isfinite(atom->x[i][d]))
+        error->one(FLERR, Error::NOLASTLINE,
+                   "Fix {}: point {} has a position or velocity that is not a number", style,
+                   atom->tag[i]);
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0] == 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {} has no material points in its group: make some with create_points", style,
+               id);
+  if (all[1])
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix {} {}: {} points have another mass than density {} times their volume; there is one "
+        "density",
+        style, id, all[1], density);
+  for (auto *other : modify->get_fix_list()) {
+    if (other == this || !(other->time_integrate || utils::strmatch(other->style, "^mpm$")))
+      continue;
+    bigint n = 0, nall;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (cells.is_point(i) && (atom->mask[i] & other->groupbit)) n++;
+    MPI_Allreduce(&n, &nall, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (nall)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "{} material points of fix {} (style {}) are also integrated by fix {} (style {}): "
+          "give the fixes disjoint groups",
+          nall, id, style, other->id, other->style);
+  }
+}
+
+void FixMPMIncompressible::setup(int)
+{
+  if (!(update->dt > 0.0))
+    error->all(FLERR, Error::NOLASTLINE, "Fix {} requires a positive time step: {}", style,
+               update->dt);
+  fit_gradients();
+}
+
+/* ----------------------------------------------------------------------
+   points that begin with a velocity have its gradient, too, or the lattice would get a mean over a cell. Those that go on
+   have what they had
+------------------------------------------------------------------------- */
+
+void FixMPMIncompressible::fit_gradients()
+{
+  if (!gradient) return;
+  const int n = cells.lattice.dim * cells.lattice.dim;
+  int mine = 0, any;
+  for (int i = 0; i < atom->nlocal && !mine; i++)
+    if (cells.is_point(i))
+      mine = std::any_of(gradient[i], gradient[i] + n, [](double g) {
+        return g != 0.0;
+      });
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any) return;
+  cells.find_cells();
+  for (int pass = 0; pass < FITS; pass++) {
+    give_to_cells(cells, points_now(0.0), sums);
+    cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
+    find_velocities();
+    get_gradients(cells, points_now(0.0), star.data());
+  }
+}
+
+/* ----------------------------------------------------------------------
+   after exchange and borders: the order of points must not depend on what was before, so that a run that goes on from
+   a restart file sums in the same order
+------------------------------------------------------------------------- */
+
+void FixMPMIncompressible::pre_neighbor()
+{
+  cells.sort();
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMIncompressible::acceleration_of_stress() const
+{
+  return force->ftm2v / (force->nktv2p * density);
+}
+
+MPMFlowPoints FixMPMIncompressible::points_now(double dt) const
+{
+  return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt};
+}
+
+void FixMPMIncompressible::initial_integrate(int)
+{
+  const double dt = update->dt, to_acceleration = acceleration_of_stress();
+  const int dim = cells.lattice.dim;
+
+  // Forces and the pressure act in a part 1/(1 + R) of the step up to the time of the positions, and in R/(1 + R) of the
+  // step that follows: what they have done in the former is done once more, as far as these steps have the same duration
+
+  const double before = dt_before > 0.0 ? dt_before : dt;
+  const double part = before / (1.0 + reflect), again = std::min(1.0, reflect * dt / before);
+  dt_before = dt;
+  const MPMFlowPoints points = points_now(dt);
+  int valid = cells.valid, all_valid;
+  MPI_Allreduce(&valid, &all_valid, 1, MPI_INT, MPI_MIN, world);
+  cells.valid = all_valid;
+  cells.find_cells();
+
+  give_to_cells(cells, points, sums);
+  cells.sum(sums.data(), 3 * dim + 1);
+  find_velocities();
+  if (flip > 0.0 || reflect > 0.0) old = star;
+  pressure->find_wet(share);
+  if (viscous) add_viscosity(part);
+  add_forces(part * force->ftm2v);
+
+  velocity.assign(star.size(), 0.0);
+  known.assign(star.size(), 0.0);
+  double most[1] = {0.0}, most_all[1];
+  for (const double v : star) most[0] = std::max(most[0], std::fabs(v));
+  MPI_Allreduce(most, most_all, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double cells_of_all = (double) atom->natoms;
+  const auto report = pressure->project(
+      star.data(), velocity.data(), known.data(),
+      {tolerance, ROUNDING * most_all[0] / h * std::sqrt(cells_of_all), most_iterations});
+  if (!report.converged())
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix {} {}: the pressure {} at step {}; allow more iterations, or a larger tolerance",
+        style, id, report.describe(), update->ntimestep);
+  go_on_into_air();
+  check_speed();
+  find_pressures(1.0 / (part * to_acceleration));
+
+  if (spread > 0.0) find_shift();
+
+  const MPMFlowUpdate update_points = {flip, again,
+                                       flip > 0.0 || reflect > 0.0 ? old.data() : nullptr,
+                                       spread > 0.0 ? shift.data() : nullptr};
+  cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
+                               MPMPoints::get(atom)->tau);
+
+  last.iterations = report.iterations;
+  last.residual = report.right_side > 0.0 ? report.residuals.back() / report.right_side : 0.0;
+  last.divergence = pressure->largest_divergence(velocity.data());
+  last.wet = (double) pressure->nwet();
+  last.filled = 0.0;
+  for (const auto &cell : cells.cells) last.filled += std::min(1.0, share[cell.number]);
+  last.filled *= cells.lattice.cell_volume();
+  for (int d = 0; d < dim; d++)
+    for (int s = 0; s < 2; s++)
+      last.walls[d][s] = pressure->at_wall(d, s) / (part * to_acceleration * force->nktv2p);
+}
+
+/** Velocities of faces by the momentum of points, and shares that are filled, complete. */
+void FixMPMIncompressible::find_velocities()
+{
+  const int dim = cells.lattice.dim, width = 3 * dim + 1;
+  const double per_cell = 1.0 / cells.lattice.cell_volume();
+  star.resize(cells.size() * dim);
+  share.resize(cells.size());
+  for (int64_t k = 0; k < cells.size(); k++) {
+    const double *const from = sums.data() + k * width;
+    for (int c = 0; c < dim; c++)
+      star[k * dim + c] = from[dim + c] > 0.0 ? from[c] / from[dim + c] : 0.0;
+    share[k] = per_cell * from[3 * dim];
+  }
+  cells.reflect_velocities(star.data());
+  cells.reflect_cells(share.data());
+}
+
+/** What forces change, but for walls, which take their share. */
+void FixMPMIncompressible::add_forces(double dt)
+{
+  const int dim = cells.lattice.dim, width = 3 * dim + 1;
+  for (int64_t k = 0; k < cells.size(); k++) {
+    const double *const from = sums.data() + k * width;
+    for (int c = 0; c < dim; c++)
+      if (from[dim + c] > 0.0) star[k * dim + c] += dt * from[2 * dim + c] / from[dim + c];
+  }
+  cells.reflect_velocities(star.data());
+}
+
+void FixMPMIncompressible::add_viscosity(double dt)
+{
+  const int dim = cells.lattice.dim;
+  const double nu = viscosity * acceleration_of_stress(),
+               most = 2.0 * MPMFlowViscosity::stable_dt(nu, h, dim);
+  if (update->dt > most * (1.0 + 1.0e-9))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: the time step {:.6g} is too large for the viscosity, which allows "
+               "{:.6g}; reduce it, or let fix mpm/dt set it",
+               style, id, update->dt, most);
+  shift.assign(star.size(), 0.0);
+  viscous->add(dt * nu, star, shift);
+  cells.publish(shift.data(), dim);
+  for (std::size_t k = 0; k < star.size(); k++) star[k] += shift[k];
+  cells.reflect_velocities(star.data());
+}
+
+/* ----------------------------------------------------------------------
+   pressures for points, so that these interpolate zero at the surface and what it is at walls
+------------------------------------------------------------------------- */
+
+void FixMPMIncompressible::find_pressures(double psi_to_pressure)
+{
+  pressure->extend_into_air(pressures);
+  for (double &p : pressures) p *= psi_to_pressure;
+  cells.extrapolate_cells(pressures.data(), [this](int64_t number) {
+    return pressure->is_wet(number);
+  });
+}
+
+/* ----------------------------------------------------------------------
+   Faces in the air that points give momentum to keep it, with what the pressure changes at the water next to them: who is
+   about to fall into the water, or flies off, does not feel it before, and a drop that spins goes on with it
+------------------------------------------------------------------------- */
+
+void FixMPMIncompressible::go_on_into_air()
+{
+  const int dim = cells.lattice.dim, width = 3 * dim + 1;
+  for (std::size_t k = 0; k < velocity.size(); k++)
+    if (known[k] > 0.0) velocity[k] -= star[k];
+  air->extend(AIR_LAYERS, velocity, known);
+  for (const auto &cell : cells.cells)
+    for (int c = 0; c < dim; c++) {
+      const int64_t face = (int64_t) cell.number * dim + c;
+      const bool solved = pressure->is_next_to_water(cell, c);
+      if (solved || sums[(int64_t) cell.number * width + dim + c] > 0.0) {
+        velocity[face] += star[face];
+        known[face] = 1.0;
+      } else
+        velocity[face] = known[face] = 0.0;
+    }
+  cells.keep_owned(velocity.data(), dim);
+  cells.keep_owned(known.data(), dim);
+  air->extend(AIR_LAYERS, velocity, known);
+  cells.reflect_velocities(velocity.data());
+}
+
+/** Displacements by which points that have come too close spread again. */
+void FixMPMIncompressible::find_shift()
+{
+  shift.resize(star.size());
+  known.assign(star.size(), 0.0);
+  shift.assign(star.size(), 0.0);
+  const auto report =
+      pressure->spread(spread, shift.data(), known.data(),
+                       {SPREAD_TOLERANCE, std::numeric_limits<double>::min(), most_iterations});
+  if (!report.converged())
+    error->all(FLERR, Error::NOLASTLINE, "Fix {} {}: the spreading of points {} at step {}", style,
+               id, report.describe(), update->ntimestep);
+  air->extend(AIR_LAYERS, shift, known);
+  cells.reflect_velocities(shift.data(), false);
+}
+
+void FixMPMIncompressible::check_speed() const
+{
+  double most[1] = {0.0}, all[1];
+  for (const double v : velocity) {
+    if (!std::isfinite(v)) most[0] = std::numeric_limits<double>::infinity();
+    most[0] = std::max(most[0], std::fabs(v));
+  }
+  MPI_Allreduce(most, all, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * h) return;
+  error->all(FLERR, Error::NOLASTLINE,
+             "Fix {} {}: at step {} the velocity {:.6g} is more than {} node spacings in a time "
+             "step; reduce "
+             "it, or let fix mpm/dt set it",
+             style, id, update->ntimestep, all[0], MPMFlowLattice::MOST_MOTION);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMIncompressible::stable_dt(tagint &tag) const
+{
+  double dt = std::numeric_limits<double>::max();
+  const double nu = viscosity * acceleration_of_stress();
+  tag = 0;
+  if (nu > 0.0) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!cells.is_point(i)) continue;
+    double square = 0.0, force_square = 0.0;
+    for (int d = 0; d < cells.lattice.dim; d++) {
+      square += atom->v[i][d] * atom->v[i][d];
+      force_square += atom->f[i][d] * atom->f[i][d];
+    }
+    const double a = std::sqrt(force_square) * force->ftm2v / atom->rmass[i];
+    const double speed = 0.5 * (std::sqrt(square) + std::sqrt(square + 4.0 * a * h));
+    if (speed * dt > h) {
+      dt = h / speed;
+      tag = atom->tag[i];
+    } else if (!std::isfinite(speed)) {
+      tag = atom->tag[i];
+      return 0.0;
+    }
+  }
+  return dt;
+}
+
+/* ----------------------------------------------------------------------
+   scalar: number of iterations; vector: these, what is left of the divergence (relative), largest |div v|, volume that
+   points fill, number of wet cells, kinetic energy, largest speed, force on the six walls
+------------------------------------------------------------------------- */
+
+double FixMPMIncompressible::compute_scalar()
+{
+  return last.iterations;
+}
+
+double FixMPMIncompressible::compute_vector(int k)
+{
+  double mine = 0.0, all;
+  if (k == 0) return last.iterations;
+  if (k == 1) return last.residual;
+  if (k == 2 || k == 6) {
+    if (k == 2) mine = last.divergence;
+    for (int i = 0; k == 6 && i < atom->nlocal; i++)
+      if (cells.is_point(i)) mine = std::max(mine, MathExtra::len3(atom->v[i]));
+    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+    return all;
+  }
+  if (k == 3) mine = last.filled;
+  if (k == 4) mine = last.wet;
+  if (k == 5)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (cells.is_point(i))
+        mine += 0.5 * force->mvv2e * atom->rmass[i] * MathExtra::lensq3(atom->v[i]);
+  if (k > 6) mine = last.walls[(k - 7) / 2][(k - 7) % 2];
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/** The duration of the last step. */
+void FixMPMIncompressible::write_restart(FILE *fp)
+{
+  if (comm->me) return;
+  const int size = sizeof(double);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(&dt_before, sizeof(double), 1, fp);
+}
+
+void FixMPMIncompressible::restart(char *buf)
+{
+  memcpy(&dt_before, buf, sizeof(double));
+}
+
+double FixMPMIncompressible::memory_usage()
+{
+  double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
+      air->memory_usage();
+  for (const auto *list : {&sums, &share, &old, &star, &velocity, &known, &pressures, &shift})
+    bytes += list->capacity() * sizeof(double);
+  return bytes;
+}

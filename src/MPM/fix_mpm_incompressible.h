@@ -1,0 +1,104 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/incompressible,FixMPMIncompressible);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_INCOMPRESSIBLE_H
+#define LMP_FIX_MPM_INCOMPRESSIBLE_H
+
+#include "declare/option.h"
+#include "mpm_flow_lattice.h"
+#include "mpm_state.h"
+
+#include <memory>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMFlowAir;
+class MPMFlowPressure;
+class MPMFlowViscosity;
+struct MPMFlowPoints;
+
+struct MPMIncompressibleOptions {
+  enum Transfer { APIC, FLIP, PIC };
+
+  double h = 0.0, density = 0.0;
+  double viscosity = 0.0;
+  Transfer transfer = APIC;
+  double flip = 0.0;       ///< share of FLIP
+  double reflect = 0.0;    ///< share of the change by the pressure that comes once more
+  double spread = 0.5;     ///< share of an excess of points that spreads in a step
+  double tolerance = 1.0e-9;
+  int most_iterations = 10000;
+  MPMFlowWall walls[3][2];
+
+  MPM_NS::Options declare(int dim);
+
+ private:
+  int axis = 0, side = 0;    // of the last wall
+  MPMFlowWall wall;
+};
+
+/** Flow of an incompressible fluid, with free surfaces: its points, on a staggered lattice of its own, with a pressure that
+ *  makes velocities free of divergence. */
+class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOptions {
+ public:
+  FixMPMIncompressible(class LAMMPS *, int, char **);
+  ~FixMPMIncompressible() override;
+  int setmask() override;
+  void init() override;
+  void setup_pre_exchange() override;
+  void setup_pre_neighbor() override;
+  void setup(int) override;
+  void initial_integrate(int) override;
+  void pre_neighbor() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  /** Time in which a point of this rank passes one spacing with the velocity and the acceleration that it has, or one half of
+   *  what viscosity allows; no less than that of points without motion. tag: that of the point, 0: viscosity. */
+  double stable_dt(tagint &tag) const;
+
+ private:
+  MPMFlowLattice cells;
+  std::unique_ptr<MPMFlowPressure> pressure;
+  std::unique_ptr<MPMFlowAir> air;
+  std::unique_ptr<MPMFlowViscosity> viscous;    // null: none
+  MPMRows gradient;                             // [n][dim*dim] dv_c/dx_d of points, with apic
+  std::vector<double> sums, share, old, star, velocity, known, pressures, shift;
+
+  double dt_before = 0.0;    // duration of the last step; 0: none so far
+
+  struct {
+    double iterations = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0, filled = 0.0;
+    double walls[3][2] = {};
+  } last;    // of the last step; filled, wet, and walls of this rank
+
+  double acceleration_of_stress() const;
+  MPMFlowPoints points_now(double dt) const;
+  void check_points();
+  void fit_gradients();
+  void find_shift();
+  void go_on_into_air();
+  void find_velocities();
+  void add_forces(double dt);
+  void add_viscosity(double dt);
+  void find_pressures(double psi_to_pressure);
+  void check_speed() const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

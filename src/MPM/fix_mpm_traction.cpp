@@ -1,0 +1,448 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The surface is that of the first run, and goes with the material: each point below it has an area A and a normal N. A dead
+   traction t is the force A t for ever. Pressure acts on the area da = J F^-T A N (Nanson), that is T = -p cof(F) N for
+   each A, with the F of the point. What points give to the nodes are forces A T (atom->f, with shares of the area that sum to all
+   of it) and a stress with the traction T on the present area cof(F) N = a n, which moves the
+   force to the surface, see MPMFace:
+
+     tau = -W J/a [T n + n T - (T.n) n n]
+
+   It is symmetric, and so has no torque, that of its traction along the surface being in the place of the forces.
+
+   Pressure p on all of the surface of a body is, by the theorem of Gauss, a stress, too,
+
+     -int p N_i n da = -int p grad N_i dv = -p sum_p V_p grad N_i(x_p)
+
+   The resultant is zero as sum_i grad N_i is, and so is the torque. A body with the stress -p is in equilibrium, wherever its
+   points are (the virtual stress boundary of J. Given, Y. Liang, Z. Zeng, X. Zhang, K. Soga, Comput. Mech. 75 (2025)).
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_traction.h"
+
+#include "math/matrix.h"
+#include "mpm_face.h"
+#include "mpm_field.h"
+#include "mpm_image.h"
+#include "mpm_options.h"
+#include "mpm_points.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "input.h"
+#include "modify.h"
+#include "update.h"
+#include "variable.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// what is refused: center of the force below a plane, and below other surfaces, in spacings; difference of the areas of two
+// layers below a plane; and what is told of these
+static constexpr double TOO_DEEP = 0.25, TOO_DEEP_CURVED = 0.6;
+static constexpr double TOO_UNEQUAL = 0.05, UNEQUAL = 0.01;
+
+/* ----------------------------------------------------------------------
+   fix ID group mpm/traction surface values keyword values ...
+------------------------------------------------------------------------- */
+
+Options MPMTractionOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/traction");
+  o.argument(word(surface,
+                  {{"region", REGION, "", {text(region, "REG", "")}},
+                   {"points",
+                    POINTS,
+                    "",
+                    {number(points_area, "A", POSITIVE, "", ""),
+                     numbers(points_normal, 3, "nx ny nz", ANY_NUMBER, "", "")}},
+                   {"free", FREE}},
+                  "surface"));
+  o.add("traction",
+        {variables(traction, 3, "tx ty tz", "pressure",
+                   "dead force per area before deformation, can be variables")})
+      .then([this] {
+        has_traction = true;
+      })
+      .standard("none");
+  o.add("pressure",
+        {variables(&pressure, 1, "p", "pressure",
+                   "pressure against the surface, which follows it, can be a variable")})
+      .then([this] {
+        has_pressure = true;
+      })
+      .standard("none");
+  o.add("spacing",
+        {number(spacing, "s", POSITIVE, "distance",
+                "of the layers of points along the normal of the region")})
+      .standard("cube root of the volume of a point, in 2d square root of its area");
+  o.add("area",
+        {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
+                "area of the surface of the region, if it is known: shares of points are scaled")})
+      .standard("the sum of the shares of points");
+  o.refuse([=] {
+    const bool of_region = surface == REGION;
+    return OptionRules{
+        {!has_traction && !has_pressure, "", "has no load: use traction or pressure"},
+        {surface == FREE && has_traction, "traction",
+         "must not be on all of the free surface, whose resultant is zero: use region or points"},
+        {!of_region && spacing > 0.0, "spacing", "is for layers below the surface of a region"},
+        {!of_region && area > 0.0, "area", "is for the surface of a region"},
+        {surface == POINTS && dot(points_normal, points_normal) == 0.0, "",
+         "points has a normal of length zero"},
+        {dim == 2 && surface == POINTS && points_normal[2] != 0.0, "",
+         "points has a normal that must be along x and y in 2d"},
+        {dim == 2 && has_traction && (traction[2].value != 0.0 || !traction[2].variable.empty()),
+         "traction", "must be along x and y in 2d: {traction}"}};
+  });
+  return o;
+}
+
+FixMPMTraction::FixMPMTraction(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
+{
+  Options options = declare(domain->dimension);
+  read_options(lmp, options, narg, arg, 3);
+  scalar_flag = vector_flag = 1;
+  size_vector = NSUM;
+  global_freq = 1;
+  extscalar = extvector = 1;
+  restart_global = 1;
+  dynamic_group_allow = 0;
+  if (surface == FREE) return;
+  state.declare(rows, "area", WIDTH);
+  keep_arrays();
+}
+
+void FixMPMTraction::find_load(int k)
+{
+  auto &v = load(k);
+  const bool of_all = surface == FREE;
+  if (v.variable.empty()) return;
+  auto *const variables = input->variable;
+  v.index = variables->find(v.variable.c_str());
+  const bool known = v.index >= 0, equal = known && variables->equalstyle(v.index),
+             of_points = known && variables->atomstyle(v.index);
+  if (equal || (of_points && !of_all)) return;
+  error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/traction {} {}", v.variable,
+             k < 3 ? "traction" : "pressure",
+             !known       ? "does not exist"
+                 : of_all ? "is not equal-style"
+                          : "is not equal-style or atom-style");
+}
+
+void FixMPMTraction::init()
+{
+  if (modify->get_fix_by_style("^mpm$").empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/traction {} needs a fix mpm", id);
+  for (int k = 0; k < 4; k++) find_load(k);
+  if (surface == REGION && !defined && !domain->get_region_by_id(region))
+    error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/traction {} does not exist", region,
+               id);
+}
+
+void FixMPMTraction::init_physics(MPMPlan &plan)
+{
+  fields = plan.fields;
+}
+
+bool FixMPMTraction::belongs(const MPMField &field, int i) const
+{
+  return (atom->mask[i] & groupbit) && field.is_point(i) && !field.is_element_node(i);
+}
+
+/* ----------------------------------------------------------------------
+   what this run starts with: the surface, and loads of the first step
+------------------------------------------------------------------------- */
+
+void FixMPMTraction::setup(int vflag)
+{
+  if (surface != FREE && !defined) define();
+  volume_before = -1.0;
+  post_force(vflag);
+}
+
+void FixMPMTraction::define()
+{
+  double mine[2] = {0.0, 0.0}, all[2];    // area (volume of points), how many
+  const auto *const points = MPMPoints::get(atom);
+  const auto add = [&](int i, const MPMFace::Share &share) {
+    double *const row = rows[i];
+    const double *const F = points->F[i], *const n = share.normal;
+    row[AREA] = share.area;
+    row[STRESS] = share.stress;
+    for (int d = 0; d < 3; d++) {
+      // normal and area were found in the present state: N = F^T n/J
+      row[NORMAL + d] = (F[d] * n[0] + F[3 + d] * n[1] + F[6 + d] * n[2]) / determinant(F);
+      row[PLACE + d] = atom->x[i][d];
+    }
+    row[HEIGHT] = determinant(F);
+    mine[0] += share.area;
+    mine[1] += 1.0;
+  };
+  MPMFace::Judgement layers = {};
+  double given = area;
+  if (surface == REGION) {
+    MPMFace face(lmp, domain->get_region_by_id(region), spacing);
+    for (const auto *field : fields) face.find(*field, groupbit, add);
+    layers = face.judge();
+  } else {
+    given = points_area;
+    const double length = std::sqrt(dot(points_normal, points_normal));
+    MPMFace::Share share = {};
+    for (int d = 0; d < 3; d++) share.normal[d] = points_normal[d] / length;
+    for (const auto *field : fields)
+      for (int i = 0; i < atom->nlocal; i++) {
+        if (!belongs(*field, i)) continue;
+        share.area = atom->vfrac[i];
+        add(i, share);
+      }
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  if (all[1] == 0.0 && surface == REGION)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/traction {} finds no points of group {} below the surface of region {}: the "
+        "body must be inside of the region, next to its surface",
+        id, group->names[igroup], region);
+  if (all[1] == 0.0)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/traction {} has no points in group {}", id,
+               group->names[igroup]);
+  const double unequal = layers.flat && area == 0.0 ? layers.unequal : 0.0;
+  if (!(all[0] > 0.0) || unequal > TOO_UNEQUAL ||
+      std::fabs(layers.depth) > (layers.flat ? TOO_DEEP : TOO_DEEP_CURVED))
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/traction {}: the points below the surface of region {} are not in layers of "
+        "the spacing that is expected, or in less than three of them: the force would act {:.3g} "
+        "spacings below it, and the areas of two layers differ by {:.3g} %; use the keywords "
+        "spacing and area, more points across the body, or points A nx ny nz",
+        id, region, layers.depth, 100.0 * unequal);
+  if (unequal > UNEQUAL && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/traction {}: the areas of two layers of points below region {} differ by "
+        "{:.3g} %, and what is found may be wrong by more: use the keywords spacing or area",
+        id, region, 100.0 * unequal);
+  const double scale = given > 0.0 ? given / all[0] : 1.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    rows[i][AREA] *= scale;
+    rows[i][STRESS] *= surface == REGION ? scale : 0.0;
+  }
+  defined = true;
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Fix mpm/traction {}: area {:.8g} of {:.0f} points\n", id, all[0] * scale,
+                   all[1]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMTraction::evaluate_loads()
+{
+  bool any = false;
+  for (int k = 0; k < 4; k++) any = any || !load(k).variable.empty();
+  if (any) modify->clearstep_compute();
+  const double unit = 1.0 / force->nktv2p;
+  for (int k = 0; k < 4; k++) {
+    const auto &v = load(k);
+    const bool of_points = !v.variable.empty() && input->variable->atomstyle(v.index);
+    if (!of_points) {
+      now[k].of_points.clear();
+      now[k].value = unit * evaluate(lmp, v);
+      continue;
+    }
+    now[k].of_points.assign(atom->nmax, 0.0);
+    input->variable->compute_atom(v.index, igroup, now[k].of_points.data(), 1, 0);
+    for (int i = 0; i < atom->nlocal; i++) {
+      double &value = now[k].of_points[i];
+      if (rows[i][AREA] != 0.0 && !std::isfinite(value))
+        error->one(FLERR, "Variable {} for fix mpm/traction {} is {} at point {}", v.variable, id,
+                   value, atom->tag[i]);
+      value *= unit;
+    }
+  }
+  if (any) modify->addstep_compute(update->ntimestep + 1);
+}
+
+/** cof(F) N: the present area for each one before deformation, times its normal. */
+static void present_area(const double *F, const double *N, double *area)
+{
+  const double cofactors[9] = MPM_COFACTORS(F);
+  for (int d = 0; d < 3; d++) area[d] = dot(cofactors + 3 * d, N);
+}
+
+void FixMPMTraction::load_on(int i, const double *F, double *load) const
+{
+  for (int d = 0; d < 3; d++) load[d] = now[d].at(i);
+  if (!has_pressure) return;
+  double area[3];
+  present_area(F, rows[i] + NORMAL, area);
+  for (int d = 0; d < 3; d++) load[d] -= now[3].at(i) * area[d];
+}
+
+void FixMPMTraction::post_force(int)
+{
+  evaluate_loads();
+  std::fill_n(sums, size_vector, 0.0);
+  sums_known = false;
+  if (surface == FREE)
+    press();
+  else
+    add_forces();
+}
+
+/* ----------------------------------------------------------------------
+   Work is that of the mean of the loads before and after each motion of a point. The stress -W J/a T n has the power
+   W V T.n d(J/a)/dt in a load along the normal; that of a traction along the surface, whose sum over layers is next to
+   nothing, is left out here
+------------------------------------------------------------------------- */
+
+void FixMPMTraction::add_forces()
+{
+  const auto *const points = MPMPoints::get(atom);
+  for (int i = 0; i < atom->nlocal; i++) {
+    double *const row = rows[i], *const last = row + LOAD;
+    if (row[AREA] == 0.0 && row[STRESS] == 0.0) continue;
+    const double *const x = atom->x[i], *const F = points->F[i];
+    double load[3], moved[3], area[3], torque[3], place[3];
+    load_on(i, F, load);
+    present_area(F, row + NORMAL, area);
+    const double size = std::sqrt(dot(area, area)), height = determinant(F) / size;
+    work[1] += 0.5 * (dot(last, area) + dot(load, area)) / size * atom->vfrac[i] * row[STRESS] *
+        (height - row[HEIGHT]);
+    for (int d = 0; d < 3; d++) moved[d] = x[d] - row[PLACE + d];
+    nearest_image(*domain, moved);
+    for (int d = 0; d < 3; d++) {
+      const double force = row[AREA] * load[d];
+      work[0] += 0.5 * (row[AREA] * last[d] + force) * moved[d];
+      atom->f[i][d] += force;
+      sums[d] += force;
+      last[d] = load[d];
+      row[PLACE + d] = x[d];
+    }
+    sums[3] += row[AREA] * size;
+    row[HEIGHT] = height;
+    domain->unmap(x, atom->image[i], place);
+    cross(place, load, torque);
+    for (int d = 0; d < 3; d++) sums[4 + d] += row[AREA] * torque[d];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   pressure on all of the surface: the work is that on the volume
+------------------------------------------------------------------------- */
+
+void FixMPMTraction::press()
+{
+  const auto *const points = MPMPoints::get(atom);
+  double volume = 0.0;
+  for (const auto *field : fields)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (belongs(*field, i)) volume += atom->vfrac[i] * points->jacobian(i);
+  const double p = now[3].value;
+  if (volume_before >= 0.0) work[1] -= 0.5 * (pressure_before + p) * (volume - volume_before);
+  volume_before = volume;
+  pressure_before = p;
+}
+
+/* ----------------------------------------------------------------------
+   the part of the load that is a stress, of points that the plan may have sorted since the loads were evaluated
+------------------------------------------------------------------------- */
+
+bool FixMPMTraction::adds_stress(const MPMField &field, int first, int last) const
+{
+  for (int i = first; i < last; i++)
+    if (surface == FREE ? belongs(field, i) : rows[i][STRESS] != 0.0) return true;
+  return false;
+}
+
+void FixMPMTraction::add_stress(const MPMField &field, int first, int n, double *tau) const
+{
+  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+  const double unit = force->nktv2p;
+  for (int k = 0; k < n; k++, tau += 6) {
+    const int i = first + k;
+    if (surface == FREE) {
+      const double p = belongs(field, i) ? unit * now[3].value * field.points->jacobian(i) : 0.0;
+      for (int c = 0; c < 3; c++) tau[c] += p;
+      continue;
+    }
+    const double *const row = rows[i], *const T = row + LOAD;
+    if (row[STRESS] == 0.0) continue;
+    double n[3];
+    present_area(field.points->F[i], row + NORMAL, n);
+    const double size = std::sqrt(dot(n, n));
+    for (double &component : n) component /= size;
+    const double along = dot(T, n), share = unit * row[STRESS] * field.points->jacobian(i) / size;
+    for (int c = 0; c < 6; c++) {
+      const int a = ROW[c], b = COLUMN[c];
+      tau[c] -= share * (T[a] * n[b] + n[a] * T[b] - along * n[a] * n[b]);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the watch of energies knows the work of atom->f alone
+------------------------------------------------------------------------- */
+
+std::vector<MPMPhysics::Account> FixMPMTraction::accounts() const
+{
+  if (surface == POINTS) return {};
+  return {{"work of " + std::string(id) + " by stress", false, true}};
+}
+
+void FixMPMTraction::account(double *values) const
+{
+  if (surface != POINTS) values[0] += work[1];
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMTraction::compute_scalar()
+{
+  double mine = work[0] + work[1], all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMPMTraction::compute_vector(int k)
+{
+  if (!sums_known) MPI_Allreduce(sums, all_sums, size_vector, MPI_DOUBLE, MPI_SUM, world);
+  sums_known = true;
+  return all_sums[k];
+}
+
+double FixMPMTraction::memory_usage()
+{
+  double bytes = FixMPMState::memory_usage();
+  for (const auto &each : now) bytes += each.of_points.capacity() * sizeof(double);
+  return bytes;
+}
+
+void FixMPMTraction::write_restart(FILE *fp)
+{
+  std::vector<double> totals(work, work + 2);
+  write_totals(fp, world, totals, {defined ? 1.0 : 0.0});
+  std::copy_n(totals.begin(), 2, work);
+}
+
+void FixMPMTraction::restart(char *buf)
+{
+  const auto *const list = (const double *) buf;
+  if (comm->me == 0) std::copy_n(list, 2, work);
+  defined = list[2] != 0.0;
+}

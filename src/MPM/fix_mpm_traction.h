@@ -1,0 +1,105 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/traction,FixMPMTraction);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_TRACTION_H
+#define LMP_FIX_MPM_TRACTION_H
+
+#include "declare/option.h"
+#include "mpm_physics.h"
+#include "mpm_state.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+struct MPMTractionOptions {
+  enum Surface { REGION, POINTS, FREE };
+
+  Surface surface = REGION;
+  std::string region;
+  double points_area = 0.0, points_normal[3] = {0.0, 0.0, 0.0};
+  MPM_NS::NumberOrVariable traction[3];    ///< dead, for each area before deformation
+  MPM_NS::NumberOrVariable pressure;       ///< following, positive: against the body
+  bool has_traction = false, has_pressure = false;
+  double spacing = 0.0, area = 0.0;    ///< 0: not given
+
+  MPM_NS::Options declare(int dimension);
+};
+
+/** Forces per area on the surface of bodies: dead ones, which keep their direction and total, and pressure, which stays normal
+ *  to the surface and acts on its present area. They are forces on points (atom->f), or, of pressure on all of the surface
+ *  of a body, a part of internal forces. */
+class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractionOptions {
+ public:
+  FixMPMTraction(class LAMMPS *, int, char **);
+  int setmask() override { return FixConst::POST_FORCE; }
+  void init() override;
+  void setup(int) override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void init_physics(MPMPlan &) override;
+  void add_stages(MPMPlan &, MPMPlan::Place) override {}
+  bool looks_beyond_points() const override { return false; }
+  bool adds_stress(const MPMField &, int first, int last) const override;
+  void add_stress(const MPMField &, int first, int n, double *tau) const override;
+  std::vector<Account> accounts() const override;
+  void account(double *values) const override;
+
+  /** Force [force/area before deformation] on the surface at point i, with the deformation gradient F [9, row-major], by the
+   *  loads of this step: for who looks for states of equilibrium. Its node forces are those of atom->f and add_stress(). */
+  void load_on(int i, const double *F, double *load) const;
+
+ private:
+  // Of a point, before deformation: area, share of the stress (MPMFace), normal [3], so that area times cof(F) times normal is
+  // that on the present surface; in the last step force over this
+  // area and place [3], and J over the size of cof(F) times normal
+  MPMRows rows;
+  enum { AREA, STRESS, NORMAL, LOAD = NORMAL + 3, PLACE = LOAD + 3, HEIGHT = PLACE + 3, WIDTH };
+  bool defined = false;    // which points belong to the surface
+  std::vector<MPMField *> fields;
+  static constexpr int NSUM = 7;                  // force [3], present area, torque [3]
+  double sums[NSUM] = {}, all_sums[NSUM] = {};    // of compute_vector(): this rank's share, and all
+  bool sums_known = true;
+  double work[2] = {
+      0.0, 0.0};    // so far, of forces on points and of stress, this rank's share [energy]
+
+  // loads of this step, in units of force over area: dead, and pressure
+  struct Load {
+    double value = 0.0;
+    std::vector<double> of_points;    // [n] of an atom-style variable, else empty
+    double at(int i) const { return of_points.empty() ? value : of_points[i]; }
+  };
+  Load now[4];
+
+  // pressure on all of the surface: volume of the group, this rank's share, and pressure in the last step
+  double volume_before = 0.0, pressure_before = 0.0;
+
+  bool belongs(const MPMField &, int i) const;
+  MPM_NS::NumberOrVariable &load(int k) { return k < 3 ? traction[k] : pressure; }
+  void find_load(int k);
+  void evaluate_loads();
+  void define();
+  void add_forces();
+  void press();
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,73 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FACE_H
+#define LMP_MPM_FACE_H
+
+#include "pointers.h"
+
+#include <functional>
+
+namespace LAMMPS_NS {
+class MPMField;
+class Region;
+
+/** The points below the surface of a region, and how much of its area each of them stands for.
+ *
+ *  A force per area on the surface must come to points below it, as nodes above these may have next to no mass. What nodes
+ *  ought to get is the value N(0) of their functions at the surface. Points at the depth d, in units of the distance of
+ *  layers, give the share k(d) N + W(d) dN/dn, a force and a stress along the normal, with
+ *
+ *    k = 2 hat(d - 1) - hat(d - 2),   W(d) = 1 - int_0^d k,   hat(d) = max(0, 1 - |d|)
+ *
+ *  The sum of k over layers is one wherever these are, and that of d k is zero: resultant and moment are those of
+ *  the force on the surface. That of W is zero, too, for layers at 1/2, 3/2, ..., where W = 3/4, -5/8, -1/8: the node forces
+ *  of quadratic functions are then those of a uniform stress in the points, which such a force leaves in
+ *  equilibrium, without a layer of another stress at the surface. Others differ a little, linear functions by 1/8 of the
+ *  force on the node below the surface.
+ */
+class MPMFace : protected Pointers {
+ public:
+  /** spacing: of the layers; 0: that of points in a cube, the cube root of their volume. */
+  MPMFace(class LAMMPS *, Region *, double spacing);
+
+  /** k and W of a layer at this depth, in units of the distance of layers. */
+  static double force_share(double depth);
+  static double stress_share(double depth);
+
+  /** What a point stands for. */
+  struct Share {
+    double
+        area;    ///< k times volume over distance of layers; 2d: for a thickness of 1; of a ring around an axis
+    double stress;       ///< W
+    double normal[3];    ///< out of the region
+  };
+  /** Calls f(i, share) for all points of the field and group that have one. */
+  void find(const MPMField &, int groupbit, const std::function<void(int, const Share &)> &f);
+
+  /** Of the points that were found on all ranks, whether they are in layers at the expected distance. */
+  struct Judgement {
+    bool flat;         ///< the surface is a plane
+    double depth;      ///< of the force below the surface, in units of the distance of layers
+    double unequal;    ///< by how much the areas that the hats around 1 and 2 find differ
+  };
+  /** Collective. Below a plane, depth and unequal are zero where there are at least three layers at that distance; below a surface of
+   *  radius R the depth is 11/3 s/R, as deeper layers of a ball are smaller. */
+  Judgement judge() const;
+
+ private:
+  Region *const region;
+  const double spacing;
+  // area, area times depth, volume, volume times normal [3], areas by either hat
+  double sums[8] = {};
+
+  bool is_inside(const double *x) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

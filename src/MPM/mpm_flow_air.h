@@ -1,0 +1,37 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_AIR_H
+#define LMP_MPM_FLOW_AIR_H
+
+#include "mpm_flow_lattice.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** Velocities of faces in the air that points near the surface reach: those of the water go on into it, layer by layer,
+ *  as means of what is known around. */
+class MPMFlowAir {
+ public:
+  explicit MPMFlowAir(const MPMFlowLattice &cells) : cells(cells) {}
+
+  /** velocity, known: [cell][dim] of owned cells, the latter 1 or 0; afterwards of all cells. */
+  void extend(int layers, std::vector<double> &velocity, std::vector<double> &known);
+  double memory_usage() const
+  {
+    return (all_velocity.capacity() + all_known.capacity()) * sizeof(double);
+  }
+
+ private:
+  const MPMFlowLattice &cells;
+  std::vector<double> all_velocity, all_known;
+};
+
+}    // namespace LAMMPS_NS
+#endif

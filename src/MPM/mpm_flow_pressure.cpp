@@ -1,0 +1,235 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_flow_pressure.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// nearest place of the surface to the middle of a cell that equations are made for, in spacings
+static constexpr double NEAREST = 1.0e-8;
+// share of the surroundings of a cell, and mean of its neighbors, from which on it is wet
+static constexpr double SPREAD =
+    8.0;    // distance in which points make room for others, in spacings
+static constexpr double HALF = 0.5, SURROUNDED = 0.6;
+
+/** Depth below a flat surface, in spacings, of which this share of a hat is filled. */
+static double depth(double share)
+{
+  if (share < 0.5) return std::sqrt(2.0 * std::max(share, 0.0)) - 1.0;
+  return 1.0 - std::sqrt(2.0 * std::max(1.0 - share, 0.0));
+}
+
+double MPMFlowPressure::distance(int64_t wet_cell, int64_t dry) const
+{
+  const double in = depth(share_of[wet_cell]), out = depth(share_of[dry]);
+  return in > 0.0 ? std::max(NEAREST, in / (in - out)) : 0.5;    // surrounded: nobody knows
+}
+
+/** 1/h^2 times what the difference of psi, or psi itself where the other cell is dry, has to be multiplied with. */
+double MPMFlowPressure::weight_to(int64_t wet_cell, int64_t other) const
+{
+  const double h = cells.lattice.h;
+  return 1.0 / (h * h * (is_wet(other) ? 1.0 : distance(wet_cell, other)));
+}
+
+/** Are the neighbors of a cell filled so well that what is between them is water? At a flat surface, their mean is that of
+ *  the cell itself. */
+bool MPMFlowPressure::is_surrounded(const MPMFlowLattice::Cell &cell) const
+{
+  int sides = 0;
+  double sum = 0.0;
+  for (int s = 0; s < 2 * cells.lattice.dim; s++) {
+    if (cell.walls >> s & 1) continue;
+    sides++;
+    sum += std::min(2.0, share_of[cell.near[s]]);
+  }
+  return sum > SURROUNDED * sides;
+}
+
+void MPMFlowPressure::find_wet(const std::vector<double> &share)
+{
+  share_of = share.data();
+  wet.clear();
+  flag.assign(cells.size(), 0.0);
+  for (const auto &cell : cells.cells)
+    flag[cell.number] = share[cell.number] > HALF || is_surrounded(cell) ? 1.0 : 0.0;
+  cells.publish(flag.data(), 1);
+  cells.reflect_cells(flag.data());
+  inverse_diagonal.assign(cells.size(), 0.0);
+  const int sides = 2 * cells.lattice.dim;
+  for (int k = 0; k < (int) cells.cells.size(); k++) {
+    const auto &cell = cells.cells[k];
+    if (!is_wet(cell.number)) continue;
+    Wet one;
+    one.cell = k;
+    one.diagonal = 0.0;
+    for (int s = 0; s < sides; s++) {
+      const int other = cell.near[s];
+      const bool wall = cell.walls >> s & 1;
+      one.weight[s] = wall ? 0.0 : weight_to(cell.number, other);
+      one.near[s] = !wall && is_wet(other) ? other : -1;
+      one.diagonal += one.weight[s];
+    }
+    if (one.diagonal == 0.0) one.diagonal = 1.0;    // walls all around
+    inverse_diagonal[cell.number] = 1.0 / one.diagonal;
+    wet.push_back(one);
+  }
+  cells.publish(inverse_diagonal.data(), 1);
+}
+
+void MPMFlowPressure::apply(const double *x, double *y)
+{
+  std::fill_n(y, size(), 0.0);
+  const int sides = 2 * cells.lattice.dim;
+  for (const auto &one : wet) {
+    const int number = cells.cells[one.cell].number;
+    double sum = (one.diagonal + screen) * x[number];
+    for (int s = 0; s < sides; s++)
+      if (one.near[s] >= 0) sum -= one.weight[s] * x[one.near[s]];
+    y[number] = sum;
+  }
+  cells.publish(y, 1);
+}
+
+void MPMFlowPressure::precondition(const double *r, double *z)
+{
+  for (int64_t k = 0; k < size(); k++) z[k] = inverse_diagonal[k] * r[k];
+}
+
+/* ---------------------------------------------------------------------- */
+
+SolveReport MPMFlowPressure::project(const double *before, double *after, double *known,
+                                     const SolveGoal &goal)
+{
+  const int dim = cells.lattice.dim;
+  const double h = cells.lattice.h;
+  right_side.assign(size(), 0.0);
+  psi.assign(size(), 0.0);
+  for (const auto &one : wet) {
+    const auto &cell = cells.cells[one.cell];
+    double sum = 0.0;
+    for (int d = 0; d < dim; d++) {
+      if (!(cell.walls >> 2 * d & 1)) sum += before[(int64_t) cell.number * dim + d];
+      if (!(cell.walls >> 2 * d & 2)) sum -= before[(int64_t) cell.near[2 * d + 1] * dim + d];
+    }
+    right_side[cell.number] = sum / h;
+  }
+  cells.publish(right_side.data(), 1);
+  const SolveReport report = method.solve(*this, right_side.data(), psi.data(), goal);
+  subtract_gradient(psi, before, after, known);
+  return report;
+}
+
+/** Of owned cells; null: before is zero. */
+void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const double *before,
+                                        double *after, double *known) const
+{
+  const int dim = cells.lattice.dim;
+  const double h = cells.lattice.h;
+  for (const auto &cell : cells.cells)
+    for (int d = 0; d < dim; d++) {
+      const int64_t face = (int64_t) cell.number * dim + d;
+      const int here = cell.number, lower = cell.near[2 * d];
+      const bool in = is_wet(here), below = is_wet(lower), wall = cell.walls >> 2 * d & 1;
+      after[face] = known[face] = 0.0;
+      if (wall || in || below) known[face] = 1.0;
+      if (wall || known[face] == 0.0) continue;
+      const double weight = in ? weight_to(here, lower) : weight_to(lower, here);
+      after[face] = (before ? before[face] : 0.0) - h * weight * (of[here] - of[lower]);
+    }
+}
+
+bool MPMFlowPressure::is_deep(const MPMFlowLattice::Cell &cell) const
+{
+  bool deep = is_wet(cell.number);
+  for (int s = 0; s < 2 * cells.lattice.dim; s++)
+    deep = deep && (cell.walls >> s & 1 || is_wet(cell.near[s]));
+  return deep;
+}
+
+SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *known,
+                                    const SolveGoal &goal)
+{
+  const double h = cells.lattice.h;
+  right_side.assign(size(), 0.0);
+  excess.assign(size(), 0.0);
+  for (const auto &one : wet) {
+    const auto &cell = cells.cells[one.cell];
+    const double more = share_of[cell.number] - 1.0;
+    if (more > 0.0 || is_deep(cell)) right_side[cell.number] = rate * std::min(more, 1.0);
+  }
+  cells.publish(right_side.data(), 1);
+  screen = 1.0 / (SPREAD * SPREAD * h * h);
+  const SolveReport report = method.solve(*this, right_side.data(), excess.data(), goal);
+  screen = 0.0;
+  subtract_gradient(excess, nullptr, displacement, known);
+  return report;
+}
+
+double MPMFlowPressure::largest_divergence(const double *velocity) const
+{
+  const int dim = cells.lattice.dim;
+  double most = 0.0;
+  for (const auto &one : wet) {
+    const auto &cell = cells.cells[one.cell];
+    double sum = 0.0;
+    for (int d = 0; d < dim; d++) {
+      if (!(cell.walls >> 2 * d & 1)) sum -= velocity[(int64_t) cell.number * dim + d];
+      if (!(cell.walls >> 2 * d & 2)) sum += velocity[(int64_t) cell.near[2 * d + 1] * dim + d];
+    }
+    most = std::max(most, std::fabs(sum));
+  }
+  return most / cells.lattice.h;
+}
+
+void MPMFlowPressure::extend_into_air(std::vector<double> &values) const
+{
+  values.assign(size(), 0.0);
+  for (const auto &one : wet)
+    values[cells.cells[one.cell].number] = psi[cells.cells[one.cell].number];
+  for (const auto &cell : cells.cells) {
+    if (is_wet(cell.number)) continue;
+    double sum = 0.0;
+    int n = 0;
+    for (int s = 0; s < 2 * cells.lattice.dim; s++) {
+      const int other = cell.near[s];
+      if (cell.walls >> s & 1 || !is_wet(other)) continue;
+      const double in = std::max(NEAREST, depth(share_of[other])),
+                   out = depth(share_of[cell.number]);
+      sum += psi[other] * out / in;
+      n++;
+    }
+    if (n) values[cell.number] = sum / n;
+  }
+  cells.publish(values.data(), 1);
+}
+
+double MPMFlowPressure::at_wall(int axis, int side) const
+{
+  double sum = 0.0;
+  for (const auto &one : wet) {
+    const auto &cell = cells.cells[one.cell];
+    if (!(cell.walls >> (2 * axis + side) & 1)) continue;
+    const int next = cell.near[2 * axis + 1 - side];
+    const bool both = is_wet(next) && !(cell.walls >> (2 * axis + 1 - side) & 1);
+    sum += both ? 1.5 * psi[cell.number] - 0.5 * psi[next] : psi[cell.number];
+  }
+  return sum * std::pow(cells.lattice.h, cells.lattice.dim - 1);
+}
+
+double MPMFlowPressure::memory_usage() const
+{
+  return (psi.capacity() + excess.capacity() + flag.capacity() + right_side.capacity() +
+          inverse_diagonal.capacity()) *
+      sizeof(double) +
+      wet.capacity() * sizeof(Wet) + method.memory_usage();
+}

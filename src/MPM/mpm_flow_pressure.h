@@ -1,0 +1,94 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_PRESSURE_H
+#define LMP_MPM_FLOW_PRESSURE_H
+
+#include "mpm_flow_lattice.h"
+#include "mpm_node_system.h"
+#include "solve/krylov.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** The pressure that makes a flow free of divergence: the Poisson equation on the cells that are wet.
+ *
+ *  Cells are wet where points fill more than one half of their surroundings, or less if water is all around: points that
+ *  flow are not as even as they were, and what is left between them is no air. The surface is where they fill one half:
+ *  a hat that has the depth s below a flat surface is filled by 1/2 + s - s^2/2 of points that are squares (cubes), which tells how far from the middle of a
+ *  wet cell the pressure is zero (F. Gibou, R.P. Fedkiw, L.-T. Cheng, M. Kang, J. Comput. Phys. 176 (2002) 205).
+ *
+ *  The unknown is the potential psi = dt p/density, whose gradient velocities lose. */
+class MPMFlowPressure : public MPMNodeSystem {
+ public:
+  MPMFlowPressure(class LAMMPS *lmp, const MPMFlowLattice &cells) :
+      MPMNodeSystem(lmp, cells.grid, 1), cells(cells)
+  {
+  }
+
+  /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
+  void find_wet(const std::vector<double> &share);
+  bool is_wet(int64_t number) const { return flag[number] > 0.0; }
+
+  /** Is the lower face of a cell along an axis in a wall, or next to a wet cell? */
+  bool is_next_to_water(const MPMFlowLattice::Cell &cell, int axis) const
+  {
+    return cell.walls >> 2 * axis & 1 || is_wet(cell.number) || is_wet(cell.near[2 * axis]);
+  }
+
+  /** From the middle of a wet cell to the surface, towards a neighbor that is dry, in spacings. */
+  double distance(int64_t wet_cell, int64_t dry) const;
+
+  /** Takes the divergence from velocities [cell][dim] of faces next to wet cells. known: [cell][dim] in which these are
+   *  marked with 1, and others with 0. Both have values in owned cells only. */
+  MPM_NS::SolveReport project(const double *before, double *after, double *known,
+                              const MPM_NS::SolveGoal &);
+  /** Displacements of faces that take points from where they fill more than all of a cell to where they leave some of it
+   *  empty, and no surface is near: their divergence is rate (share - 1), but for what is farther than a few cells. As in
+   *  T. Kugelstadt, A. Longva, N. Thuerey, J. Bender, IEEE Trans. Vis. Comput. Graph. 27 (2021) 2731. */
+  MPM_NS::SolveReport spread(double rate, double *displacement, double *known,
+                             const MPM_NS::SolveGoal &);
+
+  std::vector<double> psi;    ///< of all cells, zero where there is no water
+  /** Largest |div v| of the wet cells of this rank [1/time]. */
+  double largest_divergence(const double *velocity) const;
+  int64_t nwet() const { return (int64_t) wet.size(); }    ///< of this rank
+  /** psi with values next to the surface that are negative, so that it is zero there in between; of all cells. */
+  void extend_into_air(std::vector<double> &values) const;
+  /** Integral of psi over the wall of an axis, the share of this rank. */
+  double at_wall(int axis, int side) const;
+
+  void apply(const double *x, double *y) override;
+  void precondition(const double *r, double *z) override;
+
+  double memory_usage() const;
+
+ private:
+  struct Wet {
+    int cell;            // in the list of cells
+    int near[6];         // numbers; of neighbors that are dry, the cell itself
+    double weight[6];    // of the difference to the neighbor, 1/h^2; of dry ones, of psi itself
+    double diagonal;
+  };
+  const MPMFlowLattice &cells;
+  std::vector<Wet> wet;
+  std::vector<double> excess, flag, right_side, inverse_diagonal;
+  const double *share_of = nullptr;
+  double screen = 0.0;    // 1/length^2
+  MPM_NS::ConjugateGradients method;
+
+  double weight_to(int64_t wet_cell, int64_t other) const;
+  bool is_deep(const MPMFlowLattice::Cell &) const;
+  void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
+                         double *known) const;
+  bool is_surrounded(const MPMFlowLattice::Cell &) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

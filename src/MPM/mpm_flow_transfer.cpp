@@ -1,0 +1,276 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_flow_transfer.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// points are kept that far inside of walls, in spacings: no rounding takes them out of the box
+static constexpr double INSIDE = 1.0e-6;
+
+namespace {
+/** Numbers of the cells that a place reaches. */
+template <int dim> struct Reach {
+  const int *slots;
+  int block[3][3], inside[3][3];
+
+  void find(const Grid &grid, const Grid::Block &of, const int base[3])
+  {
+    slots = of.slot;
+    for (int d = 0; d < 3; d++) {
+      const int stride = d == 0 ? 9 : (d == 1 ? 3 : 1);
+      if (d >= dim) {
+        block[d][0] = stride;
+        inside[d][0] = 0;
+        continue;
+      }
+      const int step = d == dim - 1 ? 1 : (d == dim - 2 ? grid.side : grid.side * grid.side);
+      for (int k = 0; k < 3; k++) {
+        const int index = base[d] + k;
+        block[d][k] = stride * ((index >> grid.shift_bits) - of.b[d] + 1);
+        inside[d][k] = step * (index & (grid.side - 1));
+      }
+    }
+  }
+  int64_t number(const int k[3]) const
+  {
+    const int slot = slots[block[0][k[0]] + block[1][k[1]] + block[2][k[2]]];
+    return (int64_t) slot * NODES_PER_BLOCK + inside[0][k[0]] + inside[1][k[1]] + inside[2][k[2]];
+  }
+};
+
+/** Calls f(number, k) for all cells in the middle or faces of which are reached: of the last layers of two axes at a
+ *  time there is nothing. */
+template <int dim, class F> void visit(const Reach<dim> &reach, const F &f)
+{
+  int k[3] = {0, 0, 0};
+  for (k[0] = 0; k[0] < 3; k[0]++)
+    for (k[1] = 0; k[1] < (k[0] == 2 ? 2 : 3); k[1]++) {
+      const int n = dim == 2 ? 1 : (k[0] == 2 || k[1] == 2 ? 2 : 3);
+      for (k[2] = 0; k[2] < n; k[2]++) f(reach.number(k), k);
+    }
+}
+
+template <int dim> struct Places {
+  double origin[3], inv_h, low[3], high[3];
+  bool walls[3];
+
+  explicit Places(const MPM_NS::Lattice &lattice) : inv_h(1.0 / lattice.h)
+  {
+    for (int d = 0; d < dim; d++) {
+      origin[d] = lattice.origin[d];
+      walls[d] = !lattice.periodic[d];
+      low[d] = origin[d] + INSIDE * lattice.h;
+      high[d] = origin[d] + (lattice.ncell[d] - INSIDE) * lattice.h;
+    }
+  }
+  void find(const double *x, StaggeredWeights &w) const
+  {
+    double t[3];
+    for (int d = 0; d < dim; d++) t[d] = (x[d] - origin[d]) * inv_h;
+    w.find<dim>(t);
+  }
+  void keep_inside(double *x) const
+  {
+    for (int d = 0; d < dim; d++)
+      if (walls[d]) x[d] = std::max(low[d], std::min(x[d], high[d]));
+  }
+};
+
+template <int dim>
+void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<double> &sums)
+{
+  constexpr int width = 3 * dim + 1;
+  const Places<dim> places(cells.lattice);
+  const double h = cells.lattice.h;
+  StaggeredWeights w;
+  FillingWeights filling;
+  Reach<dim> reach;
+  double volume = 0.0, width_of_point = 0.0;
+  for (const auto &run : cells.runs) {
+    const auto &block = cells.grid.blocks[run.slot];
+    for (int i = run.first; i < run.last; i++) {
+      places.find(points.x[i], w);
+      reach.find(cells.grid, block, w.base);
+      const double m = points.mass[i], V = points.volume[i];
+      const double *const f = points.f[i];
+      double v[dim], G[dim * dim] = {};
+      for (int c = 0; c < dim; c++) v[c] = points.v[i][c];
+      if (points.gradient)
+        for (int e = 0; e < dim * dim; e++) G[e] = points.gradient[i][e] * h;
+      visit<dim>(reach, [&](int64_t number, const int k[3]) {
+        double *const to = sums.data() + number * width;
+        for (int c = 0; c < dim; c++) {
+          double value = v[c];
+          for (int d = 0; d < dim; d++)
+            value += G[dim * c + d] * (d == c ? w.to_face(d, k[d]) : w.to_middle(d, k[d]));
+          const double N = w.face<dim>(c, k);
+          to[c] += m * N * value;
+          to[dim + c] += m * N;
+          to[2 * dim + c] += N * f[c];
+        }
+      });
+
+      if (V != volume) {
+        volume = V;
+        width_of_point = std::min(1.0, std::pow(V / cells.lattice.cell_volume(), 1.0 / dim));
+      }
+      double t[3];
+      for (int d = 0; d < dim; d++) t[d] = (points.x[i][d] - places.origin[d]) * places.inv_h;
+      filling.find<dim>(t, width_of_point);
+      reach.find(cells.grid, block, filling.first);
+      int k[3] = {0, 0, 0};
+      for (k[0] = 0; k[0] < 3; k[0]++)
+        for (k[1] = 0; k[1] < 3; k[1]++)
+          for (k[2] = 0; k[2] < (dim == 3 ? 3 : 1); k[2]++) {
+            double share = V;
+            for (int d = 0; d < dim; d++) share *= filling.share[d][k[d]];
+            if (share != 0.0) sums[reach.number(k) * width + 3 * dim] += share;
+          }
+    }
+  }
+}
+
+/** Velocities at a place, and their gradients times the spacing, if asked for. */
+template <int dim>
+void interpolate(const Reach<dim> &reach, const StaggeredWeights &w, const double *values,
+                 double *v, double *G)
+{
+  std::fill_n(v, dim, 0.0);
+  if (G) std::fill_n(G, dim * dim, 0.0);
+  double slope[3][3];
+  for (int d = 0; d < dim; d++) {
+    slope[d][0] = w.f[d] - 1.0;
+    slope[d][1] = 1.0 - 2.0 * w.f[d];
+    slope[d][2] = w.f[d];
+  }
+  constexpr double hat_slope[3] = {-1.0, 1.0, 0.0};
+  visit<dim>(reach, [&](int64_t number, const int k[3]) {
+    const double *const from = values + number * dim;
+    for (int c = 0; c < dim; c++) {
+      v[c] += w.face<dim>(c, k) * from[c];
+      if (!G) continue;
+      for (int d = 0; d < dim; d++) {
+        double g = d == c ? slope[d][k[d]] : hat_slope[k[d]];
+        for (int e = 0; e < dim; e++)
+          if (e != d) g *= e == c ? w.spline[e][k[e]] : w.hat[e][k[e]];
+        G[dim * c + d] += g * from[c];
+      }
+    }
+  });
+}
+
+template <int dim>
+bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double *velocity,
+         const MPMFlowUpdate &update, const double *pressure, MPMRows stress)
+{
+  const Places<dim> places(cells.lattice);
+  const double inv_h = 1.0 / cells.lattice.h;
+  StaggeredWeights w;
+  Reach<dim> reach;
+  bool all_in_reach = true;
+  for (const auto &run : cells.runs) {
+    const auto &block = cells.grid.blocks[run.slot];
+    for (int i = run.first; i < run.last; i++) {
+      double *const x = points.x[i], *const v = points.v[i];
+      places.find(x, w);
+      reach.find(cells.grid, block, w.base);
+      double now[dim], G[dim * dim], other[dim], G_other[dim * dim];
+      interpolate<dim>(reach, w, velocity, now, points.gradient ? G : nullptr);
+      double p = 0.0;
+      visit<dim>(reach, [&](int64_t number, const int k[3]) {
+        p += w.cell<dim>(k) * pressure[number];
+      });
+      for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
+
+      double more[dim] = {};    // by the change that comes once more
+      if (update.old) {
+        interpolate<dim>(reach, w, update.old, other, points.gradient ? G_other : nullptr);
+        for (int c = 0; c < dim; c++) {
+          more[c] = update.reflect * (now[c] - other[c]);
+          v[c] = now[c] + more[c] + update.flip * (v[c] - other[c]);
+        }
+        for (int e = 0; points.gradient && e < dim * dim; e++)
+          G[e] += update.reflect * (G[e] - G_other[e]);
+      } else
+        std::copy_n(now, dim, v);
+      if (points.gradient)
+        for (int e = 0; e < dim * dim; e++) points.gradient[i][e] = inv_h * G[e];
+
+      double shift[dim] = {};
+      if (update.shift) interpolate<dim>(reach, w, update.shift, shift, nullptr);
+      if (update.shift && points.gradient)
+        for (int c = 0; c < dim; c++)
+          for (int d = 0; d < dim; d++) v[c] += points.gradient[i][dim * c + d] * shift[d];
+
+      // The midpoint rule in the field of velocities, where divergences are none. With all of the change once more,
+      // velocities are those in the middle of the step where points have been at its start, and paths are straight
+
+      double middle[3] = {x[0], x[1], x[2]}, at_middle[dim];
+      for (int d = 0; d < dim; d++) middle[d] += 0.5 * points.dt * now[d];
+      places.keep_inside(middle);
+      places.find(middle, w);
+      reach.find(cells.grid, block, w.base);
+      interpolate<dim>(reach, w, velocity, at_middle, nullptr);
+      for (int d = 0; d < dim; d++) {
+        const double u = at_middle[d] + update.reflect * (now[d] - at_middle[d]) + more[d];
+        x[d] += points.dt * u + shift[d];
+      }
+      places.keep_inside(x);
+      places.find(x, w);
+      all_in_reach = all_in_reach && cells.in_reach(run, w.base);
+    }
+  }
+  return all_in_reach;
+}
+
+template <int dim>
+void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double *velocity)
+{
+  const Places<dim> places(cells.lattice);
+  StaggeredWeights w;
+  Reach<dim> reach;
+  double v[dim], G[dim * dim];
+  for (const auto &run : cells.runs)
+    for (int i = run.first; i < run.last; i++) {
+      places.find(points.x[i], w);
+      reach.find(cells.grid, cells.grid.blocks[run.slot], w.base);
+      interpolate<dim>(reach, w, velocity, v, G);
+      for (int e = 0; e < dim * dim; e++) points.gradient[i][e] = G[e] / cells.lattice.h;
+    }
+}
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::give_to_cells(const MPMFlowLattice &cells, const MPMFlowPoints &points,
+                              std::vector<double> &sums)
+{
+  const int dim = cells.lattice.dim;
+  sums.assign(cells.size() * (3 * dim + 1), 0.0);
+  dim == 2 ? give<2>(cells, points, sums) : give<3>(cells, points, sums);
+}
+
+bool LAMMPS_NS::get_from_cells(const MPMFlowLattice &cells, const MPMFlowPoints &points,
+                               const double *velocity, const MPMFlowUpdate &update,
+                               const double *pressure, MPMRows stress)
+{
+  return cells.lattice.dim == 2 ? get<2>(cells, points, velocity, update, pressure, stress)
+                                : get<3>(cells, points, velocity, update, pressure, stress);
+}
+
+void LAMMPS_NS::get_gradients(const MPMFlowLattice &cells, const MPMFlowPoints &points,
+                              const double *velocity)
+{
+  cells.lattice.dim == 2 ? get_gradient<2>(cells, points, velocity)
+                         : get_gradient<3>(cells, points, velocity);
+}

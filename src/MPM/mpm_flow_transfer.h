@@ -1,0 +1,55 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_TRANSFER_H
+#define LMP_MPM_FLOW_TRANSFER_H
+
+#include "lattice/staggered.h"
+#include "mpm_flow_lattice.h"
+#include "mpm_rows.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** What points and the staggered lattice of a flow tell each other. */
+struct MPMFlowPoints {
+  double **x, **v, **f;
+  const double *mass, *volume;
+  MPMRows gradient;    ///< [n][dim*dim] dv_c/dx_d, null: none
+  double dt;
+};
+
+/** How points get their velocity from the cells. */
+struct MPMFlowUpdate {
+  double flip;    ///< share of what cells do not see of velocities that points keep
+  double
+      reflect;    ///< share of the change of velocities by forces and pressure that comes once more
+  const double
+      *old;    ///< [cell][dim] velocities before that change; null: without flip and reflect
+  /** [cell][dim] displacements, besides the motion with the velocity, with which points keep their place in the field of
+   *  velocities; null: none. */
+  const double *shift = nullptr;
+};
+
+/** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a
+ *  face normal to c its mass m N, and m N (v_c + grad v_c . (x_i - x)). Where the gradient is that of get(), momentum and
+ *  angular momentum of the faces are those of the points, with m g_ce D_e for the latter from their gradients, D_e =
+ *  f (1 - f) h^2. */
+void give_to_cells(const MPMFlowLattice &, const MPMFlowPoints &, std::vector<double> &sums);
+
+/** Points from cells: their velocities and gradients, and their motion through the field of velocities [cell][dim], by the
+ *  midpoint rule. pressure: [cell], goes to stress[i][0..2]. Returns false when a point has to have its cells found anew. */
+bool get_from_cells(const MPMFlowLattice &, const MPMFlowPoints &, const double *velocity,
+                    const MPMFlowUpdate &, const double *pressure, MPMRows stress);
+
+/** Gradients of points alone. */
+void get_gradients(const MPMFlowLattice &, const MPMFlowPoints &, const double *velocity);
+
+}    // namespace LAMMPS_NS
+#endif

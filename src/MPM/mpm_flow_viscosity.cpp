@@ -1,0 +1,62 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_flow_viscosity.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+
+// nearest place of the surface that forces are made for, in spacings
+static constexpr double NEAREST = 0.25;
+
+void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
+                           std::vector<double> &sum) const
+{
+  const int dim = cells.lattice.dim, here = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
+  const int stride2[2] = {3, 1}, stride3[3] = {9, 3, 1};
+  const int *const stride = dim == 2 ? stride2 : stride3;
+  const double scale = factor / (cells.lattice.h * cells.lattice.h);
+  for (std::size_t k = 0; k < cells.cells.size(); k++) {
+    const auto &cell = cells.cells[k];
+    const int *const at = cells.around.data() + k * naround + here;
+    const auto v = [&](int c, int offset) {
+      return u[(int64_t) at[offset] * dim + c];
+    };
+    const auto wet = [&](int offset) {
+      return water.is_wet(at[offset]);
+    };
+    // from the middle of a wet cell to a side of it or the surface before that, beyond one half of a spacing
+    const auto reach = [&](int offset, int to) {
+      return wet(offset) && !wet(to) ? std::max(NEAREST, water.distance(at[offset], at[to])) : 0.5;
+    };
+    for (int c = 0; c < dim; c++) {
+      if (cell.walls >> 2 * c & 1) continue;
+      const int e = stride[c];
+      if (!wet(0) && !wet(-e)) continue;
+      double normal = 0.0, length = 1.0;
+      if (wet(0)) normal += v(c, e) - v(c, 0);
+      if (wet(-e)) normal -= v(c, 0) - v(c, -e);
+      if (!wet(0)) length = reach(-e, 0);
+      if (!wet(-e)) length = reach(0, -e);
+      double force = 2.0 * normal / length;
+      for (int d = 0; d < dim; d++) {
+        if (d == c) continue;
+        const int n = stride[d];
+        const bool both = wet(0) && wet(-e);
+        double shear = 0.0;
+        if (both && wet(n) && wet(n - e)) shear += v(c, n) - v(c, 0) + v(d, n) - v(d, n - e);
+        if (both && wet(-n) && wet(-n - e)) shear -= v(c, 0) - v(c, -n) + v(d, 0) - v(d, -e);
+        const double height =
+            both ? 0.5 * (reach(0, n) + reach(-e, n - e) + reach(0, -n) + reach(-e, -n - e)) : 1.0;
+        force += shear / height;
+      }
+      sum[(int64_t) cell.number * dim + c] += scale * force;
+    }
+  }
+}

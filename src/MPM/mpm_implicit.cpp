@@ -1,0 +1,496 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_implicit.h"
+
+#include "force.h"
+#include "mpm_field.h"
+#include "mpm_node_action.h"
+#include "mpm_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double PROJECTED = 1.0e-12;    // relative change by one action more
+static constexpr int MOST_REPEATS = 200;
+static constexpr double ENOUGH = 0.9;    // of the slope that may be left, with the other sign
+static constexpr int MOST_CUTS = 12;
+static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
+static constexpr double SYMMETRIC = 1.0e-3;         // of tangents, for conjugate gradients
+static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are not known better
+static constexpr double LOST = 1.0e12;              // times the first residual
+
+/* ---------------------------------------------------------------------- */
+
+MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions &options) :
+    MPMNodeSystem(lmp, field.grid, field.lattice.dim), field(field), options(options),
+    tangent(lmp, field)
+{
+}
+
+void MPMImplicit::init()
+{
+  tangent.init();
+}
+
+/* ----------------------------------------------------------------------
+   masses and velocities of the nodes from their records
+------------------------------------------------------------------------- */
+
+void MPMImplicit::take_nodes()
+{
+  const int64_t nnodes = grid.nnodes();
+  mass.resize(nnodes);
+  for (auto *list : {&before, &explicit_velocity, &outer, &inner, &from, &residual, &free, &trial,
+                     &change, &room})
+    list->assign(nreals(), 0.0);
+  const double *record = field.grid.nodes();
+  for (int64_t n = 0; n < nnodes; n++, record += 8) {
+    mass[n] = record[3] > 0.0 ? record[3] : 0.0;
+    if (mass[n] == 0.0) continue;
+    for (int d = 0; d < width; d++) {
+      explicit_velocity[width * n + d] = record[d];
+      before[width * n + d] = record[4 + d];
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   constraints. Walls that meet act one after the other, and what the last one does may undo something of what the first
+   one did: repeated, orthogonal projections become that on what all of them leave free (J. von Neumann, 1933)
+------------------------------------------------------------------------- */
+
+void MPMImplicit::act(double *velocities)
+{
+  double *const nodes = field.grid.nodes();
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
+    for (int d = 0; d < width; d++) nodes[8 * n + d] = velocities[width * n + d];
+  for (int k = 0; k < repeats; k++) field.plan->act_on_nodes(MPMNodeAction::TRIAL);
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
+    for (int d = 0; d < width; d++)
+      velocities[width * n + d] = mass[n] > 0.0 ? nodes[8 * n + d] : 0.0;
+}
+
+void MPMImplicit::find_constraints()
+{
+  constrained = !field.plan->actions.empty();
+  wall.assign(nreals(), 0.0);
+  wall_speed = 0.0;
+  if (!constrained) return;
+
+  // is P P = P for a vector that is no special one, and the same on all ranks?
+
+  std::vector<double> once(nreals()), twice;
+  for (repeats = 1; repeats <= MOST_REPEATS; repeats *= 2) {
+    std::fill(wall.begin(), wall.end(), 0.0);
+    act(wall.data());
+    wall_speed = std::sqrt(product(wall.data(), wall.data()));
+    int index[3];
+    for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
+      grid.node_index(n, index);
+      for (int d = 0; d < width; d++)
+        once[width * n + d] = mass[n] > 0.0
+            ? std::sin(1.0 + 3.1 * index[0] + 5.3 * index[1] + 7.7 * index[2] + 2.3 * d)
+            : 0.0;
+    }
+    project(once.data());
+    twice = once;
+    project(twice.data());
+    const double size = std::sqrt(product(once.data(), once.data()));
+    for (int64_t k = 0; k < nreals(); k++) twice[k] -= once[k];
+    if (std::sqrt(product(twice.data(), twice.data())) <= PROJECTED * size) return;
+  }
+  now.failure =
+      "walls that meet contradict each other: give them the same velocity, or move faces of "
+      "regions to planes of nodes";
+}
+
+/** x <- P x. Where walls move, x is made as large as their velocity, so that the difference keeps its digits. */
+void MPMImplicit::project(double *x)
+{
+  if (!constrained) return;
+  double scale = 1.0;
+  if (wall_speed > 0.0) {
+    const double size = std::sqrt(product(x, x));
+    if (size > 0.0) scale = wall_speed / size;
+    for (int64_t k = 0; k < nreals(); k++) x[k] *= scale;
+  }
+  act(x);
+  if (wall_speed > 0.0)
+    for (int64_t k = 0; k < nreals(); k++) x[k] = (x[k] - wall[k]) / scale;
+}
+
+/** f <- P^T f = M P M^-1 f */
+void MPMImplicit::project_forces(double *f)
+{
+  if (!constrained) return;
+  for (int64_t k = 0; k < nreals(); k++) {
+    const double m = mass[k / width];
+    f[k] = m > 0.0 ? f[k] / m : 0.0;
+  }
+  project(f);
+  for (int64_t k = 0; k < nreals(); k++) f[k] *= mass[k / width];
+}
+
+/** Of the vectors of all nodes. */
+double MPMImplicit::sum_of_sizes(const std::vector<double> &f)
+{
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
+    double square = 0.0;
+    for (int d = 0; d < width; d++) {
+      square += f[width * n + d] * f[width * n + d];
+      room[width * n + d] = 0.0;
+    }
+    room[width * n] = std::sqrt(std::sqrt(square));
+  }
+  return product(room.data(), room.data());
+}
+
+/* ----------------------------------------------------------------------
+   the linear system: P^T (c m + K) P with K = -df_int/du
+------------------------------------------------------------------------- */
+
+void MPMImplicit::apply(const double *x, double *y)
+{
+  tangent.change_of_forces(x, y);
+  for (int64_t k = 0; k < nreals(); k++) {
+    const double m = mass[k / width];
+    y[k] = m > 0.0 ? inertia * m * x[k] - y[k] : 0.0;
+  }
+  project_forces(y);
+}
+
+/** Blocks of nodes, which have been inverted. */
+void MPMImplicit::precondition(const double *r, double *z)
+{
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
+    const double *const block = &blocks[width * width * n];
+    for (int a = 0; a < width; a++) {
+      double sum = 0.0;
+      for (int b = 0; b < width; b++) sum += block[width * a + b] * r[width * n + b];
+      z[width * n + a] = mass[n] > 0.0 ? sum : 0.0;
+    }
+  }
+  project(z);
+}
+
+/** Inverse of a symmetric matrix, in place, by its Cholesky factors; where it has none, of its diagonal. */
+static void invert(int n, double *A)
+{
+  double L[3][3] = {{0.0}}, inverse[3][3] = {{0.0}};
+  bool good = true;
+  for (int i = 0; i < n && good; i++)
+    for (int j = 0; j <= i && good; j++) {
+      double sum = 0.5 * (A[n * i + j] + A[n * j + i]);
+      for (int k = 0; k < j; k++) sum -= L[i][k] * L[j][k];
+      if (i == j) good = sum > 1.0e-12 * A[n * i + i] && A[n * i + i] > 0.0;
+      if (good) L[i][j] = i == j ? std::sqrt(sum) : sum / L[j][j];
+    }
+  if (!good) {
+    double most = 0.0;
+    for (int i = 0; i < n; i++) most = std::max(most, std::fabs(A[n * i + i]));
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < n; j++)
+        A[n * i + j] =
+            i != j || most == 0.0 ? 0.0 : 1.0 / std::max(std::fabs(A[n * i + i]), 1.0e-6 * most);
+    return;
+  }
+  for (int c = 0; c < n; c++)
+    for (int i = c; i < n; i++) {
+      double sum = i == c;
+      for (int k = c; k < i; k++) sum -= L[i][k] * inverse[k][c];
+      inverse[i][c] = sum / L[i][i];
+    }
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      A[n * i + j] = 0.0;
+      for (int k = 0; k < n; k++) A[n * i + j] += inverse[k][i] * inverse[k][j];
+    }
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
+{
+  double carried, all;
+  if (!tangent.forces(u.data(), dt, inner.data(), carried)) return false;
+  for (int64_t k = 0; k < nreals(); k++) {
+    const double m = mass[k / width], pull = inertia * m * (u[k] - from[k]);
+    residual[k] = m > 0.0 ? outer[k] + inner[k] - pull : 0.0;
+    change[k] = m > 0.0 ? pull : 0.0;
+  }
+  free = residual;
+  project_forces(free.data());
+  now.unbalanced = sum_of_sizes(free);
+  MPI_Allreduce(&carried, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+  size = all + sum_of_sizes(outer) + sum_of_sizes(change);
+  now.ratio = now.unbalanced == 0.0 ? 0.0 : now.unbalanced / size;
+  return std::isfinite(now.unbalanced);
+}
+
+/* ----------------------------------------------------------------------
+   u <- u + s du with du in change, whose slope du . free is given. A step is too long where forces along it have turned
+   round and are as large as before; that they grow without turning is what happens where a solid softens first (P2 of the
+   benchmarks), and is none of its business
+------------------------------------------------------------------------- */
+
+bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
+{
+  const std::vector<double> du = change;
+  double s = 1.0;
+  for (int cut = 0; cut <= MOST_CUTS; cut++, now.cuts++) {
+    for (int64_t k = 0; k < nreals(); k++) trial[k] = u[k] + s * du[k];
+    double factor = 0.25;
+    if (find_residual(trial, size)) {
+      const double end = product(du.data(), free.data());
+      if (slope <= 0.0 || end >= -ENOUGH * slope) {
+        u = trial;
+        return true;
+      }
+      factor = std::max(0.1, std::min(slope / (slope - end), 0.7));
+    }
+    s *= factor;
+  }
+  now.failure =
+      "no part of the last correction gives points that are not inside out, or forces that "
+      "are smaller";
+  return false;
+}
+
+/** Blocks of the diagonal of the present tangents, inverted. */
+void MPMImplicit::precondition_with_blocks()
+{
+  tangent.diagonal(blocks);
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
+    double *const block = &blocks[width * width * n];
+    for (int d = 0; d < width; d++) block[(width + 1) * d] += inertia * mass[n];
+    invert(width, block);
+  }
+}
+
+void MPMImplicit::newton(std::vector<double> &u)
+{
+  double size = 0.0, accuracy = options.least_accuracy, last = 0.0, stiffness = 0.0;
+  if (!find_residual(u, size)) {
+    now.failure = "points are inside out or have no finite stress at the start of the step";
+    return;
+  }
+  bool wall_moves = options.time == MPMImplicitOptions::STATIC && wall_speed > 0.0;
+  while (true) {
+    now.residuals.push_back(now.unbalanced);
+    const double enough = std::max(
+        {options.tolerance * size, options.absolute * lmp->force->ftm2v, ROUND_OFF * stiffness});
+    if (now.unbalanced <= enough && !wall_moves) {
+      now.converged = true;
+      return;
+    }
+    if (now.iterations == options.most_iterations) {
+      now.failure = "it did not converge";
+      return;
+    }
+    if (now.unbalanced > LOST * now.residuals[0] && !wall_moves && now.residuals[0] > 0.0) {
+      now.failure = "it diverges";
+      return;
+    }
+
+    // forcing of S.C. Eisenstat, H.F. Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2: quadratic convergence without
+    // solutions that are more accurate than the tangent is worth
+
+    if (now.iterations > 0 && last > 0.0) {
+      const double share = now.unbalanced / last, next = 0.9 * share * share,
+                   safe = 0.9 * accuracy * accuracy;
+      accuracy = std::min(options.least_accuracy, safe > 0.1 ? std::max(next, safe) : next);
+    }
+    accuracy = std::max(accuracy, MOST_ACCURATE);
+    last = now.unbalanced;
+
+    stiffness = tangent.linearize(u.data(), dt);
+    now.asymmetry = tangent.asymmetry();
+    precondition_with_blocks();
+
+    // at first, walls bring what they hold where it has to be, and all the rest goes with that
+
+    if (wall_moves) {
+      tangent.change_of_forces(held.data(), change.data());
+      for (int64_t k = 0; k < nreals(); k++)
+        free[k] = mass[k / width] > 0.0
+            ? residual[k] + change[k] - inertia * mass[k / width] * held[k]
+            : 0.0;
+      project_forces(free.data());
+    }
+    SolveGoal goal;
+    goal.relative = accuracy;
+    if (now.unbalanced > 0.0) goal.relative = std::max(accuracy, 0.1 * enough / now.unbalanced);
+    goal.relative = std::min(goal.relative, options.least_accuracy);
+    goal.most_iterations = (int) options.most_linear;
+    std::fill(change.begin(), change.end(), 0.0);
+    std::vector<double> &du = change;
+    const auto solved = now.asymmetry > SYMMETRIC
+        ? general.solve(*this, free.data(), du.data(), goal)
+        : solver.solve(*this, free.data(), du.data(), goal);
+    now.linear += solved.iterations;
+    now.iterations++;
+    if (!solved.converged() && solved.outcome != SolveReport::INDEFINITE) {
+      now.failure = "the linear system " + solved.describe();
+      return;
+    }
+    // the energy has no minimum along some way, such as next to a state that is not stable: one that has
+
+    if (solved.outcome == SolveReport::INDEFINITE) {
+      now.indefinite++;
+      tangent.make_definite();
+      precondition_with_blocks();
+      std::fill(du.begin(), du.end(), 0.0);
+      const auto again = solver.solve(*this, free.data(), du.data(), goal);
+      now.linear += again.iterations;
+      if (!again.converged() && again.iterations == 0) precondition(free.data(), du.data());
+    }
+
+    const double slope = product(du.data(), free.data());
+    if (wall_moves) {
+      wall_moves = false;
+      for (int64_t k = 0; k < nreals(); k++) u[k] += held[k] + du[k];
+      if (!find_residual(u, size)) {
+        now.failure = "points are inside out when walls have moved";
+        return;
+      }
+    } else if (!search(u, slope, size)) {
+      return;
+    }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMImplicit::step(double step_dt)
+{
+  dt = step_dt;
+  now = Report();
+  take_nodes();
+  find_constraints();
+  tangent.external_forces(outer.data());
+  if (!now.failure.empty()) return 0.0;
+
+  // u*: where inertia alone would bring nodes, and the first guess
+
+  std::vector<double> u(nreals(), 0.0);
+  held.assign(nreals(), 0.0);
+  inertia = 0.0;
+  if (options.time == MPMImplicitOptions::STATIC) {
+    for (int64_t k = 0; k < nreals(); k++) held[k] = dt * wall[k];
+  } else {
+    // velocities, and accelerations by the forces of the start of the step, with those of walls
+
+    start = before;
+    if (constrained) act(start.data());
+    inertia = 1.0 / (dt * dt);
+    for (int64_t k = 0; k < nreals(); k++) u[k] = from[k] = dt * start[k];
+    if (options.time == MPMImplicitOptions::NEWMARK) {
+      const double beta = options.beta();
+      acceleration = explicit_velocity;
+      if (constrained) act(acceleration.data());
+      for (int64_t k = 0; k < nreals(); k++) {
+        acceleration[k] = (acceleration[k] - start[k]) / dt;
+        from[k] += dt * dt * (0.5 - beta) * acceleration[k];
+      }
+      inertia /= beta;
+    }
+  }
+  newton(u);
+  return give_back(u);
+}
+
+/* ----------------------------------------------------------------------
+   velocities that node actions bring to those of the step, and with which reactions and works are counted as always: the
+   part of the residual that is left is no impulse.
+
+   Points move with what is in the place of the new velocity, u/dt, and with FLIP change theirs by the difference to what is
+   in that of the old one. In statics both are the same, so that forces work with the displacement. The ledger has the stress of
+   the start of the step in the work of forces, at the mean of old and new velocity, and gets what is different in account()
+------------------------------------------------------------------------- */
+
+double MPMImplicit::give_back(const std::vector<double> &u)
+{
+  const bool newmark = options.time == MPMImplicitOptions::NEWMARK,
+             rests = options.time == MPMImplicitOptions::STATIC;
+  double kinetic = 0.0;
+  push.assign(nreals(), 0.0);
+  velocity.resize(nreals());
+  double *record = field.grid.nodes();
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
+    for (int d = 0; d < width; d++) {
+      const int64_t k = width * n + d;
+      const double m = mass[n], v = velocity[k] = u[k] / dt;
+      record[d] = m > 0.0 ? v + dt * (residual[k] - free[k]) / m : 0.0;
+      record[4 + d] = rests ? v : before[k];
+      if (newmark && m > 0.0) {
+        // with the reactions of the start and the end of the step
+        const double end = inertia * (u[k] - from[k]), late = options.gamma, early = 1.0 - late,
+                     gained = dt * (early * acceleration[k] + late * end),
+                     reaction = acceleration[k] - (explicit_velocity[k] - before[k]) / dt;
+        record[d] = v + late * (record[d] - v) - early * dt * reaction;
+        record[4 + d] = v - (start[k] + gained - before[k]);
+      }
+      push[k] = m * (record[d] - record[4 + d] - explicit_velocity[k] + before[k]);
+      if (m > 0.0 && grid.owns(n)) kinetic += 0.5 * m * v * v;
+    }
+  }
+  return rests ? kinetic : 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   The reactions of walls are velocities of the size dt f/m for a while, which in statics with a time step of any length can be
+   large: what node actions make of them is v with a rounding error of that size. Points get v itself
+------------------------------------------------------------------------- */
+
+void MPMImplicit::finish()
+{
+  if (field.ledger.on) account();
+  double *record = field.grid.nodes();
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8)
+    for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
+}
+
+void MPMImplicit::account()
+{
+  const bool newmark = options.time == MPMImplicitOptions::NEWMARK;
+  double internal = 0.0, external = 0.0, transfer = 0.0;
+  const double *record = field.grid.nodes();
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
+    if (!(mass[n] > 0.0) || !grid.owns(n)) continue;
+    for (int d = 0; d < width; d++) {
+      const int64_t k = width * n + d;
+      const double v = velocity[k], old = record[4 + d];
+      internal -= push[k] * 0.5 * (v + old);
+      if (!newmark) continue;
+      // points move with v, which is the mean velocity of the step already
+      const double half = 0.5 * (v - old), of_forces = dt * outer[k],
+                   of_stress = mass[n] * (explicit_velocity[k] - before[k]) - of_forces + push[k];
+      external += of_forces * half;
+      internal -= of_stress * half;
+      transfer -= (of_forces + of_stress) * half;
+    }
+  }
+  const double unit = lmp->force->mvv2e;
+  field.ledger.internal += internal * unit;
+  field.ledger.external += external * unit;
+  field.ledger.transfer += transfer * unit;
+}
+
+double MPMImplicit::memory_usage() const
+{
+  double bytes = tangent.memory_usage() + solver.memory_usage() + general.memory_usage();
+  for (const auto *list :
+       {&mass, &before, &explicit_velocity, &outer, &inner, &from, &wall, &held, &start,
+        &acceleration, &push, &velocity, &residual, &free, &change, &trial, &blocks, &room})
+    bytes += list->capacity() * sizeof(double);
+  return bytes;
+}

@@ -1,0 +1,115 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_IMPLICIT_H
+#define LMP_MPM_IMPLICIT_H
+
+#include "declare/option.h"
+#include "mpm_node_system.h"
+#include "mpm_tangent.h"
+#include "solve/flexible_gmres.h"
+#include "solve/krylov.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** How a field is stepped. */
+struct MPMImplicitOptions {
+  enum Time { STATIC, EULER, NEWMARK };
+  Time time = STATIC;
+  double gamma = 0.5;              ///< of Newmark's method
+  double tolerance = 1.0e-8;       ///< of the ratio of forces
+  double absolute = 0.0;           ///< sum of unbalanced forces that is as good [force]
+  int64_t most_iterations = 50;    ///< of Newton's method in a step
+  int64_t most_linear = 10000;     ///< of the linear solver in each of these
+  double least_accuracy = 0.1;     ///< of linear solutions
+  bool report = false;             ///< residuals of each step go to the log
+
+  MPM_NS::Options declare();
+  double beta() const { return 0.25 * (gamma + 0.5) * (gamma + 0.5); }
+};
+
+/** The implicit step of a field: displacements u of its nodes in a step of duration dt for which
+
+      f_ext + f_int(u) + f_walls = c m (u - u*),   u = P u + dt w
+
+   where c and u* are those of the method of time integration (c = 0: statics), f_int(u) is that of MPMTangent, and v -> P v
+   + w is what all node actions make of velocities. Walls do no work on what P leaves free, so that with the right side
+   P^T r = 0 is to be solved for the residual r without them. Newton's method, whose steps are solved for by conjugate
+   gradients. Vectors are [node][dim]; forces are in units of mass times acceleration. */
+class MPMImplicit : private MPMNodeSystem {
+ public:
+  /** What became of a step, and of all steps so far. */
+  struct Report {
+    bool converged = false;
+    int iterations = 0, linear = 0, cuts = 0;
+    int indefinite = 0;         ///< iterations in which the energy had no minimum along some way
+    double unbalanced = 0.0;    ///< sum of forces that are left [mass acceleration]
+    double ratio = 0.0;         ///< to all forces
+    double asymmetry = 0.0;     ///< of the tangents
+    std::vector<double> residuals;    ///< sums of forces before each iteration
+    std::string failure;
+  };
+
+  MPMImplicit(class LAMMPS *, MPMField &, const MPMImplicitOptions &);
+
+  /** Start of a run. */
+  void init();
+  /** The nodes have the velocities of the momentum equation: find u, and give them what node actions make the velocities
+   *  of the step, with all the impulses that they bear. Returns, in statics, the kinetic energy that there is not, of nodes
+   *  that this rank owns [mass velocity^2]. */
+  double step(double dt);
+  /** Node actions have acted: velocities of the step, and works of forces that the ledger does not know. */
+  void finish();
+  const Report &report() const { return now; }
+  double memory_usage() const;
+
+ private:
+  MPMField &field;
+  const MPMImplicitOptions &options;
+  MPMTangent tangent;
+  MPM_NS::ConjugateGradients solver;
+  MPM_NS::FlexibleGMRES general{100};
+  Report now;
+
+  // of the present step
+
+  double dt = 0.0, inertia = 0.0;    // c
+  bool constrained = false;
+  double wall_speed = 0.0;     // largest of w
+  int repeats = 1;             // of node actions, until they are a projection
+  std::vector<double> mass;    // [node]
+  std::vector<double> before, explicit_velocity, outer, inner, from, wall, held;
+  std::vector<double> start, acceleration;    // with walls, for dynamics
+  std::vector<double> velocity;               // that points move with
+  std::vector<double> push;    // impulses that are not of the forces of the start of the step
+  std::vector<double> residual, free, change, trial, blocks, room;
+
+  int64_t nreals() const { return (int64_t) mass.size() * width; }
+  void take_nodes();
+  void find_constraints();
+  void act(double *velocities);
+  void project(double *x);
+  void project_forces(double *f);
+  double sum_of_sizes(const std::vector<double> &);
+  bool find_residual(const std::vector<double> &u, double &size);
+  bool search(std::vector<double> &u, double slope, double &size);
+  void precondition_with_blocks();
+  void newton(std::vector<double> &u);
+  void account();
+  double give_back(const std::vector<double> &u);
+
+  void apply(const double *x, double *y) override;
+  void precondition(const double *r, double *z) override;
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,50 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_lattice_ranks.h"
+
+#include "comm.h"
+#include "error.h"
+#include "lammps.h"
+#include "mpm_halo.h"
+
+#include <climits>
+
+using namespace LAMMPS_NS;
+
+void MPMLatticeRanks::sum(double *values, int width)
+{
+  grid.fold_aliases(values, width, 0, width);
+  halo.sum(values, width, 0, width);
+  grid.copy_aliases(values, width);
+}
+
+std::vector<char> MPMLatticeRanks::gather_bytes(const void *mine, std::size_t bytes,
+                                                std::vector<std::size_t> &begin)
+{
+  const int nprocs = lmp->comm->nprocs;
+  const bigint mine_bytes = bytes;
+  std::vector<bigint> of_ranks(nprocs);
+  MPI_Allgather(&mine_bytes, 1, MPI_LMP_BIGINT, of_ranks.data(), 1, MPI_LMP_BIGINT, lmp->world);
+  begin.assign(nprocs + 1, 0);
+  for (int p = 0; p < nprocs; p++) begin[p + 1] = begin[p] + of_ranks[p];
+  if (begin[nprocs] > INT_MAX)
+    lmp->error->all(
+        FLERR,
+        "Solve on the lattice is too large for its coarse levels, which all ranks have: use a "
+        "larger node spacing");
+  std::vector<int> counts(nprocs), first(nprocs);
+  for (int p = 0; p < nprocs; p++) {
+    counts[p] = of_ranks[p];
+    first[p] = begin[p];
+  }
+  std::vector<char> all(begin[nprocs]);
+  MPI_Allgatherv(mine, counts[lmp->comm->me], MPI_BYTE, all.data(), counts.data(), first.data(),
+                 MPI_BYTE, lmp->world);
+  return all;
+}

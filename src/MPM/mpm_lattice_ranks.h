@@ -1,0 +1,37 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_LATTICE_RANKS_H
+#define LMP_MPM_LATTICE_RANKS_H
+
+#include "solve/lattice_ranks.h"
+
+namespace LAMMPS_NS {
+class MPMHalo;
+
+/** The ranks of LAMMPS for solves on a lattice: sums at nodes by way of a halo that is set up for the grid. */
+class MPMLatticeRanks : public MPM_NS::LatticeRanks {
+ public:
+  MPMLatticeRanks(class LAMMPS *lmp, const MPM_NS::Grid &grid, MPMHalo &halo) :
+      lmp(lmp), grid(grid), halo(halo)
+  {
+  }
+
+  void sum(double *values, int width) override;
+  /** Stops with an error where it is more than an int can count. */
+  std::vector<char> gather_bytes(const void *mine, std::size_t bytes,
+                                 std::vector<std::size_t> &begin) override;
+
+ private:
+  class LAMMPS *const lmp;
+  const MPM_NS::Grid &grid;
+  MPMHalo &halo;
+};
+
+}    // namespace LAMMPS_NS
+#endif

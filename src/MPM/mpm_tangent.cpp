@@ -1,0 +1,375 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The forces of a trial motion are those of the total frame whose reference is where points are at the start of the step:
+   f_i = -sum_p V_p P dN_ip/dX, so that kernels of that frame serve. With the gradients of the same transfer in both
+   directions they are the derivatives of the stored energy by u, as far as there is one, and the matrix of second
+   derivatives is never made: its product with a vector is a way from nodes to points and back.
+------------------------------------------------------------------------- */
+
+#include "mpm_tangent.h"
+
+#include "fix_mpm_material.h"
+#include "force.h"
+#include "material/batch.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_passes.h"
+#include "mpm_points.h"
+#include "mpm_stencil.h"
+#include "mpm_time_limit.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// of a gradient: with it, the third derivatives of a law and the round-off of its stress are both some 1e-10 of its tangent
+static constexpr double DIFFERENCE = 6.0e-6;
+
+/* ---------------------------------------------------------------------- */
+
+MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
+    Pointers(lmp), field(field), with(), batch(new Batch()), dim(field.lattice.dim), nL(dim * dim),
+    nH(nL + field.options.axisymmetric)
+{
+}
+
+MPMTangent::~MPMTangent() noexcept = default;
+
+void MPMTangent::init()
+{
+  const auto &options = field.options;
+  const Transfer transfer = options.strains_by_gradient() ? TPIC : options.transfer;
+  mls = is_mls(options.shape, transfer);
+  with = field.kernels->transfer_total(dim, options.shape, transfer, true);
+  // there are no fast ones for what fix mpm has in the updated frame only
+  if (!with.p2g_force)
+    with = MPMKernels::select("reference")->transfer_total(dim, options.shape, transfer, true);
+  *batch = {};
+  batch->h = field.lattice.h;
+  int nhistory = 1;
+  for (const auto *material : field.materials) nhistory = std::max(nhistory, material->nhistory);
+  history.assign((std::size_t) nhistory * BATCH, 0.0);
+}
+
+/* ----------------------------------------------------------------------
+   from points to nodes: P and hoop_stress, and other forces on points
+------------------------------------------------------------------------- */
+
+void MPMTangent::scatter(const double *forces_of_points, double *force)
+{
+  PointRows rows = field.rows();
+  rows.P = P.data();
+  rows.F = nullptr;
+  rows.f = forces_of_points;
+  if (nH > nL) {    // hoop stress is a force on points, in units of force
+    forces_on_points.resize(3 * (std::size_t) atom->nmax);
+    const double unit = 1.0 / this->force->nktv2p;
+    for (const auto &run : field.map->runs)
+      for (bigint i = run.first; i < run.last; i++) {
+        std::copy_n(forces_of_points + 3 * i, 3, &forces_on_points[3 * i]);
+        forces_on_points[3 * i] -=
+            unit * rows.vol0[i] * hoop_stress[i] / field.frame->radius((int) i, rows.x[3 * i]);
+      }
+    rows.f = forces_on_points.data();
+  }
+  const TransferStep step = field.step_data();
+  points_to(nodes, field, with, [&](const MPMPointMap::Run &run, const int *base, int *box) {
+    with.p2g_force(rows, step, run.first, run.last, base, field.map->tile, box);
+  });
+  field.nodes.sum(nodes.data(), with.nreal, 4, 4);
+  for (int64_t n = 0; n < field.grid.nnodes(); n++)
+    for (int d = 0; d < dim; d++) force[dim * n + d] = nodes[with.nreal * n + 4 + d];
+}
+
+/** use(run, first, n, H): H [n][nH] of up to BATCH points. */
+template <class Use> void MPMTangent::gather(const double *u, const Use &use)
+{
+  nodes.assign(field.grid.nnodes() * with.nreal, 0.0);
+  for (int64_t n = 0; n < field.grid.nnodes(); n++)
+    for (int d = 0; d < dim; d++) nodes[with.nreal * n + d] = u[dim * n + d];
+  field.nodes.complete(nodes.data(), with.nreal, 3);
+  PointRows rows = field.rows();
+  rows.P = P.data();
+  rows.F = nullptr;
+  const TransferStep step = field.step_data();
+  double L[9 * BATCH], H[10 * BATCH], motion[3 * BATCH];
+  points_from(nodes, field, with, [&](const MPMPointMap::Run &run, const int *base) {
+    for (int i = run.first; i < run.last; i += BATCH) {
+      const int n = std::min(BATCH, run.last - i);
+      PointRows b = rows_from(field, rows, i);
+      b.P = P.data() + (bigint) nL * i;
+      if (nH > nL) b.velocity = motion;
+      with.g2p_gradient(b, step, 0, n, base, field.map->tile_load, L);
+      if (nH == nL) {
+        use(run, i, n, L);
+        continue;
+      }
+      for (int p = 0; p < n; p++) {
+        std::copy_n(L + nL * p, nL, H + nH * p);
+        H[nH * p + nL] = motion[3 * p] / field.frame->radius(i + p, b.x[3 * p]);
+      }
+      use(run, i, n, H);
+    }
+  });
+}
+
+/* ----------------------------------------------------------------------
+   stress of n points from first on after H [n][nH]: P [n][nH], and J
+------------------------------------------------------------------------- */
+
+bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const double *H, double dt,
+                        double *stress)
+{
+  Batch &b = *batch;
+  const FixMPMMaterial *const material = run.material;
+  const auto &batches = *field.batch_kernels;
+  const auto &frame = *field.frame;
+  double L[9 * BATCH], hoop[BATCH], F[9 * BATCH + 8], tau[6 * BATCH + 8], plane[9 * BATCH + 8];
+  for (int p = 0; p < n; p++) {
+    std::copy_n(H + nH * p, nL, L + nL * p);
+    if (nH > nL) hoop[p] = H[nH * p + nL];
+  }
+  frame.refer_gradients(first, n, L);
+  // entries of a step before that may not be finite, where this one has not set them
+  const bigint i = first;
+  (frame.is_total() ? batches.load_total : batches.load)(b, n, 1.0, L, field.points->F[0] + 9 * i,
+                                                         field.points->tau[0] + 6 * i,
+                                                         atom->vfrac + i, nH > nL ? hoop : nullptr);
+  b.dt = dt;
+  b.time = elapsed_time(*update);
+  b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
+  if (material->nhistory)
+    batches.load_history(b, material->nhistory, &material->history[0][0] + material->nhistory * i);
+  std::fill_n(b.heat, n, 0.0);
+  material->material->update(b);
+
+  bool good = true;
+  for (int p = 0; p < n; p++) {
+    good = good && b.J[p] > 0.0;
+    for (int c = 0; c < 6; c++) tau[6 * p + c] = b.J[p] * b.stress[c][p];
+    double lattice_F[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    if (frame.is_total()) frame.lattice_F(first + p, lattice_F);
+    std::copy_n(&lattice_F[0][0], 9, F + 9 * p);
+    for (int r = 0; r < dim; r++)
+      for (int c = 0; c < dim; c++) F[9 * p + 3 * r + c] += H[nH * p + dim * c + r];
+  }
+  batches.first_piola(n, F, tau, nH > nL ? plane : stress);
+  if (nH > nL)
+    for (int p = 0; p < n; p++) {
+      std::copy_n(plane + nL * p, nL, stress + nH * p);
+      stress[nH * p + nL] = tau[6 * p + 2] / (1.0 + hoop[p]);
+    }
+  for (int k = 0; k < nH * n; k++) good = good && std::isfinite(stress[k]);
+  return good;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMTangent::external_forces(double *force)
+{
+  const std::size_t nmax = atom->nmax;
+  P.assign(nmax * nL, 0.0);
+  no_force.assign(3 * nmax, 0.0);
+  if (nH > nL) hoop_stress.assign(nmax, 0.0);
+  const double *const f = field.rows().f;
+  scatter(f, force);
+}
+
+bool MPMTangent::forces(const double *u, double dt, double *force, double &carried)
+{
+  int bad = 0, any;
+  double sum = 0.0, stresses[10 * BATCH + 8];
+  gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
+    if (!stress(run, first, n, H, dt, stresses)) bad = 1;
+    for (int p = 0; p < n; p++) {
+      const double *const s = stresses + nH * p;
+      double square = 0.0;
+      for (int k = 0; k < nH; k++) square += s[k] * s[k];
+      sum += atom->vfrac[first + p] * std::sqrt(square);
+      std::copy_n(s, nL, &P[(bigint) nL * (first + p)]);
+      if (nH > nL) hoop_stress[first + p] = s[nL];
+    }
+  });
+  carried = sum * field.step_data().stress_scale / field.lattice.h;
+  MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any) return false;
+  scatter(no_force.data(), force);
+  return true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMTangent::linearize(const double *u, double dt)
+{
+  tangents.resize((std::size_t) atom->nmax * nH * nH);
+  double other[10 * BATCH], low[10 * BATCH + 8], high[10 * BATCH + 8], sum = 0.0, all;
+  gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
+    std::copy_n(H, nH * n, other);
+    for (int k = 0; k < nH; k++) {
+      for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] - DIFFERENCE;
+      stress(run, first, n, other, dt, low);
+      for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] + DIFFERENCE;
+      stress(run, first, n, other, dt, high);
+      for (int p = 0; p < n; p++) {
+        // the difference of the numbers as they are, not of those that were meant
+        const double step = (H[nH * p + k] + DIFFERENCE) - (H[nH * p + k] - DIFFERENCE);
+        double *const column = &tangents[((bigint) first + p) * nH * nH + nH * k];
+        for (int l = 0; l < nH; l++) column[l] = (high[nH * p + l] - low[nH * p + l]) / step;
+        other[nH * p + k] = H[nH * p + k];
+      }
+    }
+    for (int p = 0; p < n; p++) {
+      const double *const K = &tangents[((bigint) first + p) * nH * nH];
+      double most = 0.0;
+      for (int k = 0; k < nH * nH; k++) most = std::max(most, std::fabs(K[k]));
+      sum += atom->vfrac[first + p] * most;
+    }
+  });
+  sum *= field.step_data().stress_scale / field.lattice.h;
+  MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+void MPMTangent::change_of_forces(const double *du, double *dforce)
+{
+  gather(du, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
+    for (int p = 0; p < n; p++) {
+      const double *const K = &tangents[((bigint) first + p) * nH * nH], *const h = H + nH * p;
+      double sum[10] = {0.0};
+      for (int k = 0; k < nH; k++)
+        for (int l = 0; l < nH; l++) sum[l] += K[nH * k + l] * h[k];
+      std::copy_n(sum, nL, &P[(bigint) nL * (first + p)]);
+      if (nH > nL) hoop_stress[first + p] = sum[nL];
+    }
+  });
+  scatter(no_force.data(), dforce);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMTangent::diagonal(std::vector<double> &blocks)
+{
+  const Grid &grid = field.grid;
+  const MPMStencil stencil(field);
+  const double h = field.lattice.h, scale = field.step_data().stress_scale;
+  const double moment = mls ? shape_constants[field.options.shape].inv_moment / h : 0.0;
+  const double *const place = &field.frame->places()[0][0];
+  blocks.assign(grid.nnodes() * nL, 0.0);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double *const K = &tangents[i * nH * nH], V = scale * atom->vfrac[i];
+      const double around = nH > nL ? 1.0 / field.frame->radius((int) i, place[3 * i]) : 0.0;
+      stencil.visit(grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+        double g[3];
+        for (int d = 0; d < dim; d++)
+          g[d] = mls ? -moment * node.weight * node.r[d] : node.gradient[d];
+        double *const block = &blocks[node.number * nL];
+        for (int b = 0; b < dim; b++) {
+          double sum[10] = {0.0};    // change of P for a unit of u_b
+          for (int m = 0; m < dim; m++)
+            for (int l = 0; l < nH; l++) sum[l] += K[nH * (dim * m + b) + l] * g[m];
+          const double turn = around * node.weight;
+          if (nH > nL && b == 0)
+            for (int l = 0; l < nH; l++) sum[l] += K[nH * nL + l] * turn;
+          for (int a = 0; a < dim; a++) {
+            double force = 0.0;
+            for (int j = 0; j < dim; j++) force += sum[dim * j + a] * g[j];
+            if (nH > nL && a == 0) force += sum[nL] * turn;
+            block[dim * a + b] += V * force;
+          }
+        }
+      });
+    }
+  field.nodes.sum(blocks.data(), nL, 0, nL);
+}
+
+/* ----------------------------------------------------------------------
+   Eigenvalues by rotations (C.G.J. Jacobi, 1846); negative ones become zero (J. Teran, E. Sifakis, G. Irving, R. Fedkiw, Symp.
+   Computer Animation 2005, 181)
+------------------------------------------------------------------------- */
+
+static void remove_negative(int n, double *A)
+{
+  constexpr int SWEEPS = 30;
+  double V[10][10] = {{0.0}}, B[10][10], size = 0.0;
+  for (int i = 0; i < n; i++) {
+    V[i][i] = 1.0;
+    for (int j = 0; j < n; j++) {
+      B[i][j] = 0.5 * (A[n * i + j] + A[n * j + i]);
+      size = std::max(size, std::fabs(B[i][j]));
+    }
+  }
+  for (int sweep = 0; sweep < SWEEPS; sweep++) {
+    double left = 0.0;
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < i; j++) left = std::max(left, std::fabs(B[i][j]));
+    if (!(left > 1.0e-14 * size)) break;
+    for (int p = 0; p < n; p++)
+      for (int q = p + 1; q < n; q++) {
+        if (B[p][q] == 0.0) continue;
+        const double theta = 0.5 * (B[q][q] - B[p][p]) / B[p][q],
+                     t = (theta < 0.0 ? -1.0 : 1.0) /
+            (std::fabs(theta) + std::sqrt(theta * theta + 1.0)),
+                     c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
+        for (int k = 0; k < n; k++) {
+          const double a = B[k][p], b = B[k][q], v = V[k][p], w = V[k][q];
+          B[k][p] = c * a - s * b;
+          B[k][q] = s * a + c * b;
+          V[k][p] = c * v - s * w;
+          V[k][q] = s * v + c * w;
+        }
+        for (int k = 0; k < n; k++) {
+          const double a = B[p][k], b = B[q][k];
+          B[p][k] = c * a - s * b;
+          B[q][k] = s * a + c * b;
+        }
+      }
+  }
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      double sum = 0.0;
+      for (int k = 0; k < n; k++) sum += V[i][k] * std::max(B[k][k], 0.0) * V[j][k];
+      A[n * i + j] = sum;
+    }
+}
+
+void MPMTangent::make_definite()
+{
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) remove_negative(nH, &tangents[i * nH * nH]);
+}
+
+double MPMTangent::asymmetry() const
+{
+  double mine[2] = {0.0, 0.0}, all[2];
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double *const K = &tangents[i * nH * nH];
+      for (int k = 0; k < nH; k++)
+        for (int l = 0; l <= k; l++) {
+          mine[0] = std::max(mine[0], std::fabs(K[nH * k + l] - K[nH * l + k]));
+          mine[1] = std::max(mine[1], std::fabs(K[nH * k + l]));
+        }
+    }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  return all[1] > 0.0 ? all[0] / all[1] : 0.0;
+}
+
+double MPMTangent::memory_usage() const
+{
+  double bytes = sizeof(Batch);
+  for (const auto *list :
+       {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points})
+    bytes += list->capacity() * sizeof(double);
+  return bytes;
+}

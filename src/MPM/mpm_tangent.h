@@ -1,0 +1,78 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_TANGENT_H
+#define LMP_MPM_TANGENT_H
+
+#include "mpm_point_map.h"
+#include "pointers.h"
+#include "transfer/kernels.h"
+
+#include <memory>
+#include <vector>
+
+namespace MPM_NS {
+struct Batch;
+}
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** What the stress of the points of a field would be after a motion that is only tried, and how it changes with that
+ *  motion. Laws work on copies of the state of points: nothing is kept until the step itself moves them.
+ *
+ *  A motion is a vector u [node][dim] of displacements in the step. A point has their gradient H_ij = du_i/dX_j with
+ *  respect to the places of the lattice, and around an axis of symmetry also H_zz = u_r/r. Conjugate to these is the
+ *  first Piola-Kirchhoff stress P = tau (F + H)^-T, for each unit of the initial volume, where F is the deformation of the
+ *  places of the lattice at the start of the step: unity in the updated frame. Entries of H and P are column-major, with
+ *  that around the axis at the end. Forces on nodes are in units of mass times acceleration. */
+class MPMTangent : protected Pointers {
+ public:
+  MPMTangent(class LAMMPS *lmp, MPMField &field);
+  ~MPMTangent() noexcept override;
+
+  /** Start of a run: choose the transfers. */
+  void init();
+
+  /** Of all points in this step, from atom->f. To be called first in each step. Collective. */
+  void external_forces(double *force);
+  /** Forces of the stress after the motion u; carried: sum of V |P| / h over the points of this rank, the size of the
+   *  forces that cancel in equilibrium [mass acceleration]. Returns false, on all ranks, where a point is turned inside
+   *  out or has a stress that is not finite. Collective. */
+  bool forces(const double *u, double dt, double *force, double &carried);
+
+  /** dP/dH of all points at the motion u, by central differences of the laws. Returns the sum of V |dP/dH| / h over all
+   *  points, with the largest entry of each: a strain e everywhere makes forces of e times that, which cancel. Collective. */
+  double linearize(const double *u, double dt);
+  /** Change of the forces for a small change of that motion. Collective. */
+  void change_of_forces(const double *du, double *dforce);
+  /** Minus the same, of each node by its own motion alone: [node][dim][dim]. Collective. */
+  void diagonal(std::vector<double> &blocks);
+  /** Take the parts of symmetric tangents that are not positive: what is left has an energy with a minimum. */
+  void make_definite();
+  /** Largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry. Collective. */
+  double asymmetry() const;
+
+  double memory_usage() const;
+
+ private:
+  MPMField &field;
+  MPM_NS::TransferKernels with;    // points to nodes by P
+  std::unique_ptr<MPM_NS::Batch> batch;
+  const int dim, nL;    // nL: entries of a gradient in the plane or in space
+  int nH;               // those of H
+  bool mls = false;     // gradients are those of moving least squares
+  std::vector<double> nodes, history, P, hoop_stress, tangents, no_force, forces_on_points;
+
+  template <class Use> void gather(const double *u, const Use &use);
+  void scatter(const double *forces_of_points, double *force);
+  bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P);
+};
+
+}    // namespace LAMMPS_NS
+#endif

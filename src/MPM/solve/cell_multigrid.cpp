@@ -1,0 +1,483 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "solve/cell_multigrid.h"
+
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+using namespace MPM_NS;
+
+// cells of a level that is factorized, and sweeps of Gauss-Seidel before and after a coarse correction
+static constexpr int FEW = 400;
+static constexpr int SWEEPS = 1;
+// corrections by the next level, from the second level on
+static constexpr int CORRECTIONS = 2;
+// of the coefficients of joined cells: the faces of a level twice as coarse have twice the distance between cells
+static constexpr double COARSER = 0.5;
+
+namespace {
+
+/** Cells that faces join within a larger cell. */
+struct Piece {
+  uint64_t key;      // of the larger cell
+  uint64_t cells;    // bits of its cells
+};
+struct Flow {    // between two pieces, or out of one of them
+  int a, b;
+  double value;
+};
+
+uint64_t key_of(const int *index)
+{
+  uint64_t key = 0;
+  for (int d = 0; d < 3; d++) key = key << 21 | (uint64_t) ((index[d] >> 1) + (1 << 20));
+  return key;
+}
+
+int bit_of(const int *index)
+{
+  return (index[0] & 1) << 2 | (index[1] & 1) << 1 | (index[2] & 1);
+}
+
+int root_of(std::vector<int> &parent, int i)
+{
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+/** Cells of a level, and its cells by larger ones. */
+class Pieces {
+ public:
+  std::vector<int> piece;    // [cell]
+  std::vector<Piece> all;
+
+  /** split: several cells of one place are not the same, but pieces of it that are not joined. */
+  Pieces(const CellGraph &graph, int64_t vector_size, bool split)
+  {
+    const int n = graph.size();
+    cell_at.assign(vector_size, -1);
+    for (int cell = 0; cell < n; cell++) cell_at[graph.where[cell]] = cell;
+    std::vector<uint64_t> key(n);
+    std::vector<int> order(n), parent(n);
+    for (int cell = 0; cell < n; cell++) key[cell] = key_of(graph.index.data() + 3 * cell);
+    std::iota(order.begin(), order.end(), 0);
+    std::iota(parent.begin(), parent.end(), 0);
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+      return key[a] < key[b] || (key[a] == key[b] && a < b);
+    });
+    const auto join = [&](int a, int b) {
+      parent[root_of(parent, a)] = root_of(parent, b);
+    };
+    piece.resize(n);
+    for (int i = 0, j; i < n; i = j) {
+      int same[8];
+      std::fill_n(same, 8, -1);
+      for (j = i; j < n && key[order[j]] == key[order[i]]; j++) {
+        const int cell = order[j];
+        for (int k = graph.first[cell]; k < graph.first[cell + 1]; k++) {
+          const int other = cell_at[graph.neighbor[k]];
+          if (key[other] == key[cell]) join(cell, other);
+        }
+        int &known = same[bit_of(graph.index.data() + 3 * cell)];
+        if (!split && known >= 0) join(cell, known);
+        known = cell;
+      }
+      for (int k = i; k < j; k++) {
+        const int root = root_of(parent, order[k]);
+        if (root == order[k]) {
+          piece[root] = all.size();
+          all.push_back({key[root], 0});
+        }
+      }
+      for (int k = i; k < j; k++) {
+        const int cell = order[k];
+        piece[cell] = piece[root_of(parent, cell)];
+        all[piece[cell]].cells |= uint64_t(1) << bit_of(graph.index.data() + 3 * cell);
+      }
+    }
+  }
+
+  int at(int64_t place) const { return piece[cell_at[place]]; }
+
+ private:
+  std::vector<int> cell_at;    // [place in vectors]
+};
+
+/** The next level, from what flows between its cells. */
+CellGraph coarse_graph(const std::vector<Piece> &pieces, std::vector<Flow> &flows)
+{
+  std::stable_sort(flows.begin(), flows.end(), [](const Flow &a, const Flow &b) {
+    return a.a < b.a || (a.a == b.a && a.b < b.b);
+  });
+  CellGraph graph;
+  const int n = pieces.size();
+  graph.outside.assign(n, 0.0);
+  graph.inverse.assign(n, 0.0);
+  graph.where.resize(n);
+  std::iota(graph.where.begin(), graph.where.end(), 0);
+  graph.first.push_back(0);
+  std::size_t k = 0;
+  for (int cell = 0; cell < n; cell++) {
+    for (int d = 0; d < 3; d++)
+      graph.index.push_back((int) (pieces[cell].key >> (21 * (2 - d)) & ((1 << 21) - 1)) -
+                            (1 << 20));
+    while (k < flows.size() && flows[k].a == cell) {
+      double sum = 0.0;
+      const int other = flows[k].b;
+      for (; k < flows.size() && flows[k].a == cell && flows[k].b == other; k++)
+        sum += flows[k].value;
+      if (other < 0)
+        graph.outside[cell] = COARSER * sum;
+      else {
+        graph.neighbor.push_back(other);
+        graph.face.push_back(COARSER * sum);
+      }
+    }
+    graph.first.push_back(graph.neighbor.size());
+    const double diagonal = graph.diagonal(cell);
+    if (diagonal > 0.0) graph.inverse[cell] = 1.0 / diagonal;
+  }
+  graph.color();
+  return graph;
+}
+
+/** What flows between pieces: to b = -1, to the outside. */
+std::vector<Flow> coarse_flows(const CellGraph &graph, const Pieces &pieces,
+                               const std::vector<int> &number)
+{
+  std::vector<Flow> flows;
+  for (int cell = 0; cell < graph.size(); cell++) {
+    const int a = number[pieces.piece[cell]];
+    if (graph.outside[cell] > 0.0) flows.push_back({a, -1, graph.outside[cell]});
+    for (int k = graph.first[cell]; k < graph.first[cell + 1]; k++) {
+      const int b = number[pieces.at(graph.neighbor[k])];
+      if (a != b) flows.push_back({a, b, graph.face[k]});
+    }
+  }
+  return flows;
+}
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+struct CellMultigrid::Levels {
+  const CellOperator *fine = nullptr;
+
+  // from the finest level, of which this rank has a part, to the first one that all have
+  std::vector<int> piece;       // [cell] the part of this rank of a coarse cell
+  std::vector<int> number;      // [piece] the coarse cell
+  std::vector<int> of_ranks;    // coarse cells of the pieces of all ranks, rank by rank
+  std::vector<double> partial, node_values;
+
+  struct Level {
+    CellGraph graph;
+    std::vector<int> next;    // [cell] of the next level
+    std::vector<double> x, b, r;
+  };
+  std::vector<Level> coarse;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;
+  Eigen::VectorXd rest, solution;
+
+  // closed pools
+  std::vector<int> pool;    // [cell of the first coarse level], -1: not closed
+  std::vector<double> cells_of_pool;
+
+  void first_coarse();
+  void more_levels();
+  void factorize();
+  void find_pools(const std::vector<int> &component, const std::vector<char> &closed);
+
+  void smooth_fine(const double *r, double *z, bool from_zero, bool backwards);
+  void restrict_fine(const double *r, const double *z);
+  void cycle(std::size_t level);
+  template <class Number> void means(const Number &value, std::vector<double> &mean);
+};
+
+CellMultigrid::CellMultigrid() : on(new Levels) {}
+CellMultigrid::~CellMultigrid() = default;
+
+void CellMultigrid::setup(const CellOperator &fine)
+{
+  on.reset(new Levels);
+  on->fine = &fine;
+  on->node_values.resize(fine.grid.nnodes());
+  on->first_coarse();
+  on->more_levels();
+  on->factorize();
+}
+
+/** Pieces of larger cells are joined where ranks have the same cell in theirs; all ranks get all of them. */
+void CellMultigrid::Levels::first_coarse()
+{
+  const auto &graph = fine->cells();
+  Pieces mine(graph, fine->grid.nnodes(), false);
+  auto pieces = fine->ranks.gather(mine.all);
+  std::sort(pieces.begin(), pieces.end(), [](const Piece &a, const Piece &b) {
+    return a.key < b.key || (a.key == b.key && a.cells < b.cells);
+  });
+  std::vector<Piece> joined;
+  std::size_t begin = 0;    // of those of the same cell
+  for (const auto &next : pieces) {
+    if (!joined.empty() && joined.back().key != next.key) begin = joined.size();
+    Piece whole = next;
+    for (std::size_t k = begin; k < joined.size();)
+      if (joined[k].cells & whole.cells) {
+        whole.cells |= joined[k].cells;
+        joined.erase(joined.begin() + k);
+      } else
+        k++;
+    joined.push_back(whole);
+  }
+
+  number.resize(mine.all.size());
+  for (std::size_t k = 0; k < number.size(); k++) {
+    const auto &piece = mine.all[k];
+    auto found =
+        std::lower_bound(joined.begin(), joined.end(), piece.key, [](const Piece &a, uint64_t key) {
+          return a.key < key;
+        });
+    while (!(found->cells & piece.cells)) ++found;
+    number[k] = found - joined.begin();
+  }
+  piece = mine.piece;
+  of_ranks = fine->ranks.gather(number);
+  auto flows = fine->ranks.gather(coarse_flows(graph, mine, number));
+  coarse.emplace_back();
+  coarse[0].graph = coarse_graph(joined, flows);
+}
+
+void CellMultigrid::Levels::more_levels()
+{
+  while (true) {
+    auto &level = coarse.back();
+    const int n = level.graph.size();
+    for (auto *vector : {&level.x, &level.b, &level.r}) vector->resize(n);
+    if (n <= FEW || level.graph.neighbor.empty()) break;
+    Pieces pieces(level.graph, n, true);
+    std::vector<int> same(pieces.all.size());
+    std::iota(same.begin(), same.end(), 0);
+    level.next = pieces.piece;
+    auto flows = coarse_flows(level.graph, pieces, same);
+    Level next;
+    next.graph = coarse_graph(pieces.all, flows);
+    coarse.push_back(std::move(next));
+  }
+}
+
+/** Of a closed pool one cell is held: what this adds to a solution is a constant. */
+void CellMultigrid::Levels::factorize()
+{
+  const auto &graph = coarse.back().graph;
+  const int n = graph.size();
+  std::vector<int> component(n);
+  std::iota(component.begin(), component.end(), 0);
+  for (int cell = 0; cell < n; cell++)
+    for (int k = graph.first[cell]; k < graph.first[cell + 1]; k++)
+      component[root_of(component, cell)] = root_of(component, graph.neighbor[k]);
+  std::vector<char> closed(n, 1);
+  for (int cell = 0; cell < n; cell++) {
+    component[cell] = root_of(component, cell);
+    if (graph.outside[cell] > 0.0) closed[component[cell]] = 0;
+  }
+
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int cell = 0; cell < n; cell++) {
+    double diagonal = graph.diagonal(cell);
+    if (component[cell] == cell && closed[cell]) diagonal += diagonal > 0.0 ? diagonal : 1.0;
+    entries.emplace_back(cell, cell, diagonal);
+    for (int k = graph.first[cell]; k < graph.first[cell + 1]; k++)
+      entries.emplace_back(cell, (int) graph.neighbor[k], -graph.face[k]);
+  }
+  Eigen::SparseMatrix<double> A(n, n);
+  A.setFromTriplets(entries.begin(), entries.end());
+  factors.compute(A);
+  rest.resize(n);
+  find_pools(component, closed);
+}
+
+void CellMultigrid::Levels::find_pools(const std::vector<int> &component,
+                                       const std::vector<char> &closed)
+{
+  const int n = component.size();
+  std::vector<int> number_of(n, -1);
+  int npools = 0;
+  for (int cell = 0; cell < n; cell++)
+    if (component[cell] == cell && closed[cell]) number_of[cell] = npools++;
+  pool.clear();
+  if (npools == 0) return;
+  pool.resize(n);
+  for (int cell = 0; cell < n; cell++) pool[cell] = number_of[component[cell]];
+  for (std::size_t level = coarse.size() - 1; level-- > 0;) {
+    std::vector<int> finer(coarse[level].next.size());
+    for (std::size_t cell = 0; cell < finer.size(); cell++)
+      finer[cell] = pool[coarse[level].next[cell]];
+    pool.swap(finer);
+  }
+  cells_of_pool.assign(npools, 1.0);
+  std::vector<double> cells;
+  means(
+      [](int64_t) {
+        return 1.0;
+      },
+      cells);
+  cells_of_pool = cells;
+}
+
+/** [pool] sums of value(place in vectors) over all ranks and over the number of cells. */
+template <class Number>
+void CellMultigrid::Levels::means(const Number &value, std::vector<double> &mean)
+{
+  const auto &graph = fine->cells();
+  const std::size_t npools = cells_of_pool.size();
+  std::vector<double> mine(npools, 0.0);
+  for (int cell = 0; cell < graph.size(); cell++) {
+    const int which = pool[number[piece[cell]]];
+    if (which >= 0 && fine->grid.owns(graph.where[cell])) mine[which] += value(graph.where[cell]);
+  }
+  const auto all = fine->ranks.gather(mine);
+  mean.assign(npools, 0.0);
+  for (std::size_t k = 0; k < all.size(); k++) mean[k % npools] += all[k];
+  for (std::size_t k = 0; k < npools; k++) mean[k] /= cells_of_pool[k];
+}
+
+double CellMultigrid::project(double *x)
+{
+  const auto &graph = on->fine->cells();
+  double largest = 0.0;
+  std::vector<double> mean;
+  if (!on->pool.empty())
+    on->means(
+        [&](int64_t place) {
+          return x[place];
+        },
+        mean);
+  for (const double m : mean) largest = std::max(largest, std::fabs(m));
+
+  auto &kept = on->node_values;
+  std::fill(kept.begin(), kept.end(), 0.0);
+  for (int cell = 0; cell < graph.size(); cell++) {
+    const int64_t place = graph.where[cell];
+    const int which = mean.empty() ? -1 : on->pool[on->number[on->piece[cell]]];
+    kept[place] = x[place] - (which < 0 ? 0.0 : mean[which]);
+  }
+  std::copy(kept.begin(), kept.end(), x);
+  return largest;
+}
+
+/** A sweep over both colors.  With values of all ranks at both sides of faces, all cells of a color change at once. */
+void CellMultigrid::Levels::smooth_fine(const double *r, double *z, bool from_zero, bool backwards)
+{
+  const auto &graph = fine->cells();
+  for (int half = 0; half < 2; half++) {
+    const auto &cells = graph.colored[backwards ? 1 - half : half];
+    if (from_zero && half == 0) {
+      for (const int cell : cells)
+        z[graph.where[cell]] = graph.inverse[cell] * r[graph.where[cell]];
+      continue;
+    }
+    std::fill(node_values.begin(), node_values.end(), 0.0);
+    for (const int cell : cells) node_values[graph.where[cell]] = graph.flow(cell, z);
+    fine->ranks.sum(node_values.data(), 1);
+    for (const int cell : cells) {
+      const int64_t place = graph.where[cell];
+      z[place] += graph.inverse[cell] * (r[place] - node_values[place]);
+    }
+  }
+}
+
+/** Right side of the first coarse level: each rank has a part of the residuals of its cells, that of r where it owns them. */
+void CellMultigrid::Levels::restrict_fine(const double *r, const double *z)
+{
+  const auto &graph = fine->cells();
+  partial.assign(number.size(), 0.0);
+  for (int cell = 0; cell < graph.size(); cell++) {
+    const int64_t place = graph.where[cell];
+    partial[piece[cell]] += (fine->grid.owns(place) ? r[place] : 0.0) - graph.flow(cell, z);
+  }
+  const auto all = fine->ranks.gather(partial);
+  auto &b = coarse[0].b;
+  std::fill(b.begin(), b.end(), 0.0);
+  for (std::size_t k = 0; k < all.size(); k++) b[of_ranks[k]] += all[k];
+}
+
+/** x of a coarse level from its b. */
+void CellMultigrid::Levels::cycle(std::size_t which)
+{
+  auto &level = coarse[which];
+  const auto &graph = level.graph;
+  const int n = graph.size();
+  if (which + 1 == coarse.size()) {
+    std::copy(level.b.begin(), level.b.end(), rest.data());
+    if (n > 0) solution = factors.solve(rest);
+    std::copy_n(solution.data(), n, level.x.begin());
+    return;
+  }
+
+  double *const x = level.x.data();
+  const auto sweep = [&](int color) {
+    for (const int cell : graph.colored[color])
+      x[cell] += graph.inverse[cell] * (level.b[cell] - graph.flow(cell, x));
+  };
+  std::fill(level.x.begin(), level.x.end(), 0.0);
+  for (int correction = 0; correction < CORRECTIONS; correction++) {
+    for (int s = 0; s < SWEEPS; s++) {
+      sweep(0);
+      sweep(1);
+    }
+    auto &next = coarse[which + 1];
+    std::fill(next.b.begin(), next.b.end(), 0.0);
+    for (int cell = 0; cell < n; cell++)
+      next.b[level.next[cell]] += level.b[cell] - graph.flow(cell, x);
+    cycle(which + 1);
+    for (int cell = 0; cell < n; cell++) x[cell] += next.x[level.next[cell]];
+    for (int s = 0; s < SWEEPS; s++) {
+      sweep(1);
+      sweep(0);
+    }
+  }
+}
+
+void CellMultigrid::precondition(const double *r, double *z)
+{
+  const auto &graph = on->fine->cells();
+  std::fill_n(z, on->fine->grid.nnodes(), 0.0);
+  for (int s = 0; s < SWEEPS; s++) on->smooth_fine(r, z, s == 0, false);
+  on->restrict_fine(r, z);
+  on->cycle(0);
+  for (int cell = 0; cell < graph.size(); cell++)
+    z[graph.where[cell]] += on->coarse[0].x[on->number[on->piece[cell]]];
+  for (int s = 0; s < SWEEPS; s++) on->smooth_fine(r, z, false, true);
+  if (!on->pool.empty()) project(z);
+}
+
+int CellMultigrid::closed_pools() const
+{
+  return on->pool.empty() ? 0 : on->cells_of_pool.size();
+}
+
+int CellMultigrid::levels() const
+{
+  return 1 + on->coarse.size();
+}
+
+double CellMultigrid::memory_usage() const
+{
+  double bytes = (on->piece.capacity() + on->number.capacity() + on->of_ranks.capacity() +
+                  on->pool.capacity()) *
+          sizeof(int) +
+      (on->partial.capacity() + on->node_values.capacity()) * sizeof(double);
+  for (const auto &level : on->coarse)
+    bytes += level.graph.memory_usage() + level.next.capacity() * sizeof(int) +
+        3 * level.x.capacity() * sizeof(double);
+  return bytes;
+}

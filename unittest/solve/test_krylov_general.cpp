@@ -1,0 +1,397 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: unit
+
+// Methods for systems that are indefinite or not symmetric: known solutions, and iterations that theory tells.
+
+#include "small_systems.h"
+#include "solve/flexible_gmres.h"
+#include "solve/minres.h"
+
+#include "gtest/gtest.h"
+
+#include <cmath>
+#include <vector>
+
+using namespace MPM_NS;
+
+namespace {
+
+System::Operator diagonal(const std::vector<double> &d)
+{
+  return [=](const double *x, double *y) {
+    for (std::size_t i = 0; i < d.size(); i++) y[i] = d[i] * x[i];
+  };
+}
+
+/** A rod of n springs between fixed ends, and its loads; the last m unknowns are the forces that hold m of its nodes, every
+ *  third one: [K B^T; B 0]. */
+class HeldRod {
+ public:
+  static constexpr int n = 30, m = 10;
+  static int held(int k) { return 3 * k + 1; }
+  static System::Operator matrix()
+  {
+    return [K = rod(n, true)](const double *x, double *y) {
+      K(x, y);
+      for (int k = 0; k < m; k++) {
+        y[held(k)] += x[n + k];
+        y[n + k] = x[held(k)];
+      }
+    };
+  }
+  /** K^-1 by the formula for a force at one node. */
+  static void solve_rod(const double *f, double *u)
+  {
+    for (int i = 0; i < n; i++) {
+      u[i] = 0.0;
+      for (int j = 0; j < n; j++)
+        u[i] += (std::min(i, j) + 1.0) * (n - std::max(i, j)) / (n + 1.0) * f[j];
+    }
+  }
+  /** S^-1 with S = B K^-1 B^T, by elimination. */
+  static void solve_forces(const double *g, double *p)
+  {
+    double S[m][m + 1], unit[n], u[n];
+    for (int k = 0; k < m; k++) {
+      std::fill_n(unit, n, 0.0);
+      unit[held(k)] = 1.0;
+      solve_rod(unit, u);
+      for (int l = 0; l < m; l++) S[l][k] = u[held(l)];
+    }
+    for (int k = 0; k < m; k++) S[k][m] = g[k];
+    for (int k = 0; k < m; k++)
+      for (int l = k + 1; l < m; l++) {
+        const double factor = S[l][k] / S[k][k];
+        for (int j = k; j <= m; j++) S[l][j] -= factor * S[k][j];
+      }
+    for (int k = m - 1; k >= 0; k--) {
+      p[k] = S[k][m];
+      for (int j = k + 1; j < m; j++) p[k] -= S[k][j] * p[j];
+      p[k] /= S[k][k];
+    }
+  }
+  /** Displacements of unit loads: 1 between nodes that are held, 1/2 at the ends. */
+  static void expect_solution(const std::vector<double> &x, double tolerance)
+  {
+    for (int i = 0; i < n; i++) {
+      // free are node 0, pieces of two nodes, and node 29
+      const double u = i % 3 == 1 ? 0.0 : i == 0 || i == n - 1 ? 0.5 : 1.0;
+      EXPECT_NEAR(x[i], u, tolerance) << i;
+    }
+  }
+  static std::vector<double> loads()
+  {
+    std::vector<double> b(n + m, 1.0);
+    std::fill_n(b.begin() + n, m, 0.0);
+    return b;
+  }
+};
+
+/** Steady convection and diffusion, upwind: -u'' + 2c u' between fixed ends, spacing 1. */
+System::Operator convection(int n, double c)
+{
+  return [=](const double *x, double *y) {
+    for (int i = 0; i < n; i++) {
+      const double left = i ? x[i - 1] : 0.0, right = i < n - 1 ? x[i + 1] : 0.0;
+      y[i] = 2.0 * x[i] - left - right + 2.0 * c * (x[i] - left);
+    }
+  };
+}
+
+/** For a load of 1: x_i = (i - (n+1) (r^i - 1)/(r^(n+1) - 1))/2c with r = 1 + 2c. */
+double convection_solution(int n, double c, int i)
+{
+  const double r = 1.0 + 2.0 * c;
+  return (i - (n + 1) * std::expm1(i * std::log(r)) / std::expm1((n + 1) * std::log(r))) /
+      (2.0 * c);
+}
+
+}    // namespace
+
+// ------------------------------------------------------------------ minimal residuals
+
+// The number of iterations is that of distinct eigenvalues, of either sign.
+TEST(MinimalResiduals, DistinctEigenvalues)
+{
+  const int n = 40;
+  const double values[] = {-3.0, -0.5, 1.0, 2.0, 7.0};
+  std::vector<double> d(n), b(n), x(n, 0.0);
+  for (int i = 0; i < n; i++) {
+    d[i] = values[i % 5];
+    b[i] = 1.0 + 0.1 * i;
+  }
+  System system(n, diagonal(d));
+  const auto report = MinimalResiduals().solve(system, b.data(), x.data(), {1e-10, 0.0, 100});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  EXPECT_EQ(report.iterations, 5);
+  for (int i = 0; i < n; i++) EXPECT_NEAR(x[i], b[i] / d[i], 1e-8);
+  // residuals never grow, and the last one is the true one
+  for (int k = 1; k <= report.iterations; k++)
+    EXPECT_LE(report.residuals[k], report.residuals[k - 1] * (1 + 1e-12));
+}
+
+// Spectrum in [-b, -a] and [a, b]: no slower than 2 ((b/a - 1)/(b/a + 1))^(k/2) (Elman, Silvester, Wathen, section 4.2.4), which
+// conjugate gradients for the normal equations would need k iterations for, of two products each.
+TEST(MinimalResiduals, BoundOfTheory)
+{
+  const int n = 200;
+  const double ratio = 20.0;
+  std::vector<double> d(n), b(n, 1.0), x(n, 0.0);
+  for (int i = 0; i < n; i++)
+    d[i] = (i % 2 ? 1.0 : -1.0) * (1.0 + (ratio - 1.0) * (i / 2) / (n / 2 - 1.0));
+  System system(n, diagonal(d));
+  const auto report = MinimalResiduals().solve(system, b.data(), x.data(), {1e-8, 0.0, 1000});
+  ASSERT_TRUE(report.converged()) << report.describe();
+  const double rate = (ratio - 1.0) / (ratio + 1.0);
+  for (int k = 0; k <= report.iterations; k++)
+    EXPECT_LE(report.residuals[k] / report.residuals[0], 2.0 * std::pow(rate, k / 2) * (1 + 1e-6))
+        << k;
+  EXPECT_GT(report.iterations, 20);
+}
+
+// A saddle point with K and the Schur complement as blocks of the preconditioner has three eigenvalues, 1 and (1 +- sqrt 5)/2
+// (M.F. Murphy, G.H. Golub, A.J. Wathen, SIAM J. Sci. Comput. 21 (2000) 1969): three iterations.
+TEST(MinimalResiduals, SaddlePoint)
+{
+  const int n = HeldRod::n, m = HeldRod::m;
+  const auto ideal = [&](const double *r, double *z) {
+    HeldRod::solve_rod(r, z);
+    HeldRod::solve_forces(r + n, z + n);
+  };
+  System plain(n + m, HeldRod::matrix()), preconditioned(n + m, HeldRod::matrix(), ideal);
+  const auto b = HeldRod::loads();
+  std::vector<double> x(n + m, 0.0);
+  auto report = MinimalResiduals().solve(preconditioned, b.data(), x.data(), {1e-10, 0.0, 100});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  EXPECT_LE(report.iterations, 3);
+  HeldRod::expect_solution(x, 1e-9);
+
+  // the plain norm is that of the report, with and without a preconditioner
+  std::vector<double> Ax(n + m);
+  plain.apply(x.data(), Ax.data());
+  double rr = 0.0;
+  for (int i = 0; i < n + m; i++) rr += (b[i] - Ax[i]) * (b[i] - Ax[i]);
+  EXPECT_NEAR(report.residuals.back(), std::sqrt(rr), 1e-12);
+
+  x.assign(n + m, 3.0);
+  report = MinimalResiduals().solve(plain, b.data(), x.data(), {1e-10, 0.0, 200});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  EXPECT_GT(report.iterations, 3);
+  HeldRod::expect_solution(x, 1e-8);
+}
+
+// Residuals known by recurrence are those of the system with a preconditioner that is not the identity.
+TEST(MinimalResiduals, RecurrenceOfResiduals)
+{
+  const int n = 24;
+  std::vector<double> d(n), b(n), x(n);
+  for (int i = 0; i < n; i++) {
+    d[i] = (i % 3 ? 1.0 : -1.0) * (1.0 + i);
+    b[i] = std::cos(i);
+  }
+  System system(n, diagonal(d), [&](const double *r, double *z) {
+    for (int i = 0; i < n; i++) z[i] = r[i] / (1.0 + 0.3 * (i % 7));
+  });
+  for (int most = 1; most < 8; most++) {
+    x.assign(n, 0.0);
+    const auto report = MinimalResiduals().solve(system, b.data(), x.data(), {1e-14, 0.0, most});
+    EXPECT_EQ(report.outcome, SolveReport::TOO_MANY);
+    EXPECT_EQ(report.iterations, most);
+    // the last one is computed anew; that of the iteration before is known from a shorter solve
+    std::vector<double> y(n, 0.0);
+    const auto longer =
+        MinimalResiduals().solve(system, b.data(), y.data(), {1e-14, 0.0, most + 1});
+    EXPECT_NEAR(longer.residuals[most], report.residuals.back(), 1e-12);
+  }
+}
+
+// A singular system with a right side in its range is solved without a part in the null space; of another one the least
+// squares are found, and it is told.
+TEST(MinimalResiduals, Singular)
+{
+  const int n = 40;
+  System system(n, rod(n, false));
+  std::vector<double> b(n, 0.0), x(n, 0.0);
+  b[0] = -1.0;
+  b[n - 1] = 1.0;
+  auto report = MinimalResiduals().solve(system, b.data(), x.data(), {1e-11, 0.0, 100});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  for (int i = 0; i < n; i++) EXPECT_NEAR(x[i], i - 0.5 * (n - 1), 1e-8);
+
+  for (int i = 0; i < n; i++) b[i] += 0.25;
+  x.assign(n, 0.0);
+  report = MinimalResiduals().solve(system, b.data(), x.data(), {1e-11, 0.0, 100});
+  EXPECT_EQ(report.outcome, SolveReport::SINGULAR) << report.describe();
+  EXPECT_NEAR(report.residuals.back(), 0.25 * std::sqrt(n), 1e-8);
+  for (int i = 0; i < n; i++) EXPECT_NEAR(x[i] - x[0], i, 1e-6);
+  EXPECT_NE(report.describe().find("is singular"), std::string::npos);
+}
+
+TEST(MinimalResiduals, Failures)
+{
+  const int n = 4;
+  std::vector<double> b{1.0, 2.0, 3.0, 4.0}, x(n, 0.0);
+  const auto identity = diagonal(std::vector<double>(n, 1.0));
+  System negative(n, identity, diagonal({1.0, -1.0, -1.0, -1.0}));
+  EXPECT_EQ(MinimalResiduals().solve(negative, b.data(), x.data(), {}).outcome,
+            SolveReport::INDEFINITE);
+  System zero(n, identity, diagonal({0.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(MinimalResiduals().solve(zero, b.data(), x.data(), {}).outcome,
+            SolveReport::INDEFINITE);
+  System bad(n, diagonal({1.0, NAN, 1.0, 1.0}));
+  EXPECT_EQ(MinimalResiduals().solve(bad, b.data(), x.data(), {}).outcome, SolveReport::NOT_FINITE);
+  System good(n, diagonal({1.0, 2.0, -3.0, 4.0}));
+  x.assign(n, 0.0);
+  EXPECT_EQ(MinimalResiduals().solve(good, b.data(), x.data(), {1e-8, 0.0, 2}).outcome,
+            SolveReport::TOO_MANY);
+  b.assign(n, 0.0);
+  x.assign(n, 0.0);
+  const auto report = MinimalResiduals().solve(good, b.data(), x.data(), {});
+  EXPECT_TRUE(report.converged());
+  EXPECT_EQ(report.iterations, 0);
+}
+
+// ------------------------------------------------------------------ flexible GMRES
+
+// In full it needs as many iterations as the minimal polynomial has roots.
+TEST(FlexibleGMRES, DegreeOfMinimalPolynomial)
+{
+  const int n = 30;
+  std::vector<double> d(n), b(n, 1.0), x(n, 0.0);
+  for (int i = 0; i < n; i++) d[i] = 1.0 + i % 4;
+  // eigenvalues 1 to 4, not symmetric and not normal: the first of each pair is fed by the second, which has another one
+  System system(n, [&](const double *x, double *y) {
+    for (int i = 0; i < n; i++) y[i] = d[i] * x[i] + (i % 2 == 0 ? 5.0 * x[i + 1] : 0.0);
+  });
+  const auto report = FlexibleGMRES().solve(system, b.data(), x.data(), {1e-10, 0.0, 100});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  EXPECT_EQ(report.iterations, 4);
+  for (int i = 0; i < n; i++) {
+    const double odd = i % 2 == 0 ? b[i + 1] / d[i + 1] : 0.0;
+    EXPECT_NEAR(x[i], (b[i] - 5.0 * odd) / d[i], 1e-9);
+  }
+}
+
+// Convection against diffusion, in cycles of any length, also where the first guess is far off.
+TEST(FlexibleGMRES, ConvectionWithRestarts)
+{
+  const int n = 60;
+  const double c = 0.2;
+  System system(n, convection(n, c));
+  const std::vector<double> b(n, 1.0);
+  int before = 0;
+  for (const int cycle : {80, 20, 5}) {
+    std::vector<double> x(n, -10.0);
+    FlexibleGMRES solver(cycle);
+    const auto report = solver.solve(system, b.data(), x.data(), {1e-10, 0.0, 5000});
+    EXPECT_TRUE(report.converged()) << cycle << " " << report.describe();
+    EXPECT_GE(report.iterations, before);
+    before = report.iterations;
+    if (cycle > n) { EXPECT_LE(report.iterations, n); }
+    for (int i = 0; i < n; i++)
+      EXPECT_NEAR(x[i], convection_solution(n, c, i + 1), 1e-6) << cycle << " " << i;
+    const auto again = solver.solve(system, b.data(), x.data(), {1e-9, 0.0, 5000});
+    EXPECT_EQ(again.iterations, 0);
+  }
+}
+
+// A cycle of n nodes that hand their value on: nothing is gained in n - 1 iterations, and the last one solves it.
+TEST(FlexibleGMRES, CyclicShift)
+{
+  const int n = 12;
+  System system(n, [](const double *x, double *y) {
+    for (int i = 0; i < n; i++) y[i] = x[(i + 1) % n];
+  });
+  std::vector<double> b(n, 0.0), x(n, 0.0);
+  b[0] = 1.0;
+  auto report = FlexibleGMRES(n).solve(system, b.data(), x.data(), {1e-12, 0.0, 100});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  EXPECT_EQ(report.iterations, n);
+  EXPECT_NEAR(report.residuals[n - 1], 1.0, 1e-12);
+  EXPECT_NEAR(x[1], 1.0, 1e-12);
+  x.assign(n, 0.0);
+  report = FlexibleGMRES(n - 1).solve(system, b.data(), x.data(), {1e-12, 0.0, 100});
+  EXPECT_EQ(report.outcome, SolveReport::TOO_MANY);
+  EXPECT_NEAR(report.residuals.back(), 1.0, 1e-12);
+}
+
+// The triangular preconditioner of a saddle point gives two iterations (Murphy, Golub, Wathen).
+TEST(FlexibleGMRES, SaddlePoint)
+{
+  const int n = HeldRod::n, m = HeldRod::m;
+  const auto triangular = [&](const double *r, double *z) {
+    std::vector<double> rest(r, r + n);
+    HeldRod::solve_forces(r + n, z + n);
+    for (int k = 0; k < m; k++) z[n + k] = -z[n + k];
+    for (int k = 0; k < m; k++) rest[HeldRod::held(k)] -= z[n + k];
+    HeldRod::solve_rod(rest.data(), z);
+  };
+  System system(n + m, HeldRod::matrix(), triangular);
+  const auto b = HeldRod::loads();
+  std::vector<double> x(n + m, 0.0);
+  const auto report = FlexibleGMRES().solve(system, b.data(), x.data(), {1e-10, 0.0, 100});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  EXPECT_LE(report.iterations, 2);
+  HeldRod::expect_solution(x, 1e-9);
+}
+
+// A preconditioner that differs from iteration to iteration: a few iterations of the same method.
+TEST(FlexibleGMRES, SolveWithinASolve)
+{
+  const int n = 80;
+  const double c = 0.1;
+  System inner(n, convection(n, c));
+  int solves = 0;
+  FlexibleGMRES inner_solver(8);
+  System outer(n, convection(n, c), [&](const double *r, double *z) {
+    std::fill_n(z, n, 0.0);
+    inner_solver.solve(inner, r, z, {1e-1, 0.0, 4 + 4 * (solves++ % 2)});
+  });
+  const std::vector<double> b(n, 1.0);
+  std::vector<double> x(n, 0.0), y(n, 0.0);
+  const auto report = FlexibleGMRES().solve(outer, b.data(), x.data(), {1e-10, 0.0, 200});
+  ASSERT_TRUE(report.converged()) << report.describe();
+  EXPECT_EQ(report.iterations, solves);
+  for (int i = 0; i < n; i++) EXPECT_NEAR(x[i], convection_solution(n, c, i + 1), 1e-6);
+  EXPECT_LT(report.iterations,
+            FlexibleGMRES().solve(inner, b.data(), y.data(), {1e-10, 0.0, 2000}).iterations / 2);
+}
+
+// Singular systems: solved if they can be, told if not.
+TEST(FlexibleGMRES, Singular)
+{
+  const int n = 30;
+  System system(n, rod(n, false));
+  std::vector<double> b(n, 0.0), x(n, 0.0);
+  b[0] = -1.0;
+  b[n - 1] = 1.0;
+  auto report = FlexibleGMRES().solve(system, b.data(), x.data(), {1e-10, 0.0, 100});
+  EXPECT_TRUE(report.converged()) << report.describe();
+  for (int i = 0; i < n; i++) EXPECT_NEAR(x[i], i - 0.5 * (n - 1), 1e-7);
+
+  // diag(1, 0): the second equation has no solution
+  System two(2, diagonal({1.0, 0.0}));
+  b = {1.0, 0.5};
+  x.assign(2, 0.0);
+  report = FlexibleGMRES().solve(two, b.data(), x.data(), {1e-10, 0.0, 100});
+  EXPECT_EQ(report.outcome, SolveReport::SINGULAR) << report.describe();
+  EXPECT_NEAR(x[0], 1.0, 1e-12);
+  EXPECT_NEAR(report.residuals.back(), 0.5, 1e-12);
+}
+
+TEST(FlexibleGMRES, Failures)
+{
+  std::vector<double> b{1.0, 2.0}, x(2, 0.0);
+  System bad(2, diagonal({1.0, NAN}));
+  EXPECT_EQ(FlexibleGMRES().solve(bad, b.data(), x.data(), {}).outcome, SolveReport::NOT_FINITE);
+  System late(2, diagonal({1.0, 2.0}), diagonal({1.0, INFINITY}));
+  x.assign(2, 0.0);
+  EXPECT_EQ(FlexibleGMRES().solve(late, b.data(), x.data(), {}).outcome, SolveReport::NOT_FINITE);
+  b.assign(2, 0.0);
+  x.assign(2, 0.0);
+  const auto report = FlexibleGMRES().solve(late, b.data(), x.data(), {});
+  EXPECT_TRUE(report.converged());
+  EXPECT_EQ(report.iterations, 0);
+}

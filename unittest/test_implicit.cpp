@@ -1,0 +1,525 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// Fix mpm/implicit: Newton's method on the nodes of a field, in statics and dynamics.
+
+#include "mpm_lammps.h"
+
+#include "mpm_plan.h"
+#include "mpm_tangent.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** Sums of forces before each Newton iteration of a step, as the log has them. */
+std::vector<std::vector<double>> residuals(const std::string &scene)
+{
+  std::vector<std::vector<double>> steps;
+  for (const auto &line : lines_that_say(scene, "  implicit step")) {
+    std::istringstream words(line.substr(line.find("forces") + 6));
+    steps.emplace_back();
+    for (double r; words >> r;) steps.back().push_back(r);
+  }
+  return steps;
+}
+
+/** A cell of one point, fixed at x = 0, with rollers at its sides; half of a force on the point goes to the nodes at x = 1. */
+std::string cell(const std::string &options)
+{
+  return space("lj", "f f f", "0 4 0 1 0 1", 1, 0.3) +
+      body("block 0 1 0 1 0 1", "density 1000 neohookean 1e6 0.3", "1.0 " + options, "1") +
+      "fix wall all mpm/boundary xlo stick\nfix sides all mpm/boundary ylo yhi zlo zhi slip\n"
+      "fix load all addforce 2e6 0 0\n"
+      "fix solve all mpm/implicit static tolerance 1e-14 accuracy 1e-10 report yes\n"
+      "timestep 1.0\n";
+}
+
+/** A bar that hangs from the top of the box, of n cells, with rollers at its sides; its weight g in steps. */
+std::string hanging(int n, const std::string &options, double g, int steps)
+{
+  const double h = 1.0 / n;
+  return plane("si", "f f", strprintf("0 %.17g -1.2 1", 2 * h), 1, 0.3 * h) +
+      body("block INF INF 0 1 INF INF", "density 1050 neohookean 1e6 0.3",
+           strprintf("%.17g ", h) + options) +
+      "fix top all mpm/boundary yhi stick\nfix sides all mpm/boundary xlo xhi slip\n" +
+      strprintf("variable g equal %.17g*step/%d\n", g, steps) +
+      "fix g all gravity v_g vector 0 -1 0\ncompute u all displace/atom\n"
+      "compute low all reduce min c_u[2]\nfix solve all mpm/implicit static\ntimestep 1.0\n"
+      "thermo_style custom step c_low\n";
+}
+
+/** A beam of length 1 and depth 0.1, clamped at x = 0, of n cells in its depth, under its weight. */
+std::string beam(int n, const std::string &options, double g, const std::string &implicit,
+                 const std::string &material = "linear 1e8 0")
+{
+  const double h = 0.1 / n;
+  return plane("si", "f f", "0 1.2 -1.1 0.4", 1, 0.3 * h) +
+      body("block 0 1 0 0.1 INF INF", "density 1000 " + material,
+           strprintf("%.17g ", h) + options) +
+      "fix clamp all mpm/boundary xlo stick\n" +
+      strprintf("fix g all gravity %g vector 0 -1 0\n", g) + "fix solve all mpm/implicit " +
+      implicit +
+      "\ncompute u all displace/atom\ncompute low all reduce min c_u[2]\n"
+      "compute e all mpm/energy\nthermo_style custom step c_low c_e\ntimestep 1.0\n";
+}
+
+}    // namespace
+
+// one cell under a traction that is larger than its stiffness: an exact tangent goes this way, and no other
+SERIAL_TEST(Cell, NewtonGoesTheExactWay)
+{
+  const double mu = 1e6 / 2.6, lambda = 1e6 * 0.3 / 1.3 / 0.4;
+  for (const char *options :
+       {"shape linear frame total transfer pic", "shape linear transfer pic"}) {
+    const auto steps = residuals(cell(options) + "run 1\n");
+    ASSERT_EQ(steps.size(), 1u);
+    double F = 1.0;
+    for (std::size_t k = 0; k < 5; k++) {
+      const double P = mu * (F - 1.0 / F) + lambda * std::log(F) / F;
+      ASSERT_LT(k, steps[0].size());
+      EXPECT_NEAR(steps[0][k], std::fabs(P - 1e6), 1e-9 * 1e6) << options << k;
+      F -= (P - 1e6) / (mu * (1.0 + 1.0 / (F * F)) + lambda * (1.0 - std::log(F)) / (F * F));
+    }
+    EXPECT_NEAR(F, 2.458004779, 1e-9);
+    EXPECT_LE(steps[0].size(), 7u);
+    Scene run(cell(options) + "run 1\n");
+    EXPECT_NEAR(run.points().F[0][0], 2.458004779, 1e-9);
+    EXPECT_EQ(run.fix("solve")->compute_vector(0), steps[0].size() - 1);
+  }
+}
+
+// any uniform strain is found exactly, by all shapes and transfers; a wall bears the force of the law
+SERIAL_TEST(Patch, UniformStrain)
+{
+  for (const char *options :
+       {"", "transfer pic", "shape cubic", "shape cubic transfer pic", "shape gimp transfer pic",
+        "shape linear transfer pic", "frame total", "frame total shape cubic transfer pic",
+        "stress gradient", "transfer tpic", "transfer polypic"}) {
+    Scene run(plane("si", "p f", "0 0.4 0 1", 1, 0.03) +
+              body("box", "density 1000 neohookean 1e6 0.3", std::string("0.1 ") + options) +
+              "fix floor all mpm/boundary ylo stick\n"
+              "fix push all mpm/boundary yhi stick velocity 0.05 -0.1 NULL\n"
+              "fix solve all mpm/implicit static tolerance 1e-12\ntimestep 1.0\nrun 1\n");
+    const double mu = 1e6 / 2.6, lambda = 1e6 * 0.3 / 1.3 / 0.4;
+    for (int i = 0; i < run.n(); i++) {
+      EXPECT_NEAR(run.points().F[i][4], 0.9, 1e-9) << options;
+      EXPECT_NEAR(run.points().F[i][1], 0.05, 1e-9) << options;
+    }
+    // on the wall, -P n with P_yy = mu (F_yy - F^-T_yy) + lambda ln J F^-T_yy, P_xy = mu F_xy
+    EXPECT_NEAR(run.fix("push")->compute_vector(1) / 0.4,
+                -(mu * (0.9 - 1.0 / 0.9) + lambda * std::log(0.9) / 0.9), 1e-3)
+        << options;
+    EXPECT_NEAR(run.fix("push")->compute_vector(0) / 0.4, -mu * 0.05, 1e-3) << options;
+  }
+}
+
+// in statics the time step has no meaning, and is no source of errors where it is large
+SERIAL_TEST(Patch, TimeHasNoMeaning)
+{
+  double F[2][2];
+  for (const bool late : {false, true}) {
+    Scene run(
+        plane("si", "p f", "0 0.4 0 1", 1, 0.03) +
+        body("box", "density 1e-3 neohookean 1e6 0.3", "0.1") +
+        "fix floor all mpm/boundary ylo stick\n" +
+        strprintf("fix push all mpm/boundary yhi stick velocity 0 %g NULL\n", late ? -1e-6 : -0.1) +
+        "fix g all gravity 1e7 vector 0 -1 0\nfix solve all mpm/implicit static tolerance 1e-12\n" +
+        strprintf("timestep %g\nrun 1\n", late ? 1e5 : 1.0));
+    for (int i = 0; i < run.n(); i++)
+      for (const int side : {0, 1})
+        if (run.lmp->atom->tag[i] == (side ? run.n() : 1)) F[late][side] = run.points().F[i][4];
+  }
+  for (const int side : {0, 1}) EXPECT_NEAR(F[0][side], F[1][side], 1e-10);
+  EXPECT_GT(std::fabs(F[0][0] - F[0][1]), 1e-3);
+}
+
+// of the exact solution for large strain: benchmark D1; second order
+SERIAL_TEST(Bar, HangsUnderItsWeight)
+{
+  struct Case {
+    double g, tip, gate;
+    const char *options;
+  };
+  for (const auto &c : {Case{100.0, 0.0409620211, 5e-3, "frame total"},
+                        Case{500.0, 0.252068853, 5e-3, "frame total"},
+                        Case{1000.0, 0.644446356, 5e-3, "frame total shape cubic"},
+                        Case{500.0, 0.252068853, 5e-3, "frame total shape linear transfer pic"},
+                        Case{100.0, 0.0409620211, 5e-3, ""}}) {
+    double error[2];
+    for (const int n : {10, 20}) {
+      Scene run(hanging(n, c.options, c.g, 2) + "run 3\n");
+      // of the last points, a quarter of a cell from the end, where there is next to no stress
+      error[n / 20] = -run.compute_scalar("low") / c.tip - 1.0;
+      measured(strprintf("g %g %s, %d cells", c.g, c.options, n), error[n / 20]);
+    }
+    EXPECT_LT(std::fabs(error[1]), c.gate) << c.options;
+    EXPECT_TRUE(std::fabs(error[0] / error[1]) > 3.4 || std::fabs(error[1]) < 5e-4) << c.options;
+  }
+}
+
+// the deflection of theory, at two resolutions; the wall bears the weight, and energies close
+SERIAL_TEST(Beam, BendsUnderItsWeight)
+{
+  const double inertia = 1e-3 / 12.0, weight = 1000 * 0.1,
+               tip = weight / (8.0 * 1e8 * inertia) + weight / (2.0 * 5.0 / 6.0 * 5e7 * 0.1);
+  for (const char *options : {"", "frame total", "shape cubic", "transfer pic"}) {
+    double error[2];
+    for (const int n : {4, 8}) {
+      Scene run(beam(n, options, 1.0, "static") + "run 1\n");
+      error[n / 8] = -run.compute_scalar("low") / (tip * (1.0 - 4.0 / 3.0 * 0.25 * 0.1 / n)) - 1.0;
+      measured(strprintf("%s %d cells", options, n), error[n / 8]);
+      EXPECT_NEAR(run.fix("clamp")->compute_vector(1), -weight, 1e-6 * weight);
+      const double *const e = run.compute_vector();
+      EXPECT_LT(std::fabs(e[11]), 1e-12 * e[5]) << "residual";
+      EXPECT_NEAR(e[1] / e[5], 0.5, 1e-3)
+          << "stored: half of the work of a load that is there at once";
+      for (int i = 0; i < run.n(); i++)
+        for (int d = 0; d < 3; d++) EXPECT_EQ(run.v()[i][d], 0.0);
+    }
+    EXPECT_LT(std::fabs(error[1]), 0.01) << options;
+    EXPECT_GT(error[0] / error[1], 2.5) << options;
+  }
+}
+
+// of Newton's method, with a load that bends the beam by half of its length in one step: the last corrections; and
+// one load step more does not change the answer of a material that remembers nothing
+SERIAL_TEST(Beam, ConvergesQuadratically)
+{
+  const auto scene = beam(2, "frame total", 300.0,
+                          "static tolerance 1e-13 accuracy 1e-9 report yes", "neohookean 1e8 0.3");
+  const auto steps = residuals(scene + "run 1\n");
+  ASSERT_EQ(steps.size(), 1u);
+  const auto &r = steps[0];
+  const std::size_t n = r.size();
+  ASSERT_GT(n, 4u);
+  // of those that are above round-off
+  std::size_t last = n - 1;
+  while (last > 3 && r[last] < 1e-9 * r[0]) last--;
+  const double order = std::log(r[last] / r[last - 1]) / std::log(r[last - 1] / r[last - 2]);
+  EXPECT_GE(measured("order", order), 1.8);
+  Scene one(scene + "run 1\n"),
+      two(replaced(scene, "fix g all gravity 300", "fix g all gravity 150") +
+          "run 1\nfix g all gravity 300 vector 0 -1 0\nrun 1\n");
+  EXPECT_LT(measured("tip", one.compute_scalar("low")), -0.3);
+  EXPECT_NEAR(one.compute_scalar("low"), two.compute_scalar("low"), 1e-8);
+}
+
+// the change of forces in a direction against differences of forces, for all kinds of laws and frames
+SERIAL_TEST(Tangent, IsThatOfTheForces)
+{
+  struct Case {
+    const char *material;
+    double size;    // of the motion, in cells
+  };
+  const Case laws[] = {{"linear 1e6 0.3", 0.05},
+                       {"neohookean 1e6 0.3", 0.05},
+                       {"neohookean/split 1e6 0.45", 0.05},
+                       {"hencky 1e6 0.3", 0.05},
+                       {"stvenant/kirchhoff 1e6 0.3", 0.05},
+                       {"mooney/rivlin 1e5 3e4 1e6", 0.05},
+                       {"eos linear 1e6 strength elastic 4e5", 0.05},
+                       {"eos linear 1e6 strength j2 4e5 2e3", 0.05},
+                       {"eos tait 1e5 7 viscosity newtonian 10", 0.02},
+                       {"drucker/prager 1e6 0.3 30 cohesion 2e4", 0.05},
+                       {"mohr/coulomb 1e6 0.3 30 2e4", 0.05}};
+  for (const auto &law : laws)
+    for (const char *options : {"", "frame total", "axisymmetric yes", "3d"}) {
+      const int dim = std::string(options) == "3d" ? 3 : 2;
+      const bool axis = std::string(options) == "axisymmetric yes";
+      Scene run(box(dim, "si", "f f f", "0 6 0 6 0 6", 1, 0.3));
+      if (axis) run.commands("fix axis all mpm/boundary xlo slip\n");
+      const auto said = run.error(body(dim == 3 ? "block 1 4 1 4 1 4" : "block 1 4 1 4 INF INF",
+                                       std::string("density 1000 ") + law.material,
+                                       std::string("1.0 ") + (dim == 3 ? "" : options)) +
+                                  "timestep 1e-3\nrun 0\n");
+      ASSERT_EQ(said, "") << law.material;
+      for (int i = 0; i < run.n(); i++)
+        for (int c = 0; c < 9; c++)    // what plane strain has
+          if (dim == 3 || c == 0 || c == 1 || c == 3 || c == 4 || (axis && c == 8))
+            run.points().F[i][c] += 0.05 * std::sin(1.3 * (9 * i + c));
+      auto *const field = MPMField::find(run.lmp, "grid");
+      field->plan->find_blocks_now();
+      MPMTangent tangent(run.lmp, *field);
+      tangent.init();
+      const std::size_t n = field->grid.nnodes() * dim;
+      std::vector<double> u(n), du(n), f(n), low(n), high(n), df(n);
+      tangent.external_forces(f.data());
+      for (std::size_t k = 0; k < n; k++) {
+        u[k] = law.size * std::sin(1.7 * k);
+        du[k] = std::sin(2.9 * k + 1.0);
+      }
+      field->nodes.complete(u.data(), dim, dim);
+      const double dt = 1e-3, eps = 1e-6;
+      double carried;
+      ASSERT_TRUE(tangent.forces(u.data(), dt, f.data(), carried)) << law.material;
+      tangent.linearize(u.data(), dt);
+      tangent.change_of_forces(du.data(), df.data());
+      auto shifted = u;
+      for (std::size_t k = 0; k < n; k++) shifted[k] = u[k] + eps * du[k];
+      tangent.forces(shifted.data(), dt, high.data(), carried);
+      for (std::size_t k = 0; k < n; k++) shifted[k] = u[k] - eps * du[k];
+      tangent.forces(shifted.data(), dt, low.data(), carried);
+      double worst = 0.0, most = 0.0;
+      for (std::size_t k = 0; k < n; k++) {
+        worst = std::max(worst, std::fabs((high[k] - low[k]) / (2.0 * eps) - df[k]));
+        most = std::max(most, std::fabs(df[k]));
+      }
+      EXPECT_GT(most, 0.0);
+      EXPECT_LT(measured(std::string(law.material) + " " + options, worst / most), 1e-6);
+
+      // and the diagonal is that of the same matrix
+
+      std::vector<double> blocks;
+      tangent.diagonal(blocks);
+      for (std::size_t node = 0; node < n / dim; node += 37)
+        for (int d = 0; d < dim; d++) {
+          std::fill(du.begin(), du.end(), 0.0);
+          du[dim * node + d] = 1.0;
+          tangent.change_of_forces(du.data(), df.data());
+          for (int e = 0; e < dim; e++)
+            EXPECT_NEAR(-df[dim * node + e], blocks[dim * dim * node + dim * e + d], 1e-9 * most);
+        }
+    }
+}
+
+namespace {
+
+/** A bar of length 25 that vibrates in its first mode, of frequency 0.1 pi/5 c with c = 10: benchmark A2. Displacement
+ *  and velocity of the mode in each step, the latter over the frequency; periodic along y. */
+std::vector<std::array<double, 2>>
+vibration(const std::string &options, const std::string &implicit, double omega_dt, int steps)
+{
+  const double L = 25.0, k = 0.5 * PI / L, omega = 10.0 * k, h = L / 32;
+  Scene run(plane("lj", "f p", strprintf("0 30 0 %.17g", 2 * h), 1, 0.3 * h) +
+            body("block 0 25 INF INF INF INF", "density 1 linear 100 0",
+                 strprintf("%.17g ", h) + options) +
+            "fix clamp all mpm/boundary xlo stick\nfix solve all mpm/implicit " + implicit +
+            strprintf("\ntimestep %.17g\nrun 0\n", omega_dt / omega));
+  run.set_reference();
+  run.set_velocity([&](const double *x, double *v) {
+    v[0] = 1e-5 * std::sin(k * x[0]);
+  });
+  std::vector<std::array<double, 2>> mode;
+  const auto look = [&]() {
+    double q = 0.0, p = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double X = run.reference(i)[0], s = std::sin(k * X);
+      q += (run.x()[i][0] - X) * s;
+      p += run.v()[i][0] * s / omega;
+    }
+    mode.push_back({q, p});
+  };
+  look();
+  for (int n = 0; n < steps; n++) {
+    run.commands("run 1\n");
+    look();
+  }
+  return mode;
+}
+
+}    // namespace
+
+// frequency and damping of each method, which are its own and known: benchmark P4
+SERIAL_TEST(Vibration, HasTheNumbersOfTheMethod)
+{
+  struct Case {
+    const char *options, *implicit;
+    double omega_dt, frequency, factor;
+  };
+  const Case cases[] = {{"frame total transfer flip 1.0", "newmark", 0.5, 0.979915, 1.0},
+                        {"frame total transfer flip 1.0", "newmark", 1.0, 0.927295, 1.0},
+                        {"frame total transfer flip 1.0", "newmark", 2.0, 0.785398, 1.0},
+                        {"transfer flip 1.0", "newmark", 1.0, 0.927295, 1.0},
+                        {"frame total transfer flip 1.0", "euler", 0.5, 0.0, 0.894427},
+                        {"frame total transfer flip 1.0", "euler", 1.0, 0.0, 0.707107},
+                        {"", "euler", 1.0, 0.0, 0.707107},
+                        {"shape cubic", "euler", 2.0, 0.0, 0.447214}};
+  for (const auto &c : cases) {
+    const int steps = 6;
+    const auto mode =
+        vibration(c.options, std::string(c.implicit) + " tolerance 1e-11", c.omega_dt, steps);
+    double angle = 0.0;
+    for (int n = 1; n <= steps; n++) {
+      double turn = std::atan2(mode[n][0], mode[n][1]) - std::atan2(mode[n - 1][0], mode[n - 1][1]);
+      while (turn < -PI) turn += 2.0 * PI;
+      angle += turn;
+    }
+    const auto size = [&](int n) {
+      return std::hypot(mode[n][0], mode[n][1]);
+    };
+    const double frequency = measured(std::string(c.implicit) + " " + c.options + " frequency",
+                                      angle / (steps * c.omega_dt)),
+                 factor =
+                     measured("factor of a step", std::pow(size(steps) / size(0), 1.0 / steps));
+    EXPECT_NEAR(frequency / (c.frequency > 0.0 ? c.frequency : std::atan(c.omega_dt) / c.omega_dt),
+                1.0, 5e-3);
+    EXPECT_NEAR(factor / c.factor, 1.0, 5e-3);
+  }
+}
+
+// a free body that turns in large steps keeps its momentum
+SERIAL_TEST(Disk, KeepsItsMomentum)
+{
+  for (const char *implicit : {"newmark", "euler"}) {
+    Scene run(plane("si", "f f", "-0.5 0.5 -0.5 0.5", 1, 0.01) +
+              body("cylinder z 0.0037 0.0023 0.25 INF INF", "density 1000 neohookean 1e6 0.3",
+                   "0.05 frame total transfer flip 1.0") +
+              std::string("fix solve all mpm/implicit ") + implicit +
+              " tolerance 1e-13\ntimestep 0.005\n");
+    run.set_velocity([](const double *x, double *v) {
+      v[0] = -10.0 * x[1] + 0.3;
+      v[1] = 10.0 * x[0] - 0.2;
+    });
+    run.commands("run 0\n");
+    const auto before = run.sums();
+    run.commands("run 40\n");
+    const auto after = run.sums();
+    for (int d = 0; d < 2; d++) EXPECT_NEAR(after.p[d] / before.p[d], 1.0, 1e-10);
+    measured(std::string(implicit) + ": angular momentum", after.L[2] / before.L[2]);
+    measured("kinetic energy", after.kinetic / before.kinetic);
+  }
+}
+
+// the ledger closes in dynamics, and knows what backward Euler takes
+SERIAL_TEST(Beam, EnergiesOfDynamics)
+{
+  for (const char *implicit : {"euler", "newmark"}) {
+    Scene run(
+        replaced(beam(4, "transfer flip 1.0", 1.0, std::string(implicit) + " tolerance 1e-10"),
+                 "timestep 1.0", "timestep 0.002") +
+        "run 50\n");
+    const double *const e = run.compute_vector();
+    measured(std::string(implicit) + " residual", e[10] / e[5]);
+    EXPECT_LT(std::fabs(e[10]), 1e-9 * e[5]);
+    measured("integration", e[9] / e[5]);
+    measured("transfer", e[8] / e[5]);
+    measured("steps of the explicit limit", 0.002 / run.stable_dt());
+  }
+}
+
+TEST(Implicit, RanksAndRestart)
+{
+  for (const char *implicit : {"static", "euler"}) {
+    const auto scene =
+        beam(4, "", 20.0, std::string(implicit) + " tolerance 1e-11", "neohookean 1e8 0.3");
+    const auto next = "neighbor 0.0075 bin\n" + scene.substr(scene.find("fix grid"));
+    const auto fixes = replaced(replaced(next, "region body block 0 1 0 0.1 INF INF\n", ""),
+                                "create_points 1 region body ppc 2\n", "");
+    Twins(replaced(scene, "timestep 1.0", "timestep 0.01"), 2,
+          replaced(fixes, "timestep 1.0", "timestep 0.01"), 2, 1e-9);
+  }
+}
+
+TEST(Implicit, RanksWithMovingWallsAndPeriodicFaces)
+{
+  for (const char *material :
+       {"neohookean 1e8 0.3", "eos linear 1e8 strength j2 5e7 1e5 hardening linear 1e7"}) {
+    OnRanks run(plane("si", "p f", "0 0.4 0 1", 1, 0.03) +
+                    body("box", std::string("density 1000 ") + material, "0.05") +
+                    "fix floor all mpm/boundary ylo stick\n"
+                    "fix push all mpm/boundary yhi stick velocity 0.01 -0.01 NULL\n"
+                    "fix solve all mpm/implicit static tolerance 1e-13\ntimestep 1.0\n",
+                "run 3\n");
+    EXPECT_LT(measured(std::string(material) + ": difference", run.difference()), 1e-9);
+  }
+}
+
+SERIAL_TEST(Implicit, BadInput)
+{
+  const auto plain =
+      replaced(replaced(beam(2, "", 1.0, "static"), "fix solve all mpm/implicit static", ""),
+               "compute e all mpm/energy\nthermo_style custom step c_low c_e\n", "");
+  expect_refused(
+      plain,
+      {{"fix s all mpm/implicit", "missing argument"},
+       {"fix s all mpm/implicit backward", "backward"},
+       {"group some id 1\nfix s some mpm/implicit static", "use group all"},
+       {"fix s all mpm/implicit static tolerance 0", "tolerance"},
+       {"fix s all mpm/implicit static tolerance 1", "tolerance"},
+       {"fix s all mpm/implicit static tolerance nan", "nan"},
+       {"fix s all mpm/implicit static absolute -1", "absolute"},
+       {"fix s all mpm/implicit static iterations 0", "iterations"},
+       {"fix s all mpm/implicit static linear 0", "linear"},
+       {"fix s all mpm/implicit static accuracy 2", "accuracy"},
+       {"fix s all mpm/implicit static report perhaps", "perhaps"},
+       {"fix s all mpm/implicit static damping 0.1", "damping"},
+       {"fix s all mpm/implicit newmark gamma 0.4", "gamma"},
+       {"fix s all mpm/implicit static gamma 0.6", "gamma"},
+       {"fix s all mpm/implicit newmark", "use transfer flip 1.0"},
+       {"fix s all mpm/implicit static\nfix t all mpm/implicit euler", "remove one"},
+       {"fix s all mpm/implicit static\nfix dt all mpm/dt 0.5", "use timestep"},
+       {"fix s all mpm/implicit static\nfix rest all mpm/relax 1e-5", "remove one"},
+       {"fix s all mpm/implicit static\nunfix clamp\nfix clamp all mpm/boundary xlo separate",
+        "slip without friction"},
+       {"fix s all mpm/implicit static\nunfix clamp\nfix clamp all mpm/boundary xlo slip friction "
+        "0.3",
+        "slip without friction"},
+       {"unfix clamp\nfix s all mpm/implicit static", "hold bodies"},
+       {"fix s all mpm/implicit static iterations 1", "smaller steps"},
+       {"fix s all mpm/implicit static linear 3", "linear system"},
+       {"fix g all gravity 1e6 vector 0 -1 0\nfix s all mpm/implicit static", "smaller steps"},
+       {"unfix m\nunfix clamp\nunfix grid\nfix s all mpm/implicit static", "needs a fix mpm"}},
+      "run 1\n");
+  for (const char *options : {"scheme musl", "transfer xpic 2", "locking fbar", "shape cpdi",
+                              "every 2", "transfer flip 1.0", "transfer flip 0.99 edges modified"})
+    expect_error(beam(4, options, 1.0, "static") + "run 1\n", "mpm/implicit");
+}
+
+// Newton's method goes past the load at which a straight column is stable no more: that of Euler for both ends clamped, with shear
+SERIAL_TEST(Column, Buckles)
+{
+  const double h = 0.05 / 4, L = 1.0 - 0.5 * h, EI = 1e8 * 0.05 * 0.05 * 0.05 / 12.0,
+               euler = 4.0 * PI * PI * EI / (L * L),
+               load = euler / (1.0 + euler / (5.0 / 6.0 * 5e7 * 0.05));
+  Scene run(plane("si", "f f", "0 1.2 -0.5 0.5", 1, 0.01) +
+            body("block 0 1 0 0.05 INF INF", "density 1000 neohookean 1e8 0",
+                 strprintf("%.17g frame total", h)) +
+            "fix clamp all mpm/boundary xlo stick\n" +
+            strprintf("region end block %.17g INF INF INF INF INF\n", L) +
+            "fix push all mpm/boundary region end stick velocity -0.002 0 NULL\n"
+            "fix g all gravity 0.01 vector 0 -1 0\nfix solve all mpm/implicit static\n"
+            "compute u all displace/atom\ncompute low all reduce min c_u[2]\n"
+            "thermo_style custom step c_low\ntimestep 1.0\nrun 3\n");
+  EXPECT_LT(run.fix("push")->compute_vector(0), 0.8 * load);
+  EXPECT_GT(run.compute_scalar("low"), -1e-4);
+  run.commands("run 5\n");
+  EXPECT_NEAR(measured("load over Euler's", run.fix("push")->compute_vector(0) / load), 1.0, 0.01);
+  // all that the ends have come nearer is in the bow: a cosine of amplitude w is shorter by (pi w)^2 / (4 L)
+  const double nearer = 8 * 0.002 - load / (1e8 * 0.05), bow = 2.0 / PI * std::sqrt(nearer * L);
+  EXPECT_NEAR(measured("bow", -run.compute_scalar("low") / bow), 1.0, 0.03);
+}
+
+// a thick-walled cylinder of a perfectly plastic metal: benchmark P3, plane strain, inner radius 1, outer radius 2
+SERIAL_TEST(Cylinder, BecomesPlastic)
+{
+  const int n = 16;
+  const double h = 1.0 / n, v = 5e-5;
+  Scene run(plane("si", "f p", strprintf("0 2.5 0 %.17g", 2 * h), 1, 0.3 * h) +
+            body("block 1 2 INF INF INF INF",
+                 "density 1000 eos linear 833.333333333 strength j2 384.615384615 1",
+                 strprintf("%.17g frame total axisymmetric yes", h)) +
+            "fix axis all mpm/boundary xlo slip\nregion bore block INF 1.0001 INF INF INF INF\n" +
+            strprintf("fix push all mpm/boundary region bore stick velocity %g NULL NULL\n", v) +
+            "fix solve all mpm/implicit static\ntimestep 1.0\n");
+  const double reference[3][2] = {{0.5, 0.97223}, {0.6, 1.28674}, {0.7, 1.82421}};
+  double before = 0.0, most = 0.0;
+  int found = 0;
+  for (int step = 1; step <= 40; step++) {
+    run.commands("run 1\n");
+    const double p = -run.fix("push")->compute_vector(0) / (2.0 * PI * 2.0 * h);
+    most = std::max(most, run.fix("solve")->compute_vector(0));
+    while (found < 3 && p >= reference[found][0]) {
+      const double u = v * (step - (p - reference[found][0]) / (p - before)) * 1000.0;
+      EXPECT_NEAR(measured(strprintf("p %g: u", reference[found][0]), u) / reference[found][1], 1.0,
+                  0.02);
+      found++;
+    }
+    before = p;
+  }
+  EXPECT_EQ(found, 3);
+  EXPECT_LE(most, 6.0);
+}

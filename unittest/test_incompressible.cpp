@@ -1,0 +1,444 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// Fix mpm/incompressible: vortices, walls, free surfaces.
+
+#include "mpm_lammps.h"
+
+#include "fix_mpm_incompressible.h"
+#include "update.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** Entries of the vector of the fix. */
+enum { ITERATIONS, RESIDUAL, DIVERGENCE, FILLED, WET, KINETIC, FASTEST, WALLS };
+
+/** Periodic vortices of U = L = 1 on n x n cells, in a stream of speed drift. */
+std::string vortices(int n, double nu, double drift, const std::string &options)
+{
+  return plane("si", "p p", "0 1 0 1", 1, 0.02) +
+      strprintf("create_points 1 box spacing %.17g\n", 0.5 / n) +
+      strprintf("variable vx atom -cos(2*PI*x)*sin(2*PI*y)+%g\n", drift) +
+      "variable vy atom sin(2*PI*x)*cos(2*PI*y)\nvelocity all set v_vx v_vy 0.0\n" +
+      strprintf("fix w all mpm/incompressible %.17g 1.0 viscosity %g ", 1.0 / n, nu) + options +
+      "\n";
+}
+
+struct VortexErrors {
+  double velocity, largest, pressure, factor;    // relative to what the velocity and pressure are
+  int fewest, most;                              // points in a cell
+};
+
+VortexErrors errors_of(Scene &run, int n, double nu, double drift)
+{
+  const double t = run.time(), k = 2.0 * PI, left = std::exp(-2.0 * nu * k * k * t);
+  std::vector<int> count(n * n, 0);
+  double sum = 0.0, square = 0.0, most = 0.0, p_sum = 0.0, p_square = 0.0, mean = 0.0;
+  for (int i = 0; i < run.n(); i++) mean -= run.points().tau[i][0] / run.n();
+  for (int i = 0; i < run.n(); i++) {
+    const double x = run.x()[i][0] - drift * t, y = run.x()[i][1];
+    const double u = -std::cos(k * x) * std::sin(k * y) * left,
+                 v = std::sin(k * x) * std::cos(k * y) * left,
+                 p = -0.25 * (std::cos(2.0 * k * x) + std::cos(2.0 * k * y)) * left * left;
+    const double du = run.v()[i][0] - drift - u, dv = run.v()[i][1] - v;
+    const double dp = -run.points().tau[i][0] - mean - p;
+    sum += du * du + dv * dv;
+    square += u * u + v * v;
+    most = std::max(most, std::hypot(du, dv));
+    p_sum += dp * dp;
+    p_square += p * p;
+    const auto cell = [n](double z) {
+      return ((int) std::floor(z * n) % n + n) % n;
+    };
+    count[cell(run.x()[i][0]) * n + cell(y)]++;
+  }
+  const double energy = run.fix("w")->compute_vector(KINETIC) - 0.5 * drift * drift;
+  return {std::sqrt(sum / square),
+          most / left,
+          std::sqrt(p_sum / p_square),
+          std::sqrt(4.0 * energy) / left,
+          *std::min_element(count.begin(), count.end()),
+          *std::max_element(count.begin(), count.end())};
+}
+
+/** Water up to the height H in a tank of L x 1. */
+std::string tank(int dim, double h, double H, const std::string &options,
+                 const std::string &faces = "f f")
+{
+  return box(dim, "si", dim == 3 ? faces + " f" : faces,
+             dim == 3 ? strprintf("0 1 0 1 0 %.17g", 4 * h) : "0 1 0 1", 1, 0.02) +
+      strprintf("region water block INF INF 0 %.17g INF INF\n", H) +
+      strprintf("create_points 1 region water spacing %.17g\n", 0.5 * h) +
+      strprintf("fix w all mpm/incompressible %.17g 1000 ", h) + options +
+      "\nfix g all gravity 9.81 vector 0 -1 0\n";
+}
+
+/** p/(rho g H) of a block of a x H that is released, with slip at x = 0 and y = 0. */
+double released(double a, double H, double x, double y)
+{
+  double sum = 0.0;
+  for (int n = 0; n < 4000; n++) {
+    const double l = (2 * n + 1) * PI / (2.0 * a), c = (n % 2 ? -4.0 : 4.0) / ((2 * n + 1) * PI);
+    const double depth = l * H < 300.0 ? std::sinh(l * (H - y)) / std::cosh(l * H)
+                                       : std::exp(-l * y);
+    sum += c * std::cos(l * x) * depth / l;
+  }
+  return sum / H;
+}
+
+}    // namespace
+
+// O1 of Taylor and Green, Re = 100, 64 x 64, at t = 1: errors of velocity and pressure, divergence, and points in cells
+SERIAL_TEST(Vortices, DecayAsTheyShould)
+{
+  const int n = 64;
+  for (const double drift : {0.0, 1.0}) {
+    Scene run(vortices(n, 0.01, drift, "reflect 0.8") +
+              "fix dt all mpm/dt 0.5 max 0.003 every 1 until 1\ntimestep 0.003\nrun 1000\n");
+    const auto e = errors_of(run, n, 0.01, drift);
+    measured("error of the velocity", e.velocity);
+    measured("decay of the velocity over that of theory", e.factor);
+    measured("error of the pressure", e.pressure);
+    measured("fewest points in a cell", e.fewest);
+    measured("most points in a cell", e.most);
+    EXPECT_NEAR(e.factor, 1.0, 0.02);
+    EXPECT_LT(e.velocity, 0.02);
+    EXPECT_LT(e.pressure, 0.05);
+    EXPECT_GE(e.fewest, 1);
+    EXPECT_LE(e.most, 8);
+    EXPECT_LT(measured("divergence h/U", run.fix("w")->compute_vector(DIVERGENCE) / n), 1e-10);
+    EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);
+  }
+}
+
+// with steps that go as the square of the spacing, in velocities of all points
+SERIAL_TEST(Vortices, Order)
+{
+  double error[2];
+  for (const int n : {16, 32}) {
+    Scene run(vortices(n, 0.01, 0.0, "reflect 0.8") +
+              strprintf("timestep %g\nrun %d\n", 2.5 / (n * n), n * n / 16));
+    error[n / 32] = measured("largest error", errors_of(run, n, 0.01, 0.0).largest);
+  }
+  EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 1.8);
+}
+
+// without viscosity: what the scheme takes of the energy, and that reflect takes less of it
+SERIAL_TEST(Vortices, ReflectKeepsEnergy)
+{
+  double lost[2];
+  for (const int k : {0, 1}) {
+    Scene run(vortices(32, 0.0, 0.0, k ? "reflect 0.8" : "") + "timestep 0.01\nrun 25\n");
+    lost[k] = measured("energy lost", 1.0 - run.fix("w")->compute_vector(KINETIC) / 0.25);
+  }
+  EXPECT_LT(lost[1], 0.5 * lost[0]);
+}
+
+// flow between plates, one of which moves, or under a force: viscosity, and walls without slip (H2)
+SERIAL_TEST(Plates, CouetteAndPoiseuille)
+{
+  const int n = 20;
+  const auto plates = plane("si", "p f", "0 0.2 0 1", 1, 0.02) +
+      "create_points 1 box spacing 0.025\nfix w all mpm/incompressible 0.05 1 viscosity 1 wall ylo "
+      "stick ";
+  const std::string run = "fix dt all mpm/dt 1 until 0.1 every 1\ntimestep 1e-3\nrun 100000\n";
+  const auto at_half = [](Scene &scene) {
+    double sum = 0.0, weight = 0.0;
+    for (int i = 0; i < scene.n(); i++) {
+      if (std::fabs(scene.x()[i][1] - 0.5) > 1.01 / n) continue;
+      sum += scene.v()[i][0];
+      weight += 1.0;
+    }
+    return sum / weight;
+  };
+  Scene couette(plates + "wall yhi stick 1 0\n" + run);
+  EXPECT_NEAR(measured("Couette", at_half(couette)), 0.262756, 0.01 * 0.262756);
+  Scene poiseuille(plates + "wall yhi stick\nfix g all gravity 8 vector 1 0 0\n" + run);
+  EXPECT_NEAR(measured("Poiseuille", at_half(poiseuille)), 0.615353, 0.01 * 0.615353);
+}
+
+// O2: the cavity at Re = 100, here with 32 x 32 cells; twice the bound that is for 64 x 64
+SERIAL_TEST(Cavity, Profile)
+{
+  const int n = 32;
+  Scene run(
+      plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.015625\n" +
+      "fix w all mpm/incompressible 0.03125 1 viscosity 0.01 wall yhi stick 1 0 wall xlo stick "
+      "wall xhi stick wall ylo stick\nfix dt all mpm/dt 0.8 every 1 until 12\ntimestep 0.005\n"
+      "run 100000\n");
+  const double y[] = {0.8516, 0.7344, 0.6172, 0.5, 0.4531, 0.2813, 0.1719, 0.1016},
+               u[] = {0.23655, 0.00419, -0.13880, -0.20915, -0.21398, -0.15767, -0.10174, -0.06443};
+  double worst = 0.0;
+  for (int k = 0; k < 8; k++) {    // a line through the points next to the middle
+    double s = 0.0, sy = 0.0, syy = 0.0, su = 0.0, suy = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double dy = run.x()[i][1] - y[k];
+      if (std::fabs(run.x()[i][0] - 0.5) > 1.0 / n || std::fabs(dy) > 1.0 / n) continue;
+      s += 1.0;
+      sy += dy;
+      syy += dy * dy;
+      su += run.v()[i][0];
+      suy += dy * run.v()[i][0];
+    }
+    worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
+  }
+  EXPECT_LT(measured("largest error of the profile", worst), 0.016);
+  EXPECT_EQ(run.n(), 4 * n * n);
+  EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);    // no voids
+}
+
+// water that is at rest stays there, and carries its weight; whatever points keep of velocities
+SERIAL_TEST(Tank, AtRest)
+{
+  for (const char *options :
+       {"", "reflect 0.8", "transfer flip 0.95", "transfer pic viscosity 0.1"})
+    for (const int dim : {2, 3}) {
+      const double h = dim == 2 ? 0.05 : 0.1, depth = 0.5;
+      Scene run(tank(dim, h, depth, options + std::string(" tolerance 1e-11")) + "timestep 0.01\n" +
+                (dim == 2 ? "run 1000\n" : "run 100\n"));
+      const double thick = dim == 3 ? 4 * h : 1.0;
+      auto *const fix = run.fix("w");
+      EXPECT_LT(measured(std::string(options) + ": speed", fix->compute_vector(FASTEST)), 1e-10);
+      double worst = 0.0;
+      for (int i = 0; i < run.n(); i++)
+        worst = std::max(
+            worst,
+            std::fabs(-run.points().tau[i][1] / (9810 * depth) - (1.0 - run.x()[i][1] / depth)));
+      EXPECT_LT(measured("pressure", worst), 1e-6);
+      EXPECT_NEAR(fix->compute_vector(WALLS + 2) / (9810 * depth * thick), 1.0, 1e-6);
+      EXPECT_NEAR(fix->compute_vector(WALLS + 1) / (4905 * depth * depth * thick), 1.0, 1e-6);
+      EXPECT_EQ(fix->compute_vector(WALLS + 3), 0.0);
+    }
+}
+
+// surfaces anywhere in a cell, also where cells are filled by one half and may or may not be wet
+SERIAL_TEST(Tank, SurfaceAnywhere)
+{
+  for (const double depth : {0.475, 0.525, 0.5, 0.55}) {
+    Scene run(tank(2, 0.05, depth, "") + "timestep 0.01\nrun 300\n");
+    EXPECT_LT(measured("speed", run.fix("w")->compute_vector(FASTEST)), 1e-5);
+  }
+}
+
+// two pools, a drop in flight, and a tank that is full, where the pressure has any mean
+SERIAL_TEST(Tank, PoolsAndFullOnes)
+{
+  Scene pools(plane("si", "f f", "0 1 0 1", 1, 0.02) +
+              "region left block INF 0.3 0 0.4 INF INF\nregion right block 0.7 INF 0 0.2 INF INF\n"
+              "region drop block 0.5 0.525 0.8 0.825 INF INF\n"
+              "region all union 3 left right drop\ncreate_points 1 region all spacing 0.025\n"
+              "fix w all mpm/incompressible 0.05 1000\nfix g all gravity 9.81 vector 0 -1 0\n"
+              "timestep 0.005\nrun 1\n");
+  EXPECT_GT(pools.fix("w")->compute_vector(WET), 50);
+  for (int i = 0; i < pools.n(); i++)
+    if (std::fabs(pools.x()[i][0] - 0.5) < 0.1) EXPECT_NEAR(pools.v()[i][1], -9.81 * 0.005, 1e-12);
+  Scene full(tank(2, 0.05, 1.0, "tolerance 1e-11") + "timestep 0.01\nrun 100\n");
+  EXPECT_LT(full.fix("w")->compute_vector(FASTEST), 1e-10);
+  const double up =
+      full.fix("w")->compute_vector(WALLS + 2) - full.fix("w")->compute_vector(WALLS + 3);
+  EXPECT_NEAR(up / 9810, 1.0, 1e-8);
+}
+
+// O6: the first pressure of a block that is released, with the surface anywhere in a cell
+SERIAL_TEST(Block, FirstPressure)
+{
+  double mean_order = 0.0;
+  int orders = 0;
+  for (const double ratio : {1.0, 2.0})
+    for (const double offset : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
+      constexpr double corner[2] = {0.0, 0.0}, floor[2] = {0.5, 0.0}, wall[2] = {0.0, 0.5};
+      double worst[3];
+      for (int k = 0; k < 3; k++) {
+        const int n = 8 << k;
+        const double h = 1.0 / n, a = 1.0 + offset * h, H = ratio * a;
+        Scene run(plane("si", "f f", "0 2 0 3", 1, 0.02) +
+                  strprintf("region b block 0 %.17g 0 %.17g INF INF\n", a, H) +
+                  strprintf("create_points 1 region b spacing %.17g\n", a / (2 * n)) +
+                  strprintf("fix w all mpm/incompressible %.17g 1000\n", h) +
+                  "fix g all gravity 9.81 vector 0 -1 0\ntimestep 1e-6\nrun 1\n");
+        worst[k] = 0.0;
+        for (const double *const place : {corner, floor, wall}) {
+          int nearest = 0;
+          const auto far = [&](int i) {
+            return std::hypot(run.x()[i][0] - a * place[0], run.x()[i][1] - H * place[1]);
+          };
+          for (int i = 1; i < run.n(); i++)
+            if (far(i) < far(nearest)) nearest = i;
+          const double *const x = run.x()[nearest];
+          const double p = -run.points().tau[nearest][0] / (9810 * H);
+          worst[k] = std::max(worst[k], std::fabs(p - released(a, H, x[0], x[1])));
+        }
+        worst[k] /= released(a, H, 0.0, 0.0);
+      }
+      EXPECT_LT(measured(strprintf("%g %g: error at 32 cells", ratio, offset), worst[2]), 0.01);
+      mean_order += 0.5 * std::log2(worst[0] / worst[2]);
+      orders++;
+    }
+  EXPECT_GE(measured("order", mean_order / orders), 0.9);
+}
+
+// O5: a standing wave of amplitude 0.02 H with viscosity
+SERIAL_TEST(Wave, FrequencyAndDecay)
+{
+  const double depth = 0.5, omega = 5.2992737, decay = 0.1797877, e = std::exp(PI * depth);
+  Scene run(
+      plane("si", "f f", "0 1 0 1", 1, 0.02) + "region water block INF INF 0 0.5 INF INF\n" +
+      "create_points 1 region water spacing 0.0125\n" +
+      strprintf("variable up atom 0.01*cos(PI*x)*(exp(PI*y)-exp(-PI*y))/%.17g\n", e - 1.0 / e) +
+      strprintf("variable side atom -0.01*sin(PI*x)*(exp(PI*y)+exp(-PI*y))/%.17g\n", e - 1.0 / e) +
+      "displace_atoms all move v_side v_up 0\nfix w all mpm/incompressible 0.025 1000 viscosity "
+      "10\n"
+      "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.0078125\n");
+  std::vector<double> t, m;
+  run.each_step([&](double **) {
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++) sum += std::cos(PI * run.x()[i][0]) * run.x()[i][1];
+    t.push_back(run.time());
+    m.push_back(sum / run.n());
+  });
+  run.commands("run 640\n");
+  // times of zeros, and heights of extrema on both sides
+  double mean = 0.0;
+  std::vector<double> zeros, peaks, times;
+  for (const double value : m) mean += value / m.size();
+  mean *= 0.0;
+  for (std::size_t k = 1; k + 1 < m.size(); k++) {
+    const double a = m[k - 1] - mean, b = m[k] - mean, c = m[k + 1] - mean;
+    if (a * b < 0.0) zeros.push_back(t[k - 1] + (t[k] - t[k - 1]) * a / (a - b));
+    if ((b - a) * (c - b) < 0.0 && k > 5) {
+      const double s = 0.5 * (a - c) / (a - 2.0 * b + c);
+      peaks.push_back(std::fabs(b - 0.25 * (a - c) * s));
+      times.push_back(t[k] + s * (t[1] - t[0]));
+    }
+  }
+  ASSERT_GT(zeros.size(), 6u);
+  const double w = PI * (zeros.size() - 1) / (zeros.back() - zeros.front());
+  // means of neighboring peaks, so that a constant part does not count
+  const std::size_t last = peaks.size() - 1;
+  const double g = std::log((peaks[0] + peaks[1]) / (peaks[last - 1] + peaks[last])) /
+      (times[last] - times[1] + 0.0 * mean);
+  EXPECT_NEAR(measured("frequency over theory", w / omega), 1.0, 0.01);
+  EXPECT_NEAR(measured("decay over theory", g / decay), 1.0, 0.10);
+}
+
+// nothing but gravity acts on a drop in flight, whose spin stays
+SERIAL_TEST(Drop, InFlight)
+{
+  for (const int dim : {2, 3}) {
+    Scene run(
+        box(dim, "si", dim == 3 ? "p p p" : "p p", dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1, 0.02) +
+        "region drop sphere 0.52 0.47 " + (dim == 3 ? "0.5" : "0") + " 0.25\n" +
+        "create_points 1 region drop spacing 0.03125\n"
+        "variable vx atom -0.5*(y-0.47)+0.3\nvariable vy atom 0.5*(x-0.52)\n"
+        "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000\n"
+        "timestep 0.02\nrun 0\n");
+    const auto spin = [&run] {
+      double L = 0.0, p[2] = {0.0, 0.0};
+      const auto all = run.gather();
+      double c[2] = {0.0, 0.0}, m = 0.0;
+      for (const auto &s : all)
+        for (int d = 0; d < 2; d++) {
+          m += 0.5 * s.mass;
+          c[d] += s.mass * s.x[d];
+          p[d] += s.mass * s.v[d];
+        }
+      for (const auto &s : all)
+        L += s.mass * ((s.x[0] - c[0] / m) * s.v[1] - (s.x[1] - c[1] / m) * s.v[0]);
+      return std::array<double, 3>{L, p[0] / m, p[1] / m};
+    };
+    const auto before = spin();
+    run.commands("run 50\n");
+    const auto after = spin();
+    EXPECT_NEAR(after[1], before[1], 1e-4);
+    EXPECT_NEAR(after[2], before[2], 1e-4);
+    measured("angular momentum after 50 steps", after[0] / before[0]);
+    EXPECT_NEAR(after[0] / before[0], 1.0, 0.02);
+  }
+}
+
+// in all units: weight of a tank, fall of a drop
+SERIAL_TEST(Units, PressureAndForce)
+{
+  for (const char *units : {"si", "metal", "real", "lj"}) {
+    Scene run(plane(units, "f f", "0 8 0 8", 1, 0.3) + "region w block INF INF 0 4 INF INF\n" +
+              "create_points 1 region w spacing 0.5\nfix w all mpm/incompressible 1 2.0\n"
+              "fix g all gravity 0.25 vector 0 -1 0\ntimestep 1e-3\nrun 2\n");
+    const double p = 2.0 * 0.25 * 4.0 * run.lmp->force->nktv2p;
+    double most = 0.0;
+    for (int i = 0; i < run.n(); i++) most = std::max(most, -run.points().tau[i][1]);
+    EXPECT_NEAR(most / p, 1.0 - 0.25 / 4.0, 1e-6) << units;
+    const double weight = 8.0 * 4.0 * 2.0 * 0.25;
+    EXPECT_NEAR(run.fix("w")->compute_vector(WALLS + 2) / weight, 1.0, 1e-6) << units;
+  }
+}
+
+// a falling block on four ranks, balanced; and the same to the last bit from a restart file
+TEST(Block, RanksAndRestart)
+{
+  for (const int dim : {2, 3}) {
+    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
+                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+        "region water block INF 0.4 0 0.61 INF INF\n" +
+        strprintf("create_points 1 region water spacing %g\n", dim == 3 ? 0.05 : 0.025);
+    const auto fixes =
+        strprintf("fix w all mpm/incompressible %g 1000 viscosity 0.5 wall ylo stick ",
+                  dim == 3 ? 0.1 : 0.05) +
+        "reflect 0.5 tolerance 1e-11\nfix g all gravity 9.81 vector 0 -1 0\n"
+        "fix dt all mpm/dt 0.8 max 0.01 every 2\n"
+        "timestep 0.005\n";
+    OnRanks run(scene + fixes, "run 30\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
+    EXPECT_LT(measured("difference", run.difference()), 1e-9);
+    Continued again(scene + fixes, 11, "neighbor 0.02 bin\n" + fixes, 20);
+    EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+  }
+}
+
+SERIAL_TEST(Incompressible, BadInput)
+{
+  const auto plain = plane("si", "f p", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.05\n";
+  const std::string fix = "fix w all mpm/incompressible ";
+  expect_refused(
+      plain,
+      {{fix, "missing argument"},
+       {fix + "0.1", "missing argument"},
+       {fix + "0 1000", "node spacing"},
+       {fix + "0.1 -1", "density"},
+       {fix + "0.1 nan", "nan"},
+       {fix + "0.3 1000", "nearest valid spacing is 0.3333333"},
+       {fix + "0.1 1000 viscosity -1", "viscosity"},
+       {fix + "0.1 1000 transfer cubic", "cubic"},
+       {fix + "0.1 1000 transfer flip 1.1", "flip"},
+       {fix + "0.1 1000 reflect 1.5", "reflect"},
+       {fix + "0.1 1000 spread 2", "spread"},
+       {fix + "0.1 1000 wall zlo slip", "zlo"},
+       {fix + "0.1 1000 wall xlo rough", "rough"},
+       {fix + "0.1 1000 wall ylo slip", "periodic face"},
+       {fix + "0.1 1000 wall xlo stick 1 0", "out of its plane"},
+       {fix + "0.1 1000 tolerance 0", "tolerance"},
+       {fix + "0.1 1000 iterations 0", "iterations"},
+       {fix + "0.1 1000 law newton", "law"},
+       {fix + "0.1 1000\nfix n all nve", "also integrated by"},
+       {fix + "0.1 1000\nfix grid all mpm 0.1\nfix m all mpm/material density 1000 linear 1e5 0.3",
+        "also integrated by"},
+       {fix + "0.1 1000\nfix v all mpm/incompressible 0.1 1000", "also integrated by"},
+       {fix + "0.1 1000\nset atom 1*10 mass 7", "10 points have another mass"},
+       {"group some empty\nfix w some mpm/incompressible 0.1 1000", "no material points"},
+       {fix + "0.1 1000\nvelocity all set 0 50 0", "node spacings in a time step"},
+       {fix + "0.1 1000 viscosity 1000", "too large for the viscosity"},
+       {fix + "0.1 1000 iterations 1\nfix g all gravity 10 vector 1 1 0", "allow more iterations"},
+       {fix + "0.1 1000\nvariable big atom exp(1000)\nvelocity all set v_big 0 0", "not a number"},
+       {fix + "0.1 1000\nset atom 1 x 2.0", "outside of the box"},
+       {fix + "0.1 1000\nfix d all deform 1 y scale 1.1", "constant size"},
+       {fix + "0.1 1000\nrun_style respa 2 2", "run_style verlet"}},
+      "timestep 0.01\nrun 1\n");
+  expect_error(
+      "units si\ndimension 2\natom_style atomic\nregion b block 0 1 0 1 -1 1\ncreate_box 1 b\n" +
+          fix + "0.1 1000",
+      "requires material points");
+  expect_error(plane("si", "s f", "0 1 0 1", 1, 0.02) + fix + "0.1 1000", "shrink-wrapped");
+}
