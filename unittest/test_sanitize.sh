@@ -110,7 +110,7 @@ CODE
 
   library=("${objects[@]}")
   for test in declare/test_option transfer/test_shape lattice/test_grid mesh/test_gmsh transfer/test_kernels \
-    transfer/test_cpdi_kernels material/test_materials; do
+    transfer/test_cpdi_kernels material/test_materials material/test_tangent; do
     name=${test##*/test_}
     objects=()
     compile "$root/unittest/$test.cpp" "test_$name.o" -DMPM_SOURCE_DIR="\"$root\""

@@ -96,6 +96,30 @@ namespace {
       return 0.5 * G * shape.first() + 0.5 * K * u * u;
     }
 
+    /** With s = G b*: l s + s l^T - 2/3 [tr(l) s + (s:l) I] + [2/9 tr(s) + K J (2 J - 1)] tr(l) I */
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      const LawNeoHookeanSplit law(p);
+      update(p, b, history);
+      alignas(64) double shape[6][BATCH], mean[BATCH];
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Isochoric change(b, i);
+        const Sym s = law.G * add_diagonal(change.z, 1.0);
+        const double J = b.J[i];
+        store_rows(shape, i, s);
+        mean[i] = (2.0 / 9.0) * trace(s) + law.K * J * (2.0 * J - 1.0);
+      }
+      add_convected(b.n, shape, t);
+      add_mean(b.n, mean, t);
+      for (int c = 0; c < 6; c++)
+        for (int k = 0; k < 9; k += 4) add_rows(b.n, -2.0 / 3.0, shape[c], t.stress[c][k]);
+      for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 9; k++)
+          if (!t.skips(k))
+            add_rows(b.n, -2.0 / 3.0, shape[COMPONENT[k / 3][k % 3]], t.stress[c][k]);
+    }
+
     MPM_INLINE void respond_at(PrincipalResponse &r, int i) const
     {
       respond_ogden(G, 2.0, r, i);
