@@ -91,6 +91,50 @@ double released(double a, double H, double x, double y)
   return sum / H;
 }
 
+/** Swing of a standing wave of amplitude 0.02 H after each step; the viscosity is that of mass. */
+void swing(double viscosity, const std::string &options, int steps, std::vector<double> &t,
+           std::vector<double> &m)
+{
+  const double e = std::exp(PI * 0.5);
+  Scene run(
+      plane("si", "f f", "0 1 0 1", 1, 0.02) + "region water block INF INF 0 0.5 INF INF\n" +
+      "create_points 1 region water spacing 0.0125\n" +
+      strprintf("variable up atom 0.01*cos(PI*x)*(exp(PI*y)-exp(-PI*y))/%.17g\n", e - 1.0 / e) +
+      strprintf("variable side atom -0.01*sin(PI*x)*(exp(PI*y)+exp(-PI*y))/%.17g\n", e - 1.0 / e) +
+      "displace_atoms all move v_side v_up 0\n" +
+      strprintf("fix w all mpm/incompressible 0.025 1000 viscosity %g ", 1000 * viscosity) +
+      options + "\nfix g all gravity 9.81 vector 0 -1 0\ntimestep 0.0078125\n");
+  run.each_step([&](double **) {
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++) sum += std::cos(PI * run.x()[i][0]) * run.x()[i][1];
+    t.push_back(run.time());
+    m.push_back(sum / run.n());
+  });
+  run.commands("run " + std::to_string(steps) + "\n");
+}
+
+/** Circular frequency by the zeros, and decay by the extrema on both sides. */
+void measure(const std::vector<double> &t, const std::vector<double> &m, double &omega,
+             double &decay)
+{
+  std::vector<double> zeros, peaks, times;
+  for (std::size_t k = 1; k + 1 < m.size(); k++) {
+    const double a = m[k - 1], b = m[k], c = m[k + 1];
+    if (a * b < 0.0) zeros.push_back(t[k - 1] + (t[k] - t[k - 1]) * a / (a - b));
+    if ((b - a) * (c - b) < 0.0 && k > 5) {
+      const double s = 0.5 * (a - c) / (a - 2.0 * b + c);
+      peaks.push_back(std::fabs(b - 0.25 * (a - c) * s));
+      times.push_back(t[k] + s * (t[1] - t[0]));
+    }
+  }
+  ASSERT_GT(zeros.size(), 4u);
+  omega = PI * (zeros.size() - 1) / (zeros.back() - zeros.front());
+  // means of neighboring peaks, so that a constant part does not count
+  const std::size_t last = peaks.size() - 1;
+  decay =
+      std::log((peaks[0] + peaks[1]) / (peaks[last - 1] + peaks[last])) / (times[last] - times[1]);
+}
+
 }    // namespace
 
 // O1 of Taylor and Green, Re = 100, 64 x 64, at t = 1: errors of velocity and pressure, divergence, and points in cells
@@ -192,6 +236,20 @@ SERIAL_TEST(Cavity, Profile)
   EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);    // no voids
 }
 
+// water that turns in a corner, v = (x, -y): linear velocities are exact next to walls, too
+SERIAL_TEST(Corner, LinearFlow)
+{
+  Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) + "region water block 0 0.5 0 0.5 INF INF\n" +
+            "create_points 1 region water spacing 0.025\nvariable u atom x\nvariable v atom -y\n"
+            "velocity all set v_u v_v 0\nfix w all mpm/incompressible 0.05 1000 spread 0\n"
+            "timestep 1e-9\nrun 10\n");
+  double worst = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    worst =
+        std::max(worst, std::hypot(run.v()[i][0] - run.x()[i][0], run.v()[i][1] + run.x()[i][1]));
+  EXPECT_LT(measured("error", worst), 1e-7);
+}
+
 // water that is at rest stays there, and carries its weight; whatever points keep of velocities
 SERIAL_TEST(Tank, AtRest)
 {
@@ -279,51 +337,32 @@ SERIAL_TEST(Block, FirstPressure)
       mean_order += 0.5 * std::log2(worst[0] / worst[2]);
       orders++;
     }
-  EXPECT_GE(measured("order", mean_order / orders), 0.9);
+  // asked is 0.9: the method is of second order
+  EXPECT_GE(measured("order", mean_order / orders), 1.5);
 }
 
-// O5: a standing wave of amplitude 0.02 H with viscosity
+// O5: a standing wave with viscosity. Asked is a frequency to 1 %, which points as dots have, too, with 0.8 %
 SERIAL_TEST(Wave, FrequencyAndDecay)
 {
-  const double depth = 0.5, omega = 5.2992737, decay = 0.1797877, e = std::exp(PI * depth);
-  Scene run(
-      plane("si", "f f", "0 1 0 1", 1, 0.02) + "region water block INF INF 0 0.5 INF INF\n" +
-      "create_points 1 region water spacing 0.0125\n" +
-      strprintf("variable up atom 0.01*cos(PI*x)*(exp(PI*y)-exp(-PI*y))/%.17g\n", e - 1.0 / e) +
-      strprintf("variable side atom -0.01*sin(PI*x)*(exp(PI*y)+exp(-PI*y))/%.17g\n", e - 1.0 / e) +
-      "displace_atoms all move v_side v_up 0\nfix w all mpm/incompressible 0.025 1000 viscosity "
-      "10\n"
-      "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.0078125\n");
   std::vector<double> t, m;
-  run.each_step([&](double **) {
-    double sum = 0.0;
-    for (int i = 0; i < run.n(); i++) sum += std::cos(PI * run.x()[i][0]) * run.x()[i][1];
-    t.push_back(run.time());
-    m.push_back(sum / run.n());
-  });
-  run.commands("run 640\n");
-  // times of zeros, and heights of extrema on both sides
-  double mean = 0.0;
-  std::vector<double> zeros, peaks, times;
-  for (const double value : m) mean += value / m.size();
-  mean *= 0.0;
-  for (std::size_t k = 1; k + 1 < m.size(); k++) {
-    const double a = m[k - 1] - mean, b = m[k] - mean, c = m[k + 1] - mean;
-    if (a * b < 0.0) zeros.push_back(t[k - 1] + (t[k] - t[k - 1]) * a / (a - b));
-    if ((b - a) * (c - b) < 0.0 && k > 5) {
-      const double s = 0.5 * (a - c) / (a - 2.0 * b + c);
-      peaks.push_back(std::fabs(b - 0.25 * (a - c) * s));
-      times.push_back(t[k] + s * (t[1] - t[0]));
-    }
+  double omega = 0.0, decay = 0.0;
+  swing(0.01, "", 640, t, m);
+  measure(t, m, omega, decay);
+  EXPECT_NEAR(measured("frequency over theory", omega / 5.2992737), 1.0, 0.005);
+  EXPECT_NEAR(measured("decay over theory", decay / 0.1797877), 1.0, 0.10);
+}
+
+// without viscosity a wave neither grows nor decays, whatever is reflected: the numerical viscosity, by 2 nu k^2
+SERIAL_TEST(Wave, KeepsItsHeight)
+{
+  for (const char *options : {"", "reflect 0.8", "transfer flip 0.95"}) {
+    std::vector<double> t, m;
+    double omega = 0.0, decay = 0.0;
+    swing(0.0, options, 400, t, m);
+    measure(t, m, omega, decay);
+    EXPECT_LT(std::fabs(measured(options + std::string(": decay"), decay)), 0.02);
+    EXPECT_NEAR(measured("frequency over theory", omega / 5.316647), 1.0, 0.01);
   }
-  ASSERT_GT(zeros.size(), 6u);
-  const double w = PI * (zeros.size() - 1) / (zeros.back() - zeros.front());
-  // means of neighboring peaks, so that a constant part does not count
-  const std::size_t last = peaks.size() - 1;
-  const double g = std::log((peaks[0] + peaks[1]) / (peaks[last - 1] + peaks[last])) /
-      (times[last] - times[1] + 0.0 * mean);
-  EXPECT_NEAR(measured("frequency over theory", w / omega), 1.0, 0.01);
-  EXPECT_NEAR(measured("decay over theory", g / decay), 1.0, 0.10);
 }
 
 // nothing but gravity acts on a drop in flight, whose spin stays
@@ -389,11 +428,11 @@ TEST(Block, RanksAndRestart)
         strprintf("fix w all mpm/incompressible %g 1000 viscosity 0.5 wall ylo stick ",
                   dim == 3 ? 0.1 : 0.05) +
         "reflect 0.5 tolerance 1e-11\nfix g all gravity 9.81 vector 0 -1 0\n"
-        "fix dt all mpm/dt 0.8 max 0.01 every 2\n"
+        "fix dt all mpm/dt 0.2 max 0.05 every 2\n"
         "timestep 0.005\n";
     OnRanks run(scene + fixes, "run 30\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
     EXPECT_LT(measured("difference", run.difference()), 1e-9);
-    Continued again(scene + fixes, 11, "neighbor 0.02 bin\n" + fixes, 20);
+    Continued again(scene + fixes, 12, "neighbor 0.02 bin\n" + fixes, 20);
     EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
   }
 }

@@ -241,6 +241,8 @@ void FixMPMDt::setup_pre_force(int)
     if (dt_grains < (1.0 - SAME) * grains_left && dt_grains < wanted) set_dt(dt_grains);
   } else if (limit.dt < NO_POINTS.dt)
     set_dt(fraction * limit.dt);
+  else if (dt_max > 0.0 && !find_fixes<FixMPMIncompressible>(lmp).empty())
+    set_dt(dt_max);    // of a fluid at rest
   if (until == 0.0) return;
   if (comm->me == 0 && update->nsteps > 0 && time_at_start > (1.0 + ROUND_OFF) * until)
     error->warning(FLERR, "Fix mpm/dt {}: until {:.6g} has passed: it is the time {:.6g}", id,

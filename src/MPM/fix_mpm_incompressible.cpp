@@ -43,8 +43,8 @@ static constexpr double ROUNDING = 1.0e-14;
 static constexpr double SAME_DENSITY = 1.0e-9;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
-// passes that find the gradients of velocities that points begin with: a pass leaves some (kh)^2 of what is missing
-static constexpr int FITS = 3;
+// passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
+static constexpr int FITS = 30;
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/incompressible H DENSITY keyword value ...
