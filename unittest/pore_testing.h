@@ -6,9 +6,7 @@
 
 // Columns and blocks of soil with pore water, for tests of fix mpm/pore.
 
-#include "mpm_lammps.h"
-
-#include "compute_mpm_atom.h"
+#include "pore_bodies_testing.h"
 
 namespace MPM_TEST {
 
@@ -86,6 +84,100 @@ inline double terzaghi(double z, double T)
   return sum;
 }
 
+/** The rms difference of pressures from those of Terzaghi, p0 at first, with the top at 1 along an axis. */
+inline double difference_from_terzaghi(Scene &run, Water &water, double p0, double T, int axis = 1)
+{
+  const double *const p = water.pressures();
+  double sum = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double d = p[i] - p0 * terzaghi(1.0 - run.x()[i][axis], T);
+    sum += d * d / run.n();
+  }
+  return std::sqrt(sum);
+}
+
+/** Column of 20 cells, loaded in 30 ms, while water has no time to flow through a cell: the scatter of the pressure after 60 ms around
+ *  that of Terzaghi below the third cell, over the load. */
+inline double scatter_of_pressure(double Kf, double k, const std::string &options)
+{
+  const int n = 20;
+  Scene run(
+      column(n, strprintf("%g 1000 9810 soil m 0.4 constant %g free pressure 0 ", Kf, k) + options,
+             SOIL) +
+      load(n, LOAD, 0.03));
+  Water water(run);
+  run_to(run, 0.06);
+  const double c = k / 9810.0 / (1.0 / MODULUS + 0.4 / Kf), p0 = LOAD / (1 + MODULUS * 0.4 / Kf);
+  const double *const p = water.pressures();
+  double sum = 0.0, square = 0.0, count = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double z = 1.0 - run.x()[i][1];
+    if (z < 3.0 / n) continue;
+    const double d = p[i] - p0 * terzaghi(z, 0.045 * c);
+    sum += d;
+    square += d * d;
+    count++;
+  }
+  const double mean = sum / count;
+  return measured(strprintf("Kf %g, k %g, scatter", Kf, k),
+                  std::sqrt(square / count - mean * mean) / LOAD);
+}
+
+/** What comes to points of a column is what comes through its surface, as volume of water and as mass. least: of what comes. */
+inline void expect_water_is_kept(const std::string &scene, int steps, double least)
+{
+  Scene run(scene + load(10, LOAD, 0.01));
+  Water water(run);
+  const double before = water.mass();
+  run.commands(strprintf("timestep 1e-5\nrun %d\n", steps));
+  const double came = run.fix("water")->compute_scalar();
+  if (least > 0.0) EXPECT_GT(std::fabs(came), least);
+  EXPECT_NEAR((water.mass() - before - 1000.0 * came) / before, 0.0, 1e-13);
+}
+/** A column that is closed, drained at a free surface, or with water that comes and goes. */
+inline void expect_water_is_kept_by(const std::string &permeability, const std::string &options)
+{
+  for (const char *drained : {"", "free pressure 0", "yhi pressure 100 free flux 1e-3"})
+    expect_water_is_kept(
+        column(10, "2.2e9 1000 9810 soil m 0.4 " + permeability + " " + options + drained, SOIL,
+               drained[0] == 'y' ? 1.0 : 1.2, 0.2),
+        2000, drained[0] ? 1e-7 : 0.0);
+}
+
+/** Flow through a column of 10 cells under its weight, with this gradient from below: flux, and effective stress in the mean over the
+ *  cells. */
+inline void expect_seepage(Scene &run, double i, double k)
+{
+  run_to(run, 1.0);
+  const double *const flows = run.fix_vector("water", 7);
+  EXPECT_NEAR(measured(strprintf("gradient %g, flux", i), flows[2] / (0.4 * k * i)), 1.0, 0.01);
+  EXPECT_NEAR(flows[6] / flows[2], -1.0, 1e-3);
+  double sum = 0.0, n = 0.0;
+  for (int p = 0; p < run.n(); p++) {
+    const double y = run.x()[p][1];
+    if (y < 0.2 || y > 0.8) continue;
+    double sigma[6];
+    run.points().cauchy(p, sigma);
+    sum -= sigma[1] / ((990.0 - 1000.0 * i) * 9.81 * (1.0 - y));
+    n++;
+  }
+  EXPECT_NEAR(measured("effective stress", sum / n), 1.0, 0.02);
+}
+inline std::string seeping_column(double i, double k, const std::string &options)
+{
+  const auto water = strprintf("2.2e8 1000 9810 soil m 0.4 constant %g ylo pressure v_bottom "
+                               "free pressure 0 initial v_p ",
+                               k) +
+      options;
+  return replaced(
+      replaced(column(10, water, "density 1990 linear 1e7 0.3"), "fix water",
+               "fix g all gravity 9.81 vector 0 -1 0\nvariable p atom 9810*(1-y)\n" +
+                   strprintf(
+                       "variable bottom equal 9810*(1+%g*((time<0.1)*time/0.1+(time>=0.1)))\n", i) +
+                   "fix water"),
+      "origin", "gain error 0.02 origin");
+}
+
 /** Consolidation by the load: rms error of the pressures in parts of the load at a time factor, and the degree of
  *  consolidation. density: of the soil, with half of it that of the water. */
 struct Consolidation {
@@ -103,47 +195,19 @@ inline Consolidation consolidate(int n, const std::string &options, double top, 
   Water water(run);
   const double T = 0.2, p0 = q / (1.0 + MODULUS * storage);
   run_to(run, T / c + 0.5 * ramp);
-  const double *const p = water.pressures();
-  double sum = 0.0, all = 0.0;
-  for (int i = 0; i < run.n(); i++) {
-    const double d = p[i] - p0 * terzaghi(1.0 - run.x()[i][1], T);
-    sum += d * d / run.n();
-    all += p[i] / run.n();
-  }
-  return {std::sqrt(sum) / q, 1.0 - all / p0};
+  const double rms = difference_from_terzaghi(run, water, p0, T);
+  double all = 0.0;
+  for (int i = 0; i < run.n(); i++) all += water.pressures()[i] / run.n();
+  return {rms / q, 1.0 - all / p0};
 }
 
-/** A block of two soils and one that is dry, which collide across ranks and periodic faces. */
+constexpr const char *OF_BLOCKS = "variable p atom 0.1*x\nvariable k atom 0.01*(1+y)\n";
+/** A block of two soils and one that is dry, which collide. */
 inline std::string blocks(const std::string &more)
 {
-  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
-      bodies({{"one", "sphere 3 4 0 1.6 side in"},
-              {"two", "block 5 6.6 3 5 -0.5 0.5"},
-              {"dry", "block 3 5 0.8 2 -0.5 0.5"}}) +
-      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4\n"
-      "fix n two mpm/material density 2.0 eos linear 30.0 strength j2 8.0 0.4\n"
-      "fix o dry mpm/material density 1.0 neohookean 10.0 0.3\n"
-      "velocity all set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n"
-      "variable p atom 0.1*x\nvariable k atom 0.01*(1+y)\n"
-      "fix water all mpm/pore 20.0 0.5 2.0 soil m 0.4 kozeny 0.1 soil n 0.3 formula v_k biot 0.9 "
-      "200 " +
-      more + "\ntimestep 0.005\n";
+  return colliding(
+      OF_BLOCKS, "20.0 0.5 2.0 soil m 0.4 kozeny 0.1 soil n 0.3 formula v_k biot 0.9 200 " + more);
 }
-struct Named {
-  double tag, p;
-};
-inline std::vector<Named> pressures(Scene &run)
-{
-  const double *const p = [&]() {
-    auto *compute = run.lmp->modify->get_compute_by_id("pore");
-    compute->compute_peratom();
-    return compute->vector_atom;
-  }();
-  std::vector<Named> mine;
-  for (int i = 0; i < run.n(); i++) mine.push_back({(double) run.lmp->atom->tag[i], p[i]});
-  return all_by_tag(mine, run.lmp->world);
-}
-constexpr const char *PORE = "compute pore all mpm/atom pore\n";
 
 }    // namespace MPM_TEST
 

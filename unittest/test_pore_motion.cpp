@@ -234,13 +234,9 @@ SERIAL_TEST(Consolidation, InThreeDimensions)
               "fix load top addforce 0 0 v_load\n");
     Water water(run);
     run_to(run, 0.2 / c + 0.005);
-    const double p0 = LOAD / (1.0 + MODULUS * 0.4 / 2.2e9), *const p = water.pressures();
-    double sum = 0.0;
-    for (int i = 0; i < run.n(); i++) {
-      const double d = p[i] - p0 * terzaghi(1.0 - run.x()[i][2], 0.2);
-      sum += d * d / run.n();
-    }
-    EXPECT_LT(measured(strprintf("%s, rms", shape), std::sqrt(sum) / LOAD), 0.01);
+    const double rms =
+        difference_from_terzaghi(run, water, LOAD / (1.0 + MODULUS * 0.4 / 2.2e9), 0.2, 2);
+    EXPECT_LT(measured(strprintf("%s, rms", shape), rms / LOAD), 0.01);
   }
 }
 
@@ -248,32 +244,8 @@ SERIAL_TEST(Consolidation, InThreeDimensions)
 SERIAL_TEST(Undrained, PressureIsEven)
 {
   for (const double Kf : {2.2e8, 2.2e9})
-    for (const double k : {1e-3, 1e-4, 1e-6, 1e-8}) {
-      const int n = 20;
-      Scene run(
-          column(n,
-                 strprintf("%g 1000 9810 soil m 0.4 constant %g free pressure 0 ", Kf, k) + MOVES,
-                 SOIL) +
-          load(n, LOAD, 0.03));
-      Water water(run);
-      run_to(run, 0.06);
-      const double c = k / 9810.0 / (1.0 / MODULUS + 0.4 / Kf),
-                   p0 = LOAD / (1 + MODULUS * 0.4 / Kf);
-      const double *const p = water.pressures();
-      double sum = 0.0, square = 0.0, count = 0.0;
-      for (int i = 0; i < run.n(); i++) {
-        const double z = 1.0 - run.x()[i][1];
-        if (z < 3.0 / n) continue;
-        const double d = p[i] - p0 * terzaghi(z, 0.045 * c);
-        sum += d;
-        square += d * d;
-        count++;
-      }
-      const double mean = sum / count;
-      EXPECT_LT(measured(strprintf("Kf %g, k %g, scatter", Kf, k),
-                         std::sqrt(square / count - mean * mean) / LOAD),
-                0.01);
-    }
+    for (const double k : {1e-3, 1e-4, 1e-6, 1e-8})
+      EXPECT_LT(scatter_of_pressure(Kf, k, MOVES), 0.01);
 }
 
 // what a sealed column under a load has in its water: p/q = (K/n)/(M + K/n)
@@ -304,18 +276,7 @@ SERIAL_TEST(Undrained, StepLoad)
 // what comes to points is what comes through the surface, as volume of water and as mass
 TEST(Water, IsKept)
 {
-  for (const char *drained : {"", "free pressure 0", "yhi pressure 100 free flux 1e-3"}) {
-    const bool face = drained[0] == 'y';
-    Scene run(column(10, std::string("2.2e9 1000 9810 soil m 0.4 kozeny 1e-2 ") + MOVES + drained,
-                     SOIL, face ? 1.0 : 1.2, 0.2) +
-              load(10, LOAD, 0.01));
-    Water water(run);
-    const double before = water.mass();
-    run.commands("timestep 1e-5\nrun 2000\n");
-    const double came = run.fix("water")->compute_scalar();
-    if (drained[0]) EXPECT_GT(std::fabs(came), 1e-7);
-    EXPECT_NEAR((water.mass() - before - 1000.0 * came) / before, 0.0, 1e-13);
-  }
+  expect_water_is_kept_by("kozeny 1e-2", MOVES);
 }
 
 // a wave in highly permeable soil gains no energy, and the ledger closes
@@ -348,32 +309,8 @@ SERIAL_TEST(Energy, Wave)
 SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
 {
   for (const double i : {0.9, -0.5}) {
-    const auto water = strprintf("2.2e8 1000 9810 soil m 0.4 constant 1e-2 ylo pressure v_bottom "
-                                 "free pressure 0 initial v_p ") +
-        MOVES;
-    Scene run(replaced(
-        replaced(
-            column(10, water, "density 1990 linear 1e7 0.3"), "fix water",
-            "fix g all gravity 9.81 vector 0 -1 0\nvariable p atom 9810*(1-y)\n" +
-                strprintf("variable bottom equal 9810*(1+%g*((time<0.1)*time/0.1+(time>=0.1)))\n",
-                          i) +
-                "fix water"),
-        "origin", "gain error 0.02 origin"));
-    run_to(run, 1.0);
-    const double *const flows = run.fix_vector("water", 7);
-    EXPECT_NEAR(measured(strprintf("gradient %g, flux", i), flows[2] / (0.4 * 1e-2 * i)), 1.0,
-                0.01);
-    EXPECT_NEAR(flows[6] / flows[2], -1.0, 1e-3);
-    double sum = 0.0, n = 0.0;
-    for (int k = 0; k < run.n(); k++) {
-      const double y = run.x()[k][1];
-      if (y < 0.2 || y > 0.8) continue;
-      double sigma[6];
-      run.points().cauchy(k, sigma);
-      sum -= sigma[1] / ((990.0 - 1000.0 * i) * 9.81 * (1.0 - y));
-      n++;
-    }
-    EXPECT_NEAR(measured("effective stress", sum / n), 1.0, 0.02);
+    Scene run(seeping_column(i, 1e-2, MOVES));
+    expect_seepage(run, i, 1e-2);
     // total weight, less the pressure at the floor that is outside
     EXPECT_NEAR(measured("floor", -run.fix_vector("floor", 3)[1] / (0.4 * 1990.0 * 9.81)), 1.0,
                 0.02);
@@ -438,40 +375,15 @@ SERIAL_TEST(TimeStep, IsThatOfTheFastWave)
 
 TEST(Ranks, Agree)
 {
-  const std::string walls =
-      replaced(blocks(MOVES + "initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01"),
-               "boundary p p p", "boundary f f p") +
-      "fix b all mpm/boundary xlo xhi ylo yhi slip\n";
-  for (const auto &scene : {blocks("initial v_p " + MOVES), walls}) {
-    OnRanks run(scene + PORE, "run 300\n");
-    EXPECT_LT(run.difference(), 1e-11);
-    const auto one = pressures(run.serial), all = pressures(run.parallel);
-    ASSERT_EQ(one.size(), all.size());
-    double most = 0.0;
-    for (std::size_t k = 0; k < one.size(); k++)
-      most = std::max(most, std::fabs(one[k].p - all[k].p));
-    EXPECT_LT(measured("difference", most), 1e-10);
-    EXPECT_NEAR(run.serial.fix("water")->compute_scalar(),
-                run.parallel.fix("water")->compute_scalar(), 1e-12);
-  }
+  expect_same_on_ranks(blocks("initial v_p " + MOVES), 1e-10);
+  expect_same_on_ranks(
+      between_walls(blocks(MOVES + "initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01")),
+      1e-10);
 }
 
 TEST(Restart, Continues)
 {
-  const std::string scene = blocks("free pressure 0 initial v_p " + MOVES);
-  const std::string tail = scene.substr(scene.find("fix m one"));
-  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n"
-                      "variable p atom 0.1*x\nvariable k atom 0.01*(1+y)\n";
-  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
-    end = tail.find('\n', at);
-    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
-  }
-  Continued run(scene + PORE, 60, fixes + PORE + "timestep 0.005\n", 60);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
-  const auto one = pressures(run.whole), two = pressures(run.again);
-  ASSERT_EQ(one.size(), two.size());
-  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
-  EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+  expect_continues(blocks("free pressure 0 initial v_p " + MOVES), OF_BLOCKS);
 }
 
 // level ground is at rest, with water that could move

@@ -8,9 +8,8 @@
 // Fix mpm/pore in partly saturated soils: keyword retention, and water through surfaces with air outside.
 // Numbers by finite volumes are those of richards.py.
 
-#include "mpm_lammps.h"
+#include "pore_bodies_testing.h"
 
-#include "compute_mpm_atom.h"
 #include "mpm_pore_suction.h"
 
 using namespace MPM_TEST;
@@ -378,74 +377,32 @@ SERIAL_TEST(Surface, RainAndSeepage)
 
 namespace {
 
-/** Two blocks of soils that dry and one that does not, which collide across ranks and periodic faces. */
+const char *const OF_BLOCKS = "variable p atom 0.4*(x-4)\nvariable k atom 0.01*(1+y)\n";
+/** Two blocks of soils that dry and one that does not, which collide. */
 std::string blocks(const std::string &more)
 {
-  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
-      bodies({{"one", "sphere 3 4 0 1.6 side in"},
-              {"two", "block 5 6.6 3 5 -0.5 0.5"},
-              {"dry", "block 3 5 0.8 2 -0.5 0.5"}}) +
-      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4\n"
-      "fix n two mpm/material density 2.0 eos linear 30.0 strength j2 8.0 0.4\n"
-      "fix o dry mpm/material density 1.0 neohookean 10.0 0.3\n"
-      "velocity all set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n"
-      "variable p atom 0.4*(x-4)\nvariable k atom 0.01*(1+y)\n"
-      "fix water all mpm/pore 20.0 0.5 2.0 soil m 0.4 kozeny 0.1 retention vangenuchten 1.0 1.8 "
-      "saturation 0.1 0.9 soil n 0.3 formula v_k retention gardner 0.7 relative power 3 "
-      "bishop effective soil o 0.2 constant 0.01 " +
-      more + "\ntimestep 0.005\n";
+  return colliding(
+      OF_BLOCKS,
+      "20.0 0.5 2.0 soil m 0.4 kozeny 0.1 retention vangenuchten 1.0 1.8 saturation 0.1 0.9 soil n "
+      "0.3 formula v_k retention gardner 0.7 relative power 3 bishop effective soil o 0.2 constant "
+      "0.01 " +
+          more);
 }
-struct Named {
-  double tag, p, S;
-};
-std::vector<Named> pressures(Scene &run)
-{
-  const auto p = values(run, "pore"), S = values(run, "saturation");
-  std::vector<Named> mine;
-  for (int i = 0; i < run.n(); i++) mine.push_back({(double) run.lmp->atom->tag[i], p[i], S[i]});
-  return all_by_tag(mine, run.lmp->world);
-}
-const char *const QUANTITIES =
-    "compute pore all mpm/atom pore\ncompute saturation all mpm/atom saturation\n";
 
 }    // namespace
 
 TEST(Ranks, Agree)
 {
-  const std::string walls =
-      replaced(blocks("initial v_p xlo pressure -1.0 free rain 0.02 ylo seepage xhi pressure 0.5"),
-               "boundary p p p", "boundary f f p") +
-      "fix b all mpm/boundary xlo xhi ylo yhi slip\n";
-  for (const auto &scene : {blocks("initial v_p"), walls}) {
-    OnRanks run(scene + QUANTITIES, "run 300\n");
-    EXPECT_LT(run.difference(), 1e-11);
-    const auto one = pressures(run.serial), all = pressures(run.parallel);
-    ASSERT_EQ(one.size(), all.size());
-    double most = 0.0;
-    for (std::size_t k = 0; k < one.size(); k++)
-      most = std::max(most, std::fabs(one[k].p - all[k].p));
-    EXPECT_LT(measured("difference", most), 1e-9);
-    EXPECT_NEAR(run.serial.fix("water")->compute_scalar(),
-                run.parallel.fix("water")->compute_scalar(), 1e-12);
-  }
+  expect_same_on_ranks(blocks("initial v_p"), 1e-9);
+  expect_same_on_ranks(
+      between_walls(
+          blocks("initial v_p xlo pressure -1.0 free rain 0.02 ylo seepage xhi pressure 0.5")),
+      1e-9);
 }
 
 TEST(Restart, Continues)
 {
-  const std::string scene = blocks("free rain 0.02 initial v_p");
-  const std::string tail = scene.substr(scene.find("fix m one"));
-  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n"
-                      "variable p atom 0.4*(x-4)\nvariable k atom 0.01*(1+y)\n";
-  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
-    end = tail.find('\n', at);
-    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
-  }
-  Continued run(scene + QUANTITIES, 60, fixes + QUANTITIES + "timestep 0.005\n", 60);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
-  const auto one = pressures(run.whole), two = pressures(run.again);
-  ASSERT_EQ(one.size(), two.size());
-  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
-  EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+  expect_continues(blocks("free rain 0.02 initial v_p"), OF_BLOCKS);
 }
 
 // a body whose water flows keeps its mass and its momentum while it moves

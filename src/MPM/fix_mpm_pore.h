@@ -57,8 +57,8 @@ struct MPMPoreOptions {
   std::string without_soil, without_retention;    // keywords that have come too early
 };
 
-/** Pore water in the points of soils, which move with the velocity of the soil: the flow of the water, without
- *  inertia of its own (u-p) or with it (u-v-p), and the pressure of the water in the forces. */
+/** Pore water in the points of soils, which move with the velocity of the soil: the flow of the water,
+ *  without inertia of its own (u-p) or with it (u-v-p), and the pressure of the water in the forces. */
 class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions {
  public:
   FixMPMPore(class LAMMPS *, int, char **);
@@ -125,8 +125,8 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   std::vector<double> formula_values;    // [n] permeability by variables
 
   // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this
-  // rank's share: that has come in so far; that came in the last step, and comes in a stage of it for each time;
-  // the last step of all ranks for each time
+  // rank's share: that has come in so far; that came in the last step, and comes in a stage of it for each
+  // time; the last step of all ranks for each time
   std::vector<double> came, in_step, present, flows;
   double dt_last = 0.0;
   bool flows_known = true;

@@ -21,10 +21,10 @@
 
      p_w = rho g (top - y_w) + sum_k lambda_k psi_k'(y_w)
 
-   and the functions psi_k of the height that nodes can have as velocities (mpm_geostatic.cpp), it is linear in
-   lambda, and of its solutions the smallest is taken. What the second one then has of P_j, the water carries. Points
-   have their pressure by the change of their volume, with which V_w changes a little, so that this is repeated until it stays
-   the same.
+   and the functions psi_k of the height that nodes can have as velocities (mpm_geostatic.cpp), it is linear
+   in lambda, and of its solutions the smallest is taken. What the second one then has of P_j, the water
+   carries. Points have their pressure by the change of their volume, with which V_w changes a little, so that
+   this is repeated until it stays the same.
 ------------------------------------------------------------------------- */
 
 #include "mpm_geostatic_water.h"

@@ -7,32 +7,33 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Soil and its pore water as one set of points with the velocity v of the soil (u-p). With the pressure p of the
-   water, compression positive,
+   Soil and its pore water as one set of points with the velocity v of the soil (u-p). With the pressure p of
+   the water, compression positive,
 
      rho dv/dt = div(sigma' - alpha p I) + rho g,
      S dp/dt = - alpha div v - div w,   w = - k (grad p - rho_f g),   S = n/K_f + (alpha - n)/K_s,
 
-   sigma' is the stress of the material, w the volume of water that flows through a unit of area, and k the mobility.
-   The acceleration of the water relative to that of the soil is left out, and that of both in w; with both it is mpm_pore_motion.cpp (u-v-p).
-   With Forchheimer's term, -(grad p - rho_f g) = w/k + b |w| w, which for the length of w is a quadratic equation.
+   sigma' is the stress of the material, w the volume of water that flows through a unit of area, and k the
+   mobility. The acceleration of the water relative to that of the soil is left out, and that of both in w;
+   with both it is mpm_pore_motion.cpp (u-v-p). With Forchheimer's term, -(grad p - rho_f g) = w/k + b |w| w,
+   which for the length of w is a quadratic equation.
 
    On nodes, with C_p = S_p V_p, and D the matrix of sum_p alpha V_p N_ip grad N_jp,
 
      p_i = sum_p C_p N_ip (p_p + g_p . (x_i - x_p))/C_i,    M dv/dt = ... + D^T p,    C dp/dt = - D v - ...,
 
-   which means that forces have the pressure sum_i N_ip p_i of each point, and that what the motion squeezes out goes to
-   nodes with the same weights: what the pressure takes from the motion is what the water stores, for any position
-   of points in their cells. Both matter. With pressures of their own in forces, several points per cell ask for more
-   constraints than the velocities of the nodes can give (locking). As D maps onto what D^T sees, motion
-   never excites pressures that make no force on nodes, such as one that alternates from node to node. Only
-   what changes the pressure otherwise does: drained faces, see mpm_pore_surface.cpp.
+   which means that forces have the pressure sum_i N_ip p_i of each point, and that what the motion squeezes
+   out goes to nodes with the same weights: what the pressure takes from the motion is what the water stores,
+   for any position of points in their cells. Both matter. With pressures of their own in forces, several
+   points per cell ask for more constraints than the velocities of the nodes can give (locking). As D maps
+   onto what D^T sees, motion never excites pressures that make no force on nodes, such as one that alternates
+   from node to node. Only what changes the pressure otherwise does: drained faces, see mpm_pore_surface.cpp.
 
    Time. v is new when p follows: symplectic Euler, stable up to 2/omega of undrained waves without flow. An
    explicit step of the flow multiplies a pressure by a = 1 - lambda dt; together they are stable up to
    (omega dt)^2 < 2 (1 + a): not at all near the explicit limit a = -1. Stages of RKL2 have a > 0 whatever
-   their number is (their greatest share is 2b < 1 with b = (s^2 + s - 2)/(2 s^2 + 2 s)), hence stages begin at half of that limit,
-   and waves and flow do not make each other's limit smaller.
+   their number is (their greatest share is 2b < 1 with b = (s^2 + s - 2)/(2 s^2 + 2 s)), hence stages begin
+   at half of that limit, and waves and flow do not make each other's limit smaller.
 
    The motion changes the volume of a point by exactly det(I + dt L) - 1, and water is what fills it.
 ------------------------------------------------------------------------- */
@@ -116,9 +117,9 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
   }
 }
 
-/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp), where the flow is
- *  the gradient times a number. In soil that dries the permeability changes by orders of magnitude within a front, and with
- *  means across it water would not get into dry soil. */
+/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp),
+ *  where the flow is the gradient times a number. In soil that dries the permeability changes by orders of
+ *  magnitude within a front, and with means across it water would not get into dry soil. */
 void MPMPore::init_layers()
 {
   layers.reset();
@@ -178,8 +179,8 @@ MPMPoreMotion::Pores MPMPore::pores(const Soil &s, int i, double J, double mobil
           quadratic.empty() ? 0.0 : quadratic[i]};
 }
 
-/** Mobility for the flow through the surface: that of the gradient in the step before, as there it is not known
- *  before the flow is. */
+/** Mobility for the flow through the surface: that of the gradient in the step before, as there it is not
+ *  known before the flow is. */
 double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, const double *row) const
 {
   if (motion) return motion->response(i, pores(s, i, J, mobility));
@@ -253,8 +254,9 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 }
 
 /* ----------------------------------------------------------------------
-   the best fit of nodes to values and gradients, and of gradients to nodes, in turns. Inside of a body a linear pressure is found
-   at once; next to surfaces, where nodes have points on one side, the error falls from one turn to the next
+   the best fit of nodes to values and gradients, and of gradients to nodes, in turns. Inside of a body a
+   linear pressure is found at once; next to surfaces, where nodes have points on one side, the error falls
+   from one turn to the next
 ------------------------------------------------------------------------- */
 
 void MPMPore::find_gradients(const MPMRows &state, const double *formula)
@@ -339,8 +341,8 @@ void MPMPore::take_off()
 }
 
 /* ----------------------------------------------------------------------
-   int N p n dA = int (p grad N + N grad p) dV, where the first term is the force of the pressure on nodes: nothing is left
-   inside of the soil, and of the surface what water pushes with
+   int N p n dA = int (p grad N + N grad p) dV, where the first term is the force of the pressure on nodes:
+   nothing is left inside of the soil, and of the surface what water pushes with
 ------------------------------------------------------------------------- */
 
 void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &near,
@@ -437,11 +439,12 @@ void MPMPore::find_rates(std::vector<double> &inflow)
 }
 
 /* ----------------------------------------------------------------------
-   What nodes do not see of the pressures of points goes in the time in which flow crosses a cell, as in the conduction of
-   heat (mpm_conduction.cpp), and also in about 1/relax of the time in which a wave does. On the way from nodes to points
-   and back an alternating pressure keeps 0.61 of itself, and a linear one all: per time, k^4 is taken from a wave with the number
-   k. So a pressure that alternates with next to no force on nodes, which a load that the lattice does not resolve makes, goes in
-   some crossings of a cell, and one over many cells stays.
+   What nodes do not see of the pressures of points goes in the time in which flow crosses a cell, as in the
+   conduction of heat (mpm_conduction.cpp), and also in about 1/relax of the time in which a wave does. On the
+   way from nodes to points and back an alternating pressure keeps 0.61 of itself, and a linear one all: per
+   time, k^4 is taken from a wave with the number k. So a pressure that alternates with next to no force on
+   nodes, which a load that the lattice does not resolve makes, goes in some crossings of a cell, and one over
+   many cells stays.
 ------------------------------------------------------------------------- */
 
 double MPMPore::rate_of_waves() const

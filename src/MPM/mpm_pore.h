@@ -24,10 +24,11 @@
 namespace LAMMPS_NS {
 class FixMPMMaterial;
 
-/** Pore water in the points of one field: the pressures of nodes, their rates by the motion of the soil and by
- *  flow, and the pressure in internal forces.
+/** Pore water in the points of one field: the pressures of nodes, their rates by the motion of the soil and
+ *  by flow, and the pressure in internal forces.
  *
- *  Points keep rows of 1 + dim reals: the pressure (above that of the air, compression is positive) and its gradient. */
+ *  Points keep rows of 1 + dim reals: the pressure (above that of the air, compression is positive) and
+ *  its gradient. */
 class MPMPore : protected Pointers {
  public:
   MPMField &field;
@@ -40,17 +41,18 @@ class MPMPore : protected Pointers {
   MPMPore(class LAMMPS *, MPMField &, const MPMPoreWater &, const MPMPoreSurface::Conditions &,
           const double *gravity, double relax, bool moves);
 
-  /** Start of a run: the soils that points of this field have. content: of points, if there is a soil that can dry (MPMPoreSuction).
-   *  Collective. */
+  /** Start of a run: the soils that points of this field have. content: of points, if there is a soil that
+   *  can dry (MPMPoreSuction). Collective. */
   void init(const std::vector<MPMPoreSoil> &, double *const &content);
   bool has_water() const { return !soils.empty(); }
 
   /** The water of points of soils that can dry, where it is not yet known. */
   void weigh_points(const MPMRows &state) const;
-  /** Gradients of points whose pressures alone were given; those of a linear pressure are exact. Collective. */
+  /** Gradients of points whose pressures alone were given; those of a linear pressure are exact.
+   *  Collective. */
   void find_gradients(const MPMRows &state, const double *formula);
-  /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n] permeabilities of
-   *  points, or null. */
+  /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n]
+   *  permeabilities of points, or null. */
   void begin_step(const MPMRows &state, const MPMRows &flow, const double *formula);
   /** [n] J times the pressure in internal forces; null: there is none. */
   const double *pressure_in_forces() const { return has_water() ? in_forces.data() : nullptr; }
@@ -63,18 +65,18 @@ class MPMPore : protected Pointers {
   void take_off();
   /** The same: after take_motion(). */
   void move_water();
-  /** Rates of the pressures of nodes; adds the volumes of water that come in for each time, and the power of what
-   *  comes in and of the weight of water that flows. */
+  /** Rates of the pressures of nodes; adds the volumes of water that come in for each time, and the power
+   *  of what comes in and of the weight of water that flows. */
   void find_rates(std::vector<double> &inflow);
   /** Pressures of points at the end of the step, and the mass of the water that they got. */
   void end_step(const MPMRows &state);
 
-  /** Bounds of the eigenvalues of minus the rates [1/time] on this rank: by flow between points, and through the
-   *  surface, in this step. */
+  /** Bounds of the eigenvalues of minus the rates [1/time] on this rank: by flow between points, and
+   *  through the surface, in this step. */
   double conduction_rate() const;
   double exchange_rate() const { return exchange; }
-  /** By flow between points at present; -1 without any that have water. Those with a formula, which is evaluated in
-   *  steps, count as 0. tag: of the point that limits it. */
+  /** By flow between points at present; -1 without any that have water. Those with a formula, which is
+   *  evaluated in steps, count as 0. tag: of the point that limits it. */
   double conduction_rate(const MPMRows &state, tagint &tag) const;
   /** Wave speed of a point where water cannot flow, c: of the soil alone; p: pressure of its water. */
   double wave_speed(int i, double p, double c) const;

@@ -18,14 +18,15 @@
 
 namespace LAMMPS_NS {
 
-/** Pore water: its bulk modulus [pressure] and density, and what permeabilities are divided by to make them
- *  mobilities: its unit weight [pressure/length] for hydraulic conductivities, or its viscosity [pressure time] for
- *  permeabilities in units of area. */
+/** Pore water: its bulk modulus [pressure] and density, and what permeabilities are divided by to make
+ *  them mobilities: its unit weight [pressure/length] for hydraulic conductivities, or its viscosity
+ *  [pressure time] for permeabilities in units of area. */
 struct MPMPoreWater {
   double bulk = 0.0, density = 0.0, resistance = 0.0;
 };
 
-/** What the pores of a material are like. Volumes are those of the present state, J its ratio to the initial one. */
+/** What the pores of a material are like. Volumes are those of the present state, J its ratio to the
+ *  initial one. */
 struct MPMPoreSoil {
   enum Law { CONSTANT, KOZENY, SQUARED, FORMULA };
 
@@ -58,8 +59,8 @@ struct MPMPoreSoil {
 
   bool is_linear() const { return quadratic == 0.0 && diameter == 0.0; }
 
-  /** What the gradient of the pressure has besides that of Darcy's law, per square of the flow. density: of the water, in
-   *  units of pressure over velocity squared. */
+  /** What the gradient of the pressure has besides that of Darcy's law, per square of the flow. density:
+   *  of the water, in units of pressure over velocity squared. */
   double quadratic_at(double J, double density) const
   {
     if (diameter == 0.0) return quadratic;

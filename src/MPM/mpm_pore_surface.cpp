@@ -7,23 +7,25 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The sum g_i = sum_p V_p grad N_ip of a node is the integral of its function over the surface of the soil, times the
-   normal: nothing inside, and the area of surface that belongs to the node. The volume at the node over this area tells how
-   deep below the surface the node is (MPMNodeProfile). Of the nodes on a line through the surface, those within a node spacing
-   stand for it, with shares 1 - |depth| that have the sum one, and on a surface that is inclined the sum one in the mean; what is
-   missing of the area at a node, at the sides of a body, is missing in its share.
+   The sum g_i = sum_p V_p grad N_ip of a node is the integral of its function over the surface of the soil,
+   times the normal: nothing inside, and the area of surface that belongs to the node. The volume at the node
+   over this area tells how deep below the surface the node is (MPMNodeProfile). Of the nodes on a line
+   through the surface, those within a node spacing stand for it, with shares 1 - |depth| that have the sum
+   one, and on a surface that is inclined the sum one in the mean; what is missing of the area at a node, at
+   the sides of a body, is missing in its share.
 
    The place of a node is s = half a node spacing below the surface, where
 
      q = k (p(s) - p_s - rho_f g . (x(s) - x_s))/s
 
-   is the flow by the pressure p_s at the surface, where it leaves the nodes: with it, a pressure that is linear up to the
-   surface is a solution on nodes, too. Were the water taken where the pressure is, a column of 10 cells between two drained faces would
-   let through 3.8 % too much.
-   To hold p = p_s at the surface itself, as heat does, lets the water of a whole cell out at once: where water has not yet
-   had the time to flow through a cell, pressures then oscillate from the surface into the soil, the more, the less permeable it is (a column
-   of 20 cells, K_f = 2.2e9, M = 1.35e7, loaded in 10 ms, k = 1e-8: by 30 % of the load three cells below the surface; with
-   this 0.8 %, which are waves). What can flow is bounded by the permeability here.
+   is the flow by the pressure p_s at the surface, where it leaves the nodes: with it, a pressure that is
+   linear up to the surface is a solution on nodes, too. Were the water taken where the pressure is, a column
+   of 10 cells between two drained faces would let through 3.8 % too much.
+   To hold p = p_s at the surface itself, as heat does, lets the water of a whole cell out at once: where
+   water has not yet had the time to flow through a cell, pressures then oscillate from the surface into the
+   soil, the more, the less permeable it is (a column of 20 cells, K_f = 2.2e9, M = 1.35e7, loaded in 10 ms, k
+   = 1e-8: by 30 % of the load three cells below the surface; with this 0.8 %, which are waves). What can flow
+   is bounded by the permeability here.
 
    Each place is one of the rank that owns its node, so that sums over ranks follow.
 ------------------------------------------------------------------------- */
@@ -95,8 +97,8 @@ void MPMPoreSurface::extend_topology()
     }
 }
 
-/** Blocks that are not full of material, and those next to them. What a rank has of a block does not tell that: where one
- *  of the ranks that share it finds it near, all must add their points. */
+/** Blocks that are not full of material, and those next to them. What a rank has of a block does not tell
+ *  that: where one of the ranks that share it finds it near, all must add their points. */
 void MPMPoreSurface::find_blocks_near()
 {
   const auto &blocks = field.grid.blocks;
@@ -137,8 +139,8 @@ bool MPMPoreSurface::is_near(int slot) const
   });
 }
 
-/** Volumes of nodes, and what is minus the force of the stress -I, with the gradients of the functions: those that moving
- *  least squares take in their place see a surface elsewhere. */
+/** Volumes of nodes, and what is minus the force of the stress -I, with the gradients of the functions:
+ *  those that moving least squares take in their place see a surface elsewhere. */
 void MPMPoreSurface::map_volume()
 {
   const auto &pic = field.pic;
@@ -295,8 +297,8 @@ void MPMPoreSurface::find_places()
 /** Makes the sum of weights one; enough: capacity of a node for its whole weight. Returns the sum before.
  *
  *  A point in the middle of a cell gives a node that is out of reach of all others next to no capacity.
- *  Conduction bounds what a node stores, C p^2, hence p there may be as large as 1/sqrt(C): such nodes must not
- *  be asked with their whole weight, neither for water nor for their pressure. */
+ *  Conduction bounds what a node stores, C p^2, hence p there may be as large as 1/sqrt(C): such nodes
+ *  must not be asked with their whole weight, neither for water nor for their pressure. */
 double MPMPoreSurface::normalize(int first, int n, double enough,
                                  const std::vector<double> &capacity)
 {
@@ -316,10 +318,10 @@ double MPMPoreSurface::suction_outside(int part) const
   return c.kind == MPMPoreCondition::PRESSURE ? std::min(0.0, c.now) : 0.0;
 }
 
-/** With the lists a_k of weights where water comes in and b_k where the pressure is taken, the exchange is the
- *  matrix sum_k c_k a_k b_k^T, which is not symmetric: what counts is its norm, not its eigenvalues, as
- *  conduction is added to it. In the norm of the capacities it is at most that of sum_k c_k a_k a_k^T and of
- *  sum_k c_k b_k b_k^T in the geometric mean, and these are at most their greatest sum of a row,
+/** With the lists a_k of weights where water comes in and b_k where the pressure is taken, the exchange is
+ *  the matrix sum_k c_k a_k b_k^T, which is not symmetric: what counts is its norm, not its eigenvalues,
+ *  as conduction is added to it. In the norm of the capacities it is at most that of sum_k c_k a_k a_k^T
+ *  and of sum_k c_k b_k b_k^T in the geometric mean, and these are at most their greatest sum of a row,
  *  (sum_k c_k a_ki)/C_i, as weights have the sum one. */
 double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage, const Wet *wet)
 {
@@ -367,9 +369,10 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
 }
 
 /* ----------------------------------------------------------------------
-   What an even flow brings to a node by its sum over points, w . g_i, must go through the surface there: else pressures of nodes
-   beyond the surface grow until they stop the flow next to it. So each place takes from its nodes their g_i instead of the values of their
-   functions, shared with other places by these. Where they have their mean place is where the pressure outside counts
+   What an even flow brings to a node by its sum over points, w . g_i, must go through the surface there: else
+   pressures of nodes beyond the surface grow until they stop the flow next to it. So each place takes from
+   its nodes their g_i instead of the values of their functions, shared with other places by these. Where they
+   have their mean place is where the pressure outside counts.
 ------------------------------------------------------------------------- */
 
 void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)

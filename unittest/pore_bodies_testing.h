@@ -1,0 +1,91 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+#ifndef MPM_PORE_BODIES_TESTING_H
+#define MPM_PORE_BODIES_TESTING_H
+
+// Bodies with pore water that collide, on other ranks and after restarts, for tests of fix mpm/pore.
+
+#include "mpm_lammps.h"
+
+#include "compute_mpm_atom.h"
+
+namespace MPM_TEST {
+
+/** Two blocks of soils and a third body, which collide across ranks and periodic faces. variables: those of the words of fix
+ *  mpm/pore, water. */
+inline std::string colliding(const std::string &variables, const std::string &water)
+{
+  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
+      bodies({{"one", "sphere 3 4 0 1.6 side in"},
+              {"two", "block 5 6.6 3 5 -0.5 0.5"},
+              {"dry", "block 3 5 0.8 2 -0.5 0.5"}}) +
+      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4\n"
+      "fix n two mpm/material density 2.0 eos linear 30.0 strength j2 8.0 0.4\n"
+      "fix o dry mpm/material density 1.0 neohookean 10.0 0.3\n"
+      "velocity all set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n" +
+      variables + "fix water all mpm/pore " + water + "\ntimestep 0.005\n";
+}
+/** The same between walls along x and y. */
+inline std::string between_walls(const std::string &scene, const std::string &kind = "slip")
+{
+  return replaced(scene, "boundary p p p", "boundary f f p") +
+      "fix b all mpm/boundary xlo xhi ylo yhi " + kind + "\n";
+}
+
+struct Named {
+  double tag, p;
+};
+/** Pressures of all points by a compute with the ID pore. */
+inline std::vector<Named> pressures(Scene &run)
+{
+  auto *compute = run.lmp->modify->get_compute_by_id("pore");
+  compute->compute_peratom();
+  std::vector<Named> mine;
+  for (int i = 0; i < run.n(); i++)
+    mine.push_back({(double) run.lmp->atom->tag[i], compute->vector_atom[i]});
+  return all_by_tag(mine, run.lmp->world);
+}
+constexpr const char *PORE = "compute pore all mpm/atom pore\n";
+
+/** The greatest difference of the pressures of the same points of two scenes; huge where there are others. */
+inline double pressure_difference(Scene &a, Scene &b)
+{
+  const auto one = pressures(a), other = pressures(b);
+  if (one.empty() || one.size() != other.size()) return 1.0e300;
+  double most = 0.0;
+  for (std::size_t k = 0; k < one.size(); k++)
+    most = std::max(most, std::fabs(one[k].p - other[k].p));
+  return measured("difference", most);
+}
+
+/** One rank and several: points, the pressures to this difference, and the water that came in. */
+inline void expect_same_on_ranks(const std::string &scene, double difference)
+{
+  OnRanks run(scene + PORE, "run 300\n");
+  EXPECT_LT(run.difference(), 1e-11);
+  EXPECT_LT(pressure_difference(run.serial, run.parallel), difference);
+  EXPECT_NEAR(run.serial.fix("water")->compute_scalar(),
+              run.parallel.fix("water")->compute_scalar(), 1e-12);
+}
+
+/** A scene of colliding() that goes on after a restart as without. */
+inline void expect_continues(const std::string &scene, const std::string &variables)
+{
+  const std::string tail = scene.substr(scene.find("fix m one"));
+  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n" + variables;
+  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
+    end = tail.find('\n', at);
+    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
+  }
+  Continued run(scene + PORE, 60, fixes + PORE + "timestep 0.005\n", 60);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  const auto one = pressures(run.whole), two = pressures(run.again);
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
+  EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+}
+
+}    // namespace MPM_TEST
+
+#endif
