@@ -18,6 +18,7 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "material/batch.h"
+#include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_passes.h"
@@ -38,8 +39,8 @@ static constexpr double DIFFERENCE = 6.0e-6;
 /* ---------------------------------------------------------------------- */
 
 MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
-    Pointers(lmp), field(field), with(), batch(new Batch()), dim(field.lattice.dim), nL(dim * dim),
-    nH(nL + field.options.axisymmetric)
+    Pointers(lmp), field(field), with(), batch(new Batch()), tangent(new Tangent()),
+    dim(field.lattice.dim), nL(dim * dim), nH(nL + field.options.axisymmetric)
 {
 }
 
@@ -124,11 +125,26 @@ template <class Use> void MPMTangent::gather(const double *u, const Use &use)
 }
 
 /* ----------------------------------------------------------------------
+   deformation of the places of the lattice after H [n][nH] of n points from first on, as in MPMFrame
+------------------------------------------------------------------------- */
+
+void MPMTangent::lattice_F(int first, int n, const double *H, double *F) const
+{
+  for (int p = 0; p < n; p++) {
+    double before[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    if (field.frame->is_total()) field.frame->lattice_F(first + p, before);
+    std::copy_n(&before[0][0], 9, F + 9 * p);
+    for (int r = 0; r < dim; r++)
+      for (int c = 0; c < dim; c++) F[9 * p + 3 * r + c] += H[nH * p + dim * c + r];
+  }
+}
+
+/* ----------------------------------------------------------------------
    stress of n points from first on after H [n][nH]: P [n][nH], and J
 ------------------------------------------------------------------------- */
 
 bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const double *H, double dt,
-                        double *stress)
+                        double *stress, Tangent *tangent)
 {
   Batch &b = *batch;
   const FixMPMMaterial *const material = run.material;
@@ -151,18 +167,17 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
   if (material->nhistory)
     batches.load_history(b, material->nhistory, &material->history[0][0] + material->nhistory * i);
   std::fill_n(b.heat, n, 0.0);
-  material->material->update(b);
+  if (tangent)
+    material->material->update_with_tangent(b, *tangent);
+  else
+    material->material->update(b);
 
   bool good = true;
   for (int p = 0; p < n; p++) {
     good = good && b.J[p] > 0.0;
     for (int c = 0; c < 6; c++) tau[6 * p + c] = b.J[p] * b.stress[c][p];
-    double lattice_F[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-    if (frame.is_total()) frame.lattice_F(first + p, lattice_F);
-    std::copy_n(&lattice_F[0][0], 9, F + 9 * p);
-    for (int r = 0; r < dim; r++)
-      for (int c = 0; c < dim; c++) F[9 * p + 3 * r + c] += H[nH * p + dim * c + r];
   }
+  lattice_F(first, n, H, F);
   batches.first_piola(n, F, tau, nH > nL ? plane : stress);
   if (nH > nL)
     for (int p = 0; p < n; p++) {
@@ -209,25 +224,78 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
 
 /* ---------------------------------------------------------------------- */
 
+void MPMTangent::take_differences(const MPMPointMap::Run &run, int first, int n, const double *H,
+                                  double dt)
+{
+  double other[10 * BATCH], low[10 * BATCH + 8], high[10 * BATCH + 8];
+  std::copy_n(H, nH * n, other);
+  for (int k = 0; k < nH; k++) {
+    for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] - DIFFERENCE;
+    stress(run, first, n, other, dt, low);
+    for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] + DIFFERENCE;
+    stress(run, first, n, other, dt, high);
+    for (int p = 0; p < n; p++) {
+      // the difference of the numbers as they are, not of those that were meant
+      const double step = (H[nH * p + k] + DIFFERENCE) - (H[nH * p + k] - DIFFERENCE);
+      double *const column = &tangents[((bigint) first + p) * nH * nH + nH * k];
+      for (int l = 0; l < nH; l++) column[l] = (high[nH * p + l] - low[nH * p + l]) / step;
+      other[nH * p + k] = H[nH * p + k];
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   by the tangent of the material: with F that of the places, dP = (dtau - tau l^T) F^-T, and for a change of H_rc, of
+   which l has the row r of dF F^-1, l_rs = (F^-1)_cs
+------------------------------------------------------------------------- */
+
+void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, const double *H,
+                               double dt)
+{
+  static constexpr int COMPONENT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  double P[10 * BATCH + 8], F[9 * BATCH];
+  tangent->plane = dim == 2;
+  stress(run, first, n, H, dt, P, tangent.get());
+  lattice_F(first, n, H, F);
+  const Batch &b = *batch;
+  for (int p = 0; p < n; p++) {
+    double *const f = F + 9 * p;
+    if (nH > nL) f[8] = 1.0 + H[nH * p + nL];    // around the axis
+    const double cofactors[9] = MPM_COFACTORS(f);
+    const double det = determinant(f);
+    double *const K = &tangents[((bigint) first + p) * nH * nH];
+    for (int k = 0; k < nH; k++) {
+      const int r = k < nL ? k % dim : 2, c = k < nL ? k / dim : 2;
+      double l[3], d[3][3];
+      for (int s = 0; s < 3; s++) l[s] = cofactors[3 * s + c] / det;
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+          d[i][j] = 0.0;
+          for (int s = 0; s < 3; s++) {
+            if (tangent->skips(3 * r + s)) continue;
+            d[i][j] += tangent->stress[COMPONENT[i][j]][3 * r + s][p] * l[s];
+            if (j == r) d[i][j] -= b.J[p] * b.stress[COMPONENT[i][s]][p] * l[s];
+          }
+        }
+      for (int m = 0; m < nH; m++) {
+        const int row = m < nL ? m % dim : 2, column = m < nL ? m / dim : 2;
+        double sum = 0.0;
+        for (int j = 0; j < 3; j++) sum += d[row][j] * cofactors[3 * j + column];
+        K[nH * k + m] = sum / det;
+      }
+    }
+  }
+}
+
 double MPMTangent::linearize(const double *u, double dt)
 {
   tangents.resize((std::size_t) atom->nmax * nH * nH);
-  double other[10 * BATCH], low[10 * BATCH + 8], high[10 * BATCH + 8], sum = 0.0, all;
+  double sum = 0.0, all;
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
-    std::copy_n(H, nH * n, other);
-    for (int k = 0; k < nH; k++) {
-      for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] - DIFFERENCE;
-      stress(run, first, n, other, dt, low);
-      for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] + DIFFERENCE;
-      stress(run, first, n, other, dt, high);
-      for (int p = 0; p < n; p++) {
-        // the difference of the numbers as they are, not of those that were meant
-        const double step = (H[nH * p + k] + DIFFERENCE) - (H[nH * p + k] - DIFFERENCE);
-        double *const column = &tangents[((bigint) first + p) * nH * nH + nH * k];
-        for (int l = 0; l < nH; l++) column[l] = (high[nH * p + l] - low[nH * p + l]) / step;
-        other[nH * p + k] = H[nH * p + k];
-      }
-    }
+    if (run.material->material->has_tangent())
+      differentiate(run, first, n, H, dt);
+    else
+      take_differences(run, first, n, H, dt);
     for (int p = 0; p < n; p++) {
       const double *const K = &tangents[((bigint) first + p) * nH * nH];
       double most = 0.0;

@@ -18,7 +18,8 @@
 
 namespace MPM_NS {
 struct Batch;
-}
+struct Tangent;
+}    // namespace MPM_NS
 
 namespace LAMMPS_NS {
 class MPMField;
@@ -46,7 +47,7 @@ class MPMTangent : protected Pointers {
    *  out or has a stress that is not finite. Collective. */
   bool forces(const double *u, double dt, double *force, double &carried);
 
-  /** dP/dH of all points at the motion u, by central differences of the laws. Returns the sum of V |dP/dH| / h over all
+  /** dP/dH of all points at the motion u, by the tangents of materials that have one, by central differences of the others. Returns the sum of V |dP/dH| / h over all
    *  points, with the largest entry of each: a strain e everywhere makes forces of e times that, which cancel. Collective. */
   double linearize(const double *u, double dt);
   /** Change of the forces for a small change of that motion. Collective. */
@@ -62,14 +63,19 @@ class MPMTangent : protected Pointers {
   MPMField &field;
   MPM_NS::TransferKernels with;    // points to nodes by P
   std::unique_ptr<MPM_NS::Batch> batch;
-  const int dim, nL;    // nL: entries of a gradient in the plane or in space
-  int nH;               // those of H
-  bool mls = false;     // gradients are those of moving least squares
+  std::unique_ptr<MPM_NS::Tangent> tangent;    // of that batch
+  const int dim, nL;                           // nL: entries of a gradient in the plane or in space
+  int nH;                                      // those of H
+  bool mls = false;                            // gradients are those of moving least squares
   std::vector<double> nodes, history, P, hoop_stress, tangents, no_force, forces_on_points;
 
   template <class Use> void gather(const double *u, const Use &use);
   void scatter(const double *forces_of_points, double *force);
-  bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P);
+  bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
+              MPM_NS::Tangent *tangent = nullptr);
+  void lattice_F(int first, int n, const double *H, double *F) const;
+  void differentiate(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
+  void take_differences(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
 };
 
 }    // namespace LAMMPS_NS
