@@ -165,6 +165,8 @@ def scene_for(lines):
             before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
+    if "mpm/incompressible" in text:    # has a lattice of its own, and no materials
+        grid = ""
     mixture = "mpm/mixture" in text and not makes_points
     if mixture:
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
@@ -172,6 +174,8 @@ def scene_for(lines):
     if heat_contact:
         before += "fix touch all mpm/contact %s\n" % " ".join(named)
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
+    if "mpm/incompressible" in text:
+        material = ""
     soils = re.findall(r"\bsoil (\w+) ", text) if "mpm/pore" in text else []
     if soils:
         material = MATERIAL.replace("default", soils[0]) + "".join(

@@ -384,6 +384,7 @@ SERIAL_TEST(BadInput, IsRefused)
   expect_refused(
       scene,
       {{"fix heat all mpm/heat contact ga", "contact"},
+       {"unfix gb\nfix heat all mpm/heat contact ga gb conductance 1.0", "fix mpm"},
        {"fix heat all mpm/heat contact ga gb resistance 1.0", "conductance"},
        {"fix heat all mpm/heat contact ga gb conductance -1.0", "not negative"},
        {"fix heat all mpm/heat contact ga ga conductance 1.0", "two different bodies"},

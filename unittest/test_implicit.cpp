@@ -401,9 +401,77 @@ SERIAL_TEST(Beam, EnergiesOfDynamics)
   }
 }
 
+// levels of cells change the way of the linear solver, and not where it comes to: frames, shapes, an axis, walls that move at an
+// angle, periodic faces, and inertia
+SERIAL_TEST(Multigrid, ComesToTheSame)
+{
+  struct Case {
+    const char *name;
+    std::string scene;
+    double fewer;    // iterations, at least
+  };
+  const auto block = [](int dim, const std::string &options, const std::string &walls) {
+    return box(dim, "si", dim == 3 ? "p f f" : "p f p", "-0.8 0.8 -0.1 1.5 0 0.8", 1, 0.02) +
+        body("block INF INF 0 1 0 0.8", "density 1000 neohookean 1e6 0.3", "0.1 " + options) +
+        "fix floor all mpm/boundary ylo stick\n" + walls;
+  };
+  const std::string ball = "region ball cylinder z 0.013 1.37 0.4 INF INF\n"
+                           "fix push all mpm/boundary region ball slip velocity 0.01 -0.01 0\n";
+  const std::string tube = plane("si", "f f", "0 2.5 0 0.8", 1, 0.01) +
+      body("block 1 2 INF INF INF INF", "density 1000 neohookean 1e6 0.3",
+           "0.05 axisymmetric yes") +
+      "fix axis all mpm/boundary xlo ylo yhi slip\nregion bore block INF 1.0001 INF INF INF INF\n"
+      "fix push all mpm/boundary region bore stick velocity 0.02 NULL NULL\n";
+  const auto slender = replaced(
+      replaced(beam(4, "frame total", 20.0, "static"), "fix solve all mpm/implicit static", ""),
+      "compute e all mpm/energy\nthermo_style custom step c_low c_e\n", "");
+  const std::vector<Case> cases = {
+      {"beam", slender, 8.0},
+      {"cubic", replaced(slender, "frame total", "frame total shape cubic"), 4.0},
+      {"updated", replaced(slender, "frame total", ""), 4.0},
+      {"gimp", replaced(slender, "frame total", "shape gimp transfer pic"), 2.0},
+      {"linear", replaced(slender, "frame total", "shape linear transfer pic frame total"), 4.0},
+      {"ball", block(2, "", ball), 1.0},
+      {"ball in space", block(3, "", ball), 1.0},
+      {"tube", tube, 1.0}};
+  for (const auto &c : cases)
+    for (const char *method : {"static", "euler"}) {
+      std::vector<double> x[2];
+      double iterations[2];
+      for (const bool levels : {false, true}) {
+        Scene run(c.scene +
+                  strprintf("fix solve all mpm/implicit %s tolerance 1e-11 solver %s\n", method,
+                            levels ? "multigrid" : "blocks") +
+                  strprintf("timestep %g\nrun 1\n", *method == 's' ? 1.0 : 0.1));
+        for (int i = 0; i < run.n(); i++)
+          x[levels].insert(x[levels].end(), run.x()[i], run.x()[i] + 3);
+        iterations[levels] = run.fix("solve")->compute_vector(1);
+      }
+      double difference = 0.0;
+      for (std::size_t k = 0; k < x[0].size(); k++)
+        difference = std::max(difference, std::fabs(x[0][k] - x[1][k]));
+      measured(std::string(c.name) + " " + method + ": iterations with blocks", iterations[0]);
+      measured("with levels", iterations[1]);
+      EXPECT_LT(difference, 1e-8) << c.name;
+      if (*method == 's') { EXPECT_GE(iterations[0], c.fewer * iterations[1]) << c.name; }
+    }
+}
+
+// of a slender body, iterations do not grow with the number of cells
+SERIAL_TEST(Multigrid, IterationsDoNotGrow)
+{
+  double iterations[2];
+  for (const int n : {2, 8}) {
+    Scene run(beam(n, "frame total", 1.0, "static tolerance 1e-11 solver multigrid") + "run 1\n");
+    iterations[n / 8] = run.fix("solve")->compute_vector(1) / run.fix("solve")->compute_vector(0);
+    measured(strprintf("%d cells", n), iterations[n / 8]);
+  }
+  EXPECT_LE(iterations[1], 1.3 * iterations[0] + 1.0);
+}
+
 TEST(Implicit, RanksAndRestart)
 {
-  for (const char *implicit : {"static", "euler"}) {
+  for (const char *implicit : {"static", "euler", "static solver multigrid"}) {
     const auto scene =
         beam(4, "", 20.0, std::string(implicit) + " tolerance 1e-11", "neohookean 1e8 0.3");
     const auto next = "neighbor 0.0075 bin\n" + scene.substr(scene.find("fix grid"));
@@ -447,6 +515,7 @@ SERIAL_TEST(Implicit, BadInput)
        {"fix s all mpm/implicit static accuracy 2", "accuracy"},
        {"fix s all mpm/implicit static report perhaps", "perhaps"},
        {"fix s all mpm/implicit static damping 0.1", "damping"},
+       {"fix s all mpm/implicit static solver magic", "magic"},
        {"fix s all mpm/implicit newmark gamma 0.4", "gamma"},
        {"fix s all mpm/implicit static gamma 0.6", "gamma"},
        {"fix s all mpm/implicit newmark", "use transfer flip 1.0"},

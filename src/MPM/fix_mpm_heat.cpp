@@ -391,7 +391,12 @@ void FixMPMHeat::init_contacts()
   for (const auto &p : pairs) {
     MPMHeatBody *body[2];
     for (int k = 0; k < 2; k++) {
-      body[k] = &body_of(*MPMField::find(lmp, p.field[k]));
+      auto *const of = MPMField::find(lmp, p.field[k]);
+      if (!of)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/heat contact {} {}: there is no fix mpm with the ID {}", p.field[0],
+                   p.field[1], p.field[k]);
+      body[k] = &body_of(*of);
       if (!conducts(body[k]->field, world))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/heat contact {} {}: no material of fix mpm {} conducts heat: give it "

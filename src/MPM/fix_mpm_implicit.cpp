@@ -65,6 +65,12 @@ Options MPMImplicitOptions::declare()
   options.add("accuracy",
               {number(least_accuracy, "R", {0.0, 1.0, false, false}, "",
                       "largest relative residual of the linear solutions")});
+  options.add(
+      "solver",
+      {word(preconditioner,
+            {{"blocks", BLOCKS, "conjugate gradients with the stiffness of each node by itself"},
+             {"multigrid", MULTIGRID,
+              "with that on lattices of twice the spacing, and so on: for many cells"}})});
   options.add("report", {yes_no(report)}, "forces before each Newton iteration to screen and log");
   options.refuse([=] {
     return OptionRules{

@@ -13,6 +13,8 @@
 #include "mpm_node_action.h"
 #include "mpm_plan.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 
@@ -32,8 +34,11 @@ static constexpr double LOST = 1.0e12;              // times the first residual
 
 MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions &options) :
     MPMNodeSystem(lmp, field.grid, field.lattice.dim), field(field), options(options),
-    tangent(lmp, field)
+    tangent(lmp, field), ranks(lmp, field.grid, *field.nodes.halo)
 {
+  if (options.preconditioner == MPMImplicitOptions::MULTIGRID)
+    multigrid = std::make_unique<SplineMultigrid>(field.grid, ranks, width,
+                                                  stencil_order(field.options.shape));
 }
 
 void MPMImplicit::init()
@@ -160,6 +165,12 @@ double MPMImplicit::sum_of_sizes(const std::vector<double> &f)
 
 void MPMImplicit::apply(const double *x, double *y)
 {
+  // levels know what walls leave free node by node: their vectors are not quite in the range of P
+  if (by_levels) {
+    allowed.assign(x, x + nreals());
+    project(allowed.data());
+    x = allowed.data();
+  }
   tangent.change_of_forces(x, y);
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width];
@@ -168,9 +179,14 @@ void MPMImplicit::apply(const double *x, double *y)
   project_forces(y);
 }
 
-/** Blocks of nodes, which have been inverted. */
+/** Levels, or blocks of nodes, which have been inverted. */
 void MPMImplicit::precondition(const double *r, double *z)
 {
+  if (by_levels) {
+    multigrid->precondition(r, z);
+    project(z);
+    return;
+  }
   for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
     const double *const block = &blocks[width * width * n];
     for (int a = 0; a < width; a++) {
@@ -266,14 +282,81 @@ bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
 }
 
 /** Blocks of the diagonal of the present tangents, inverted. */
-void MPMImplicit::precondition_with_blocks()
+void MPMImplicit::prepare_blocks()
+{
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++) invert(width, &blocks[width * width * n]);
+  by_levels = false;
+}
+
+/** The projection of values of a node that is nearest to the symmetric matrix S [n][n]. */
+static void round_projection(int n, double *S)
+{
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 3, 3>;
+  Eigen::Map<Matrix> of(S, n, n);
+  if (of.isIdentity(PROJECTED)) {
+    of.setIdentity();
+    return;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(of);
+  Matrix rounded = Matrix::Zero(n, n);
+  for (int k = 0; k < n; k++)
+    if (axes.eigenvalues()[k] > 0.5)
+      rounded += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose();
+  of = rounded;
+}
+
+/** Levels of the present tangents, from the blocks of the diagonal. What walls leave free of each node is told from unit vectors.
+ *  Faces that hold pairs of mirror images together are not quite of that kind: levels then take the heavier one for free, and
+ *  the lighter one for held. */
+void MPMImplicit::prepare_levels()
+{
+  by_levels = false;
+  std::vector<double> projection, unit(nreals());
+  for (int column = 0; constrained && column < width; column++) {
+    projection.resize(nreals() * width);
+    for (int64_t k = 0; k < nreals(); k++)
+      unit[k] = k % width == column && mass[k / width] > 0.0 ? 1.0 : 0.0;
+    project(unit.data());
+    for (int64_t k = 0; k < nreals(); k++) projection[width * k + column] = unit[k];
+  }
+  for (int64_t n = 0; constrained && n < (int64_t) mass.size(); n++)
+    round_projection(width, &projection[width * width * n]);
+  by_levels = true;
+  multigrid->begin(constrained ? projection.data() : nullptr, blocks.data());
+  tangent.each_point([this](int n, const int64_t *nodes, int ngrad, const double *gradient,
+                            const double *stiffness) {
+    multigrid->add_point(n, nodes, ngrad, gradient, stiffness);
+  });
+  std::vector<double> stiff = mass;
+  for (double &m : stiff) m *= inertia;
+  multigrid->finish(*this, inertia > 0.0 ? stiff.data() : nullptr);
+}
+
+/** The correction in change by the forces in free. */
+SolveReport MPMImplicit::solve(const SolveGoal &goal)
 {
   tangent.diagonal(blocks);
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
-    double *const block = &blocks[width * width * n];
-    for (int d = 0; d < width; d++) block[(width + 1) * d] += inertia * mass[n];
-    invert(width, block);
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
+    for (int d = 0; d < width; d++)
+      blocks[width * width * n + (width + 1) * d] += inertia * mass[n];
+  const bool symmetric = now.asymmetry <= SYMMETRIC;
+  const auto attempt = [&]() {
+    std::fill(change.begin(), change.end(), 0.0);
+    return symmetric ? solver.solve(*this, free.data(), change.data(), goal)
+                     : general.solve(*this, free.data(), change.data(), goal);
+  };
+  if (!multigrid) {
+    prepare_blocks();
+    return attempt();
   }
+  field.nodes.complete(blocks.data(), width * width, width * width);
+  prepare_levels();
+  const auto solved = attempt();
+  if (solved.converged()) return solved;
+  // levels of tangents that are not positive definite are none, either
+  now.linear += solved.iterations;
+  prepare_blocks();
+  return attempt();
 }
 
 void MPMImplicit::newton(std::vector<double> &u)
@@ -314,8 +397,6 @@ void MPMImplicit::newton(std::vector<double> &u)
 
     stiffness = tangent.linearize(u.data(), dt);
     now.asymmetry = tangent.asymmetry();
-    precondition_with_blocks();
-
     // at first, walls bring what they hold where it has to be, and all the rest goes with that
 
     if (wall_moves) {
@@ -331,11 +412,8 @@ void MPMImplicit::newton(std::vector<double> &u)
     if (now.unbalanced > 0.0) goal.relative = std::max(accuracy, 0.1 * enough / now.unbalanced);
     goal.relative = std::min(goal.relative, options.least_accuracy);
     goal.most_iterations = (int) options.most_linear;
-    std::fill(change.begin(), change.end(), 0.0);
+    const auto solved = solve(goal);
     std::vector<double> &du = change;
-    const auto solved = now.asymmetry > SYMMETRIC
-        ? general.solve(*this, free.data(), du.data(), goal)
-        : solver.solve(*this, free.data(), du.data(), goal);
     now.linear += solved.iterations;
     now.iterations++;
     if (!solved.converged() && solved.outcome != SolveReport::INDEFINITE) {
@@ -483,10 +561,11 @@ void MPMImplicit::account()
 
 double MPMImplicit::memory_usage() const
 {
-  double bytes = tangent.memory_usage() + solver.memory_usage() + general.memory_usage();
-  for (const auto *list :
-       {&mass, &before, &explicit_velocity, &outer, &inner, &from, &wall, &held, &start,
-        &acceleration, &push, &velocity, &residual, &free, &change, &trial, &blocks, &room})
+  double bytes = tangent.memory_usage() + solver.memory_usage() + general.memory_usage() +
+      (multigrid ? multigrid->memory_usage() : 0.0);
+  for (const auto *list : {&mass, &before, &explicit_velocity, &outer, &inner, &from, &wall, &held,
+                           &start, &acceleration, &push, &velocity, &residual, &free, &change,
+                           &trial, &blocks, &room, &allowed})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -10,11 +10,14 @@
 #define LMP_MPM_IMPLICIT_H
 
 #include "declare/option.h"
+#include "mpm_lattice_ranks.h"
 #include "mpm_node_system.h"
 #include "mpm_tangent.h"
 #include "solve/flexible_gmres.h"
 #include "solve/krylov.h"
+#include "solve/spline_multigrid.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,7 +34,9 @@ struct MPMImplicitOptions {
   int64_t most_iterations = 50;      ///< of Newton's method in a step
   int64_t most_linear = 10000;       ///< of the linear solver in each of these
   double least_accuracy = 1.0e-3;    ///< of linear solutions
-  bool report = false;               ///< residuals of each step go to the log
+  enum Preconditioner { BLOCKS, MULTIGRID };
+  Preconditioner preconditioner = BLOCKS;
+  bool report = false;    ///< residuals of each step go to the log
 
   MPM_NS::Options declare();
   double beta() const { return 0.25 * (gamma + 0.5) * (gamma + 0.5); }
@@ -78,6 +83,9 @@ class MPMImplicit : private MPMNodeSystem {
   MPMTangent tangent;
   MPM_NS::ConjugateGradients solver;
   MPM_NS::FlexibleGMRES general{100};
+  MPMLatticeRanks ranks;
+  std::unique_ptr<MPM_NS::SplineMultigrid> multigrid;    // null: blocks of nodes
+  bool by_levels = false;                                // does it precondition now?
   Report now;
 
   // of the present step
@@ -91,7 +99,7 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> start, acceleration;    // with walls, for dynamics
   std::vector<double> velocity;               // that points move with
   std::vector<double> push;    // impulses that are not of the forces of the start of the step
-  std::vector<double> residual, free, change, trial, blocks, room;
+  std::vector<double> residual, free, change, trial, blocks, room, allowed;
 
   int64_t nreals() const { return (int64_t) mass.size() * width; }
   void take_nodes();
@@ -102,7 +110,9 @@ class MPMImplicit : private MPMNodeSystem {
   double sum_of_sizes(const std::vector<double> &);
   bool find_residual(const std::vector<double> &u, double &size);
   bool search(std::vector<double> &u, double slope, double &size);
-  void precondition_with_blocks();
+  void prepare_blocks();
+  void prepare_levels();
+  MPM_NS::SolveReport solve(const MPM_NS::SolveGoal &);
   void newton(std::vector<double> &u);
   void account();
   double give_back(const std::vector<double> &u);

@@ -325,12 +325,43 @@ void MPMTangent::change_of_forces(const double *du, double *dforce)
 
 /* ---------------------------------------------------------------------- */
 
+/** Gradients of moving least squares are weights times distances [node spacings] times minus this. */
+double MPMTangent::mls_moment() const
+{
+  return mls ? shape_constants[field.options.shape].inv_moment / field.lattice.h : 0.0;
+}
+
+void MPMTangent::each_point(const UsePoint &use) const
+{
+  const MPMStencil stencil(field);
+  const double scale = field.step_data().stress_scale, moment = mls_moment();
+  const int ngrad = nH > nL ? dim + 1 : dim, size = dim * ngrad;
+  std::vector<int64_t> nodes;
+  std::vector<double> gradients, stiffness((std::size_t) size * size, 0.0);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double *const K = &tangents[i * nH * nH], V = scale * atom->vfrac[i];
+      const double around =
+          nH > nL ? 1.0 / field.frame->radius((int) i, field.frame->places()[i][0]) : 0.0;
+      nodes.clear();
+      gradients.clear();
+      stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+        nodes.push_back(node.number);
+        for (int d = 0; d < dim; d++)
+          gradients.push_back(mls ? -moment * node.weight * node.r[d] : node.gradient[d]);
+        if (ngrad > dim) gradients.push_back(around * node.weight);
+      });
+      for (int k = 0; k < nH; k++)
+        for (int l = 0; l < nH; l++) stiffness[size * l + k] = V * K[nH * k + l];
+      use((int) nodes.size(), nodes.data(), ngrad, gradients.data(), stiffness.data());
+    }
+}
+
 void MPMTangent::diagonal(std::vector<double> &blocks)
 {
   const Grid &grid = field.grid;
   const MPMStencil stencil(field);
-  const double h = field.lattice.h, scale = field.step_data().stress_scale;
-  const double moment = mls ? shape_constants[field.options.shape].inv_moment / h : 0.0;
+  const double scale = field.step_data().stress_scale, moment = mls_moment();
   const double *const place = &field.frame->places()[0][0];
   blocks.assign(grid.nnodes() * nL, 0.0);
   for (const auto &run : field.map->runs)

@@ -13,6 +13,7 @@
 #include "pointers.h"
 #include "transfer/kernels.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -54,6 +55,13 @@ class MPMTangent : protected Pointers {
   void change_of_forces(const double *du, double *dforce);
   /** Minus the same, of each node by its own motion alone: [node][dim][dim]. Collective. */
   void diagonal(std::vector<double> &blocks);
+  /** What one point does to the system: the n nodes that it reaches, [n][ngrad] gradients of their functions, and [dim ngrad][dim
+   *  ngrad] minus the change of its force on H, for row and column l*dim + a of H_al, in the units of forces. */
+  using UsePoint = std::function<void(int n, const int64_t *nodes, int ngrad,
+                                      const double *gradient, const double *stiffness)>;
+  /** All points of this rank, those of a block one after the other. Around an axis ngrad is dim + 1, where the last entry is
+   *  that of H_zz, of the first component alone. */
+  void each_point(const UsePoint &) const;
   /** Largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry. Collective. */
   double asymmetry() const;
 
@@ -73,6 +81,7 @@ class MPMTangent : protected Pointers {
   void scatter(const double *forces_of_points, double *force);
   bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
               MPM_NS::Tangent *tangent = nullptr);
+  double mls_moment() const;
   void lattice_F(int first, int n, const double *H, double *F) const;
   void differentiate(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
   void take_differences(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
