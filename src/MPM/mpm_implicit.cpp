@@ -28,6 +28,7 @@ static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
 static constexpr double SYMMETRIC = 1.0e-3;         // of tangents, for conjugate gradients
 static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are not known better
+static constexpr int DO_WELL = 15;                  // iterations with levels of other tangents
 static constexpr double LOST = 1.0e12;              // times the first residual
 
 /* ---------------------------------------------------------------------- */
@@ -332,29 +333,39 @@ void MPMImplicit::prepare_levels()
   multigrid->finish(*this, inertia > 0.0 ? stiff.data() : nullptr);
 }
 
-/** The correction in change by the forces in free. */
+/** The correction in change by the forces in free. Levels take longer to make than to use: those of the first tangents of a step
+ *  serve all of its iterations as long as they do well. Nothing outlives the step, as a run that goes on from a restart file
+ *  must take the same way. */
 SolveReport MPMImplicit::solve(const SolveGoal &goal)
 {
-  tangent.diagonal(blocks);
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
-    for (int d = 0; d < width; d++)
-      blocks[width * width * n + (width + 1) * d] += inertia * mass[n];
-  const bool symmetric = now.asymmetry <= SYMMETRIC;
   const auto attempt = [&]() {
     std::fill(change.begin(), change.end(), 0.0);
-    return symmetric ? solver.solve(*this, free.data(), change.data(), goal)
-                     : general.solve(*this, free.data(), change.data(), goal);
+    return now.asymmetry <= SYMMETRIC ? solver.solve(*this, free.data(), change.data(), goal)
+                                      : general.solve(*this, free.data(), change.data(), goal);
   };
-  if (!multigrid) {
-    prepare_blocks();
-    return attempt();
+  const auto find_blocks = [&]() {
+    tangent.diagonal(blocks);
+    for (int64_t n = 0; n < (int64_t) mass.size(); n++)
+      for (int d = 0; d < width; d++)
+        blocks[width * width * n + (width + 1) * d] += inertia * mass[n];
+  };
+  for (int again = 0; multigrid && again < 2; again++) {
+    const bool made = !by_levels;
+    if (made) {
+      find_blocks();
+      field.nodes.complete(blocks.data(), width * width, width * width);
+      prepare_levels();
+    }
+    const auto solved = attempt();
+    if (solved.converged()) {
+      if (solved.iterations > DO_WELL) by_levels = false;
+      return solved;
+    }
+    now.linear += solved.iterations;
+    by_levels = false;
+    if (made) break;    // levels of tangents that are not positive definite are none, either
   }
-  field.nodes.complete(blocks.data(), width * width, width * width);
-  prepare_levels();
-  const auto solved = attempt();
-  if (solved.converged()) return solved;
-  // levels of tangents that are not positive definite are none, either
-  now.linear += solved.iterations;
+  find_blocks();
   prepare_blocks();
   return attempt();
 }
@@ -448,6 +459,7 @@ double MPMImplicit::step(double step_dt)
 {
   dt = step_dt;
   now = Report();
+  by_levels = false;
   take_nodes();
   find_constraints();
   tangent.external_forces(outer.data());
