@@ -8,11 +8,11 @@
 
 #include "fix_mpm_implicit.h"
 
-#include "mpm_affine.h"
 #include "mpm_field.h"
 #include "mpm_ledger.h"
 #include "mpm_node_action.h"
 #include "mpm_options.h"
+#include "mpm_rest.h"
 #include "mpm_state.h"
 #include "mpm_time_limit.h"
 #include "transfer/kernels.h"
@@ -222,27 +222,10 @@ void FixMPMImplicit::step()
                    update->ntimestep, now.linear, now.indefinite, list);
 }
 
-/* ----------------------------------------------------------------------
-   statics: points have moved, and are at rest again. What they had, nodes got in step(), less what transfers lose. The work of forces is counted with the velocities of points at the
-   start of each step (MPMEnergyWatch), when there are none
-------------------------------------------------------------------------- */
-
+/** Statics: points have moved, and are at rest again. What they had, nodes got in step(), less what transfers lose. */
 void FixMPMImplicit::rest()
 {
-  const double energy = field->ledger.point_kinetic_energy();
-  field->ledger.take(energy);
-  taken[0] += energy;
-  double power = 0.0;
-  const int nC = field->affine ? field->affine->size() : 0,
-            nQ = field->affine && field->affine->Q ? poly_size(field->lattice.dim) : 0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!field->is_point(i)) continue;
-    for (int d = 0; d < 3; d++) power += atom->f[i][d] * atom->v[i][d];
-    std::fill_n(atom->v[i], 3, 0.0);
-    if (nC) std::fill_n(field->affine->C[i], nC, 0.0);
-    if (nQ) std::fill_n(field->affine->Q[i], nQ, 0.0);
-  }
-  taken[1] -= power * field->step_dt();
+  put_to_rest(*field, taken);
 }
 
 std::vector<MPMPhysics::Account> FixMPMImplicit::accounts() const

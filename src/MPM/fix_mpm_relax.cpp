@@ -20,12 +20,11 @@
 #include "fix_mpm_relax.h"
 
 #include "fix_mpm_pore.h"
-#include "mpm_affine.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
 #include "mpm_points.h"
+#include "mpm_rest.h"
 #include "mpm_state.h"
-#include "transfer/kernels.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -166,29 +165,11 @@ double FixMPMRelax::force_of_stress() const
   return sum;
 }
 
-/* ----------------------------------------------------------------------
-   What points lose is not lost by transfers. The work of forces is counted with the velocities of points
-   at the start of each step (MPMEnergyWatch), and so a step late: that of the last step would not be
-------------------------------------------------------------------------- */
+/* ---------------------------------------------------------------------- */
 
 void FixMPMRelax::rest()
 {
-  for (auto *field : fields) {
-    const double energy = field->ledger.point_kinetic_energy();
-    field->ledger.take(energy);
-    taken[0] += energy;
-    double power = 0.0;
-    const int nC = field->affine ? field->affine->size() : 0,
-              nQ = field->affine && field->affine->Q ? poly_size(field->lattice.dim) : 0;
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!field->is_point(i)) continue;
-      for (int d = 0; d < 3; d++) power += atom->f[i][d] * atom->v[i][d];
-      std::fill_n(atom->v[i], 3, 0.0);
-      if (nC) std::fill_n(field->affine->C[i], nC, 0.0);
-      if (nQ) std::fill_n(field->affine->Q[i], nQ, 0.0);
-    }
-    taken[1] -= power * field->step_dt();
-  }
+  for (auto *field : fields) put_to_rest(*field, taken);
   kinetic = 0.0;
   nrests++;
 }
