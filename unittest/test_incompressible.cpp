@@ -481,3 +481,40 @@ SERIAL_TEST(Incompressible, BadInput)
       "requires material points");
   expect_error(plane("si", "s f", "0 1 0 1", 1, 0.02) + fix + "0.1 1000", "shrink-wrapped");
 }
+
+// the velocity of what falls is that of the elapsed time, however long its steps were: of fix mpm/dt, and of runs with others
+SERIAL_TEST(Drop, FallsFreely)
+{
+  for (const char *more : {"", "reflect 0.8"}) {
+    Scene run(
+        plane("si", "f f", "0 1 0 4", 1, 0.02) +
+        "region drop block 0.3 0.6 3 3.4 INF INF\ncreate_points 1 region drop spacing 0.025\n"
+        "fix water all mpm/incompressible 0.05 1000 " +
+        more +
+        "\nfix g all gravity 9.81 vector 0 -1 0\ntimestep 0.02\nrun 1\ntimestep 0.001\nrun 100\n"
+        "fix dt all mpm/dt 0.3 every 1 max 0.02\nrun 20\n");
+    const double v = -9.81 *
+        (run.lmp->update->atime +
+         (run.lmp->update->ntimestep - run.lmp->update->atimestep) * run.lmp->update->dt);
+    for (int i = 0; i < run.n(); i++) EXPECT_NEAR(run.v()[i][1] / v, 1.0, 1e-9) << more;
+  }
+}
+
+// pressure, forces on walls, and velocities do not depend on how long the step before was
+SERIAL_TEST(Tank, TimeStepThatChanges)
+{
+  for (const char *more : {"", "reflect 0.8"}) {
+    Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) +
+              "region w block 0 1 0 0.6 INF INF\ncreate_points 1 region w spacing 0.025\n"
+              "fix water all mpm/incompressible 0.05 1000 tolerance 1e-12 " +
+              more + "\nfix g all gravity 9.81 vector 0 -1 0\ntimestep 0.02\nrun 4\n");
+    for (const double dt : {0.0005, 0.0005, 0.01, 0.001}) {
+      run.commands(strprintf("timestep %g\nrun 1\n", dt));
+      const double weight = 1000.0 * 9.81 * 0.6;
+      EXPECT_NEAR(run.fix("water")->compute_vector(9) / weight, 1.0, 1e-9) << more << dt;
+      for (int i = 0; i < run.n(); i++)
+        EXPECT_NEAR(-run.points().tau[i][0] / weight, 1.0 - run.x()[i][1] / 0.6, 1e-9)
+            << more << dt;
+    }
+  }
+}

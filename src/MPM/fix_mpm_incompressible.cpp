@@ -39,6 +39,8 @@ using namespace MPM_NS;
 static constexpr int AIR_LAYERS = 3;
 // residuals that are as small as this share of speed/spacing are rounding
 static constexpr double ROUNDING = 1.0e-14;
+// relative change of the time step with which there are two solves: less is as small in the pressure
+static constexpr double DIFFERENT_DT = 0.01;
 // relative difference of densities that counts as none
 static constexpr double SAME_DENSITY = 1.0e-9;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
@@ -324,16 +326,18 @@ MPMFlowPoints FixMPMIncompressible::points_now(double dt) const
   return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt};
 }
 
+/* ----------------------------------------------------------------------
+   Forces act for the duration of this step, in two parts: 1/(1 + R) before points move, and R/(1 + R) in what comes once more.
+   What the motion in the step before has made of divergence, the pressure has to take in 1/(1 + R) of the duration of that
+   step. Where the two durations differ, there is one solve for the velocities, and one with forces of the duration before, of
+   which the pressure is, and, in proportion to the durations, what comes once more
+------------------------------------------------------------------------- */
+
 void FixMPMIncompressible::initial_integrate(int)
 {
-  const double dt = update->dt, to_acceleration = acceleration_of_stress();
-  const int dim = cells.lattice.dim;
-
-  // Forces and the pressure act in a part 1/(1 + R) of the step up to the time of the positions, and in R/(1 + R) of the
-  // step that follows: what they have done in the former is done once more, as far as these steps have the same duration
-
-  const double before = dt_before > 0.0 ? dt_before : dt;
-  const double part = before / (1.0 + reflect), again = std::min(1.0, reflect * dt / before);
+  const double dt = update->dt, before = dt_before > 0.0 ? dt_before : dt;
+  const double part = 1.0 / (1.0 + reflect);
+  const bool differ = std::fabs(dt - before) > DIFFERENT_DT * dt;
   dt_before = dt;
   const MPMFlowPoints points = points_now(dt);
   int valid = cells.valid, all_valid;
@@ -342,12 +346,43 @@ void FixMPMIncompressible::initial_integrate(int)
   cells.find_cells();
 
   give_to_cells(cells, points, sums);
-  cells.sum(sums.data(), 3 * dim + 1);
+  cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
   find_velocities();
-  if (flip > 0.0 || reflect > 0.0) old = star;
+  if (flip > 0.0 || reflect > 0.0 || differ) old = star;
   pressure->find_wet(share);
-  if (viscous) add_viscosity(part);
-  add_forces(part * force->ftm2v);
+
+  find_flow(part * (differ ? before : dt));
+  find_pressures(part * (differ ? before : dt) * acceleration_of_stress());
+  if (reflect > 0.0) {
+    const double again = reflect * (differ ? dt / before : 1.0);
+    more.resize(velocity.size());
+    for (std::size_t k = 0; k < velocity.size(); k++) more[k] = again * (velocity[k] - old[k]);
+  }
+  if (differ) {
+    star = old;
+    find_flow(part * dt);
+  }
+  check_speed();
+
+  if (spread > 0.0) find_shift();
+
+  const MPMFlowUpdate update_points = {flip, flip > 0.0 ? old.data() : nullptr, reflect,
+                                       reflect > 0.0 ? more.data() : nullptr,
+                                       spread > 0.0 ? shift.data() : nullptr};
+  cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
+                               MPMPoints::get(atom)->tau);
+
+  last.wet = (double) pressure->nwet();
+  last.filled = 0.0;
+  for (const auto &cell : cells.cells) last.filled += std::min(1.0, share[cell.number]);
+  last.filled *= cells.lattice.cell_volume();
+}
+
+/** Velocities after forces and viscosity of a duration, which go to star, and the pressure. */
+void FixMPMIncompressible::find_flow(double duration)
+{
+  if (viscous) add_viscosity(duration);
+  add_forces(duration * force->ftm2v);
 
   velocity.assign(star.size(), 0.0);
   known.assign(star.size(), 0.0);
@@ -364,27 +399,9 @@ void FixMPMIncompressible::initial_integrate(int)
         "Fix {} {}: the pressure {} at step {}; allow more iterations, or a larger tolerance",
         style, id, report.describe(), update->ntimestep);
   go_on_into_air();
-  check_speed();
-  find_pressures(1.0 / (part * to_acceleration));
-
-  if (spread > 0.0) find_shift();
-
-  const MPMFlowUpdate update_points = {flip, again,
-                                       flip > 0.0 || reflect > 0.0 ? old.data() : nullptr,
-                                       spread > 0.0 ? shift.data() : nullptr};
-  cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
-                               MPMPoints::get(atom)->tau);
-
   last.iterations = report.iterations;
   last.residual = report.right_side > 0.0 ? report.residuals.back() / report.right_side : 0.0;
   last.divergence = pressure->largest_divergence(velocity.data());
-  last.wet = (double) pressure->nwet();
-  last.filled = 0.0;
-  for (const auto &cell : cells.cells) last.filled += std::min(1.0, share[cell.number]);
-  last.filled *= cells.lattice.cell_volume();
-  for (int d = 0; d < dim; d++)
-    for (int s = 0; s < 2; s++)
-      last.walls[d][s] = pressure->at_wall(d, s) / (part * to_acceleration * force->nktv2p);
 }
 
 /** Velocities of faces by the momentum of points, and shares that are filled, complete. */
@@ -434,13 +451,16 @@ void FixMPMIncompressible::add_viscosity(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   pressures for points, so that these interpolate zero at the surface and what it is at walls
+   forces on walls, and pressures for points, so that these interpolate zero at the surface and what it is at walls
 ------------------------------------------------------------------------- */
 
-void FixMPMIncompressible::find_pressures(double psi_to_pressure)
+void FixMPMIncompressible::find_pressures(double pressure_to_psi)
 {
+  for (int d = 0; d < cells.lattice.dim; d++)
+    for (int s = 0; s < 2; s++)
+      last.walls[d][s] = pressure->at_wall(d, s) / (pressure_to_psi * force->nktv2p);
   pressure->extend_into_air(pressures);
-  for (double &p : pressures) p *= psi_to_pressure;
+  for (double &p : pressures) p /= pressure_to_psi;
   cells.extrapolate_cells(pressures.data(), [this](int64_t number) {
     return pressure->is_wet(number);
   });
@@ -584,7 +604,8 @@ double FixMPMIncompressible::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
       air->memory_usage();
-  for (const auto *list : {&sums, &share, &old, &star, &velocity, &known, &pressures, &shift})
+  for (const auto *list :
+       {&sums, &share, &old, &star, &more, &velocity, &known, &pressures, &shift})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -77,7 +77,7 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   std::unique_ptr<MPMFlowAir> air;
   std::unique_ptr<MPMFlowViscosity> viscous;    // null: none
   MPMRows gradient;                             // [n][dim*dim] dv_c/dx_d of points, with apic
-  std::vector<double> sums, share, old, star, velocity, known, pressures, shift;
+  std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
 
@@ -95,7 +95,8 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   void find_velocities();
   void add_forces(double dt);
   void add_viscosity(double dt);
-  void find_pressures(double psi_to_pressure);
+  void find_flow(double duration);
+  void find_pressures(double pressure_to_psi);
   void check_speed() const;
 };
 

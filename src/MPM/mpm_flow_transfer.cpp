@@ -184,7 +184,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       double *const x = points.x[i], *const v = points.v[i];
       places.find(x, w);
       reach.find(cells.grid, block, w.base);
-      double now[dim], G[dim * dim], other[dim], G_other[dim * dim];
+      double now[dim], G[dim * dim], old[dim], more[dim] = {}, G_more[dim * dim];
       interpolate<dim>(reach, w, velocity, now, points.gradient ? G : nullptr);
       double p = 0.0;
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
@@ -192,17 +192,16 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       });
       for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
 
-      double more[dim] = {};    // by the change that comes once more
       if (update.old) {
-        interpolate<dim>(reach, w, update.old, other, points.gradient ? G_other : nullptr);
-        for (int c = 0; c < dim; c++) {
-          more[c] = update.reflect * (now[c] - other[c]);
-          v[c] = now[c] + more[c] + update.flip * (v[c] - other[c]);
-        }
-        for (int e = 0; points.gradient && e < dim * dim; e++)
-          G[e] += update.reflect * (G[e] - G_other[e]);
+        interpolate<dim>(reach, w, update.old, old, nullptr);
+        for (int c = 0; c < dim; c++) v[c] = now[c] + update.flip * (v[c] - old[c]);
       } else
         std::copy_n(now, dim, v);
+      if (update.more) {
+        interpolate<dim>(reach, w, update.more, more, points.gradient ? G_more : nullptr);
+        for (int c = 0; c < dim; c++) v[c] += more[c];
+        for (int e = 0; points.gradient && e < dim * dim; e++) G[e] += G_more[e];
+      }
       if (points.gradient)
         for (int e = 0; e < dim * dim; e++) points.gradient[i][e] = inv_h * G[e];
 

@@ -27,11 +27,10 @@ struct MPMFlowPoints {
 
 /** How points get their velocity from the cells. */
 struct MPMFlowUpdate {
-  double flip;    ///< share of what cells do not see of velocities that points keep
-  double
-      reflect;    ///< share of the change of velocities by forces and pressure that comes once more
-  const double
-      *old;    ///< [cell][dim] velocities before that change; null: without flip and reflect
+  double flip;           ///< share of what cells do not see of velocities that points keep
+  const double *old;     ///< [cell][dim] velocities before forces and pressure; null: without flip
+  double reflect;        ///< share of the change by these that comes once more
+  const double *more;    ///< [cell][dim] what comes once more; null: without reflect
   /** [cell][dim] displacements, besides the motion with the velocity, with which points keep their place in the field of
    *  velocities; null: none. */
   const double *shift = nullptr;
