@@ -293,6 +293,37 @@ SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
   }
 }
 
+// two bodies at different temperatures below, and a contact that ends there: what it lets through at the edge is what conduction
+// does, whatever the conductance and the time step are
+SERIAL_TEST(Edge, BetweenTwoTemperatures)
+{
+  for (const double offset : {0.0, 0.03})
+    for (const char *conductance : {"1", "1e8"}) {
+      double power[2];
+      for (const bool is_long : {false, true}) {
+        const std::string grid = strprintf(" mpm 0.1 dtcheck no origin %g %g\n", offset, offset);
+        Scene run(
+            plane("lj", "f f", "-0.5 2.5 -0.5 1.5", 2, 0.02) +
+            "region a block 0 1 0 1 INF INF\nregion b block 1 2 0 1 INF INF\n"
+            "region left block -1 1 -1 0 INF INF\nregion right block 1 3 -1 0 INF INF\n"
+            "create_points 1 region a spacing 0.05\ncreate_points 2 region b spacing 0.05\n"
+            "group a type 1\ngroup b type 2\nfix ga a" +
+            grid + "fix gb b" + grid +
+            "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e-2\n"
+            "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 2e-2\n"
+            "fix touch all mpm/contact ga gb\n"
+            "fix heat all mpm/heat region left temperature 0.0 region right temperature 2.0 "
+            "contact "
+            "ga gb conductance " +
+            conductance + " stages 9 transfer relax 0\n");
+        run_to(run, 200.0, is_long ? 1.0 : 0.05);
+        const double *const all = run.fix_vector("heat", 12);
+        power[is_long] = measured("power", all[11]);
+      }
+      EXPECT_NEAR(power[1] / power[0], 1.0, 1e-3) << offset << " " << conductance;
+    }
+}
+
 // two halves of a square that is turned, with any offset: each is a slab with Bi = 1 at t = 0.125
 SERIAL_TEST(Turned, SlabsCool)
 {

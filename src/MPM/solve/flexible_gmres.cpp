@@ -8,6 +8,7 @@
 
 #include "solve/flexible_gmres.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace MPM_NS;
@@ -103,10 +104,10 @@ void FlexibleGMRES::orthogonalize(LinearSystem &system, int j, double &largest)
 
   // classical Gram and Schmidt twice: as good as the modified form once, with two sums over ranks and not j + 1
 
-  std::vector<const double *> left(j + 2), right(j + 2, next.data());
-  for (int k = 0; k <= j; k++) left[k] = v[k].data();
-  left[j + 1] = next.data();
-  std::vector<double> part(j + 2);
+  left.resize(j + 2);
+  right.assign(j + 2, next.data());
+  part.resize(j + 2);
+  for (int k = 0; k < j + 2; k++) left[k] = v[k].data();
   for (int pass = 0; pass < 2; pass++) {
     system.products(j + 2, left.data(), right.data(), part.data());
     if (pass == 0) largest = std::max(largest, std::sqrt(part[j + 1]));
@@ -122,9 +123,10 @@ void FlexibleGMRES::orthogonalize(LinearSystem &system, int j, double &largest)
 }
 
 /** Add the best combination of the first n vectors to x. */
-void FlexibleGMRES::update(int n, double *x) const
+void FlexibleGMRES::update(int n, double *x)
 {
-  std::vector<double> y(n);
+  auto &y = part;
+  y.resize(n);
   for (int j = n - 1; j >= 0; j--) {
     y[j] = g[j];
     for (int k = j + 1; k < n; k++) y[j] -= h[(std::size_t) k * (longest + 2) + j] * y[k];

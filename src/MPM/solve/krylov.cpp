@@ -8,6 +8,7 @@
 
 #include "solve/krylov.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 

@@ -8,7 +8,9 @@
 
 #include "solve/minres.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 using namespace MPM_NS;
 

@@ -16,7 +16,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <unordered_map>
+#include <utility>
 
 using namespace MPM_NS;
 
@@ -115,6 +117,7 @@ struct SplineMultigrid::Levels {
   std::vector<char> in_system;       // [node] it has a stiffness
   std::vector<double> held_part;     // [node of the rim][width][width]
   double largest = 0.0;
+  bool usable = true;    // all factors are there
   std::vector<double> work[3], rest;
 
   // nodes at the surface, whose functions are nearly dependent: chunks of them are factorized, on all ranks
@@ -134,7 +137,7 @@ struct SplineMultigrid::Levels {
   std::vector<int> first;    // [nodes + 1] range in parts
   std::vector<Part> parts;
   std::vector<int> number, of_ranks;
-  std::vector<double> partial;
+  std::vector<double> partial, of_all;
 
   // stiffness of points with the same nodes, and that of this rank
   std::vector<int64_t> nodes;
@@ -582,7 +585,8 @@ void SplineMultigrid::Levels::smoother_of(Level &level, const LatticeNodes &node
       level.rim_factors->add(number[node], number[j], value);
     }
   }
-  level.rim_factors->factorize();
+  usable = level.rim_factors->factorize() && usable;
+  if (!usable) return;
   level.rim_b.resize(level.rim.size());
   level.rim_x.resize(level.rim.size());
 
@@ -664,7 +668,7 @@ void SplineMultigrid::Levels::factorize_rim(const double *mass)
   rim_blocks = {};
   rim_block_at = {};
   for (const auto &b : of_all) rim_factors.add(b.row, b.column, b.value);
-  rim_factors.factorize();
+  usable = rim_factors.factorize() && usable;
   rim_b.resize(rim.index.size() * w);
   rim_x.resize(rim.index.size() * w);
 }
@@ -682,9 +686,9 @@ void SplineMultigrid::Levels::by_blocks(const double *r, double *z)
   partial.resize(rim_owned.size() * w);
   for (std::size_t k = 0; k < rim_owned.size(); k++)
     project(rim_owned[k], r + rim_owned[k] * w, true, partial.data() + k * w);
-  const auto all = ranks.gather(partial);
+  ranks.gather(partial, of_all);
   for (std::size_t k = 0; k < rim_of_ranks.size(); k++)
-    for (int a = 0; a < w; a++) rim_b[rim_of_ranks[k] * w + a] = all[k * w + a];
+    for (int a = 0; a < w; a++) rim_b[rim_of_ranks[k] * w + a] = of_all[k * w + a];
   rim_factors.solve(rim_b.data(), rim_x.data());
   for (int64_t node = 0; node < grid.nnodes(); node++)
     if (rim_number[node] >= 0)
@@ -719,8 +723,8 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
   LatticeNodes all;
   o.merge_ranks(all);
   o.coarsen(std::move(all));
-  factorize(o.coarse.back().A, o.factors);
-  o.estimate_largest();
+  o.usable = o.usable && factorize(o.coarse.back().A, o.factors);
+  if (o.usable) o.estimate_largest();
 }
 
 void SplineMultigrid::Levels::smooth(const double *r, double *z, bool from_zero)
@@ -767,6 +771,10 @@ void SplineMultigrid::precondition(const double *r, double *z)
   auto &o = *on;
   const int w = o.width;
   const int64_t nnodes = o.grid.nnodes();
+  if (!o.usable) {
+    std::copy_n(r, nnodes * w, z);
+    return;
+  }
   std::fill_n(z, nnodes * w, 0.0);
   o.smooth(r, z, true);
 
@@ -791,11 +799,11 @@ void SplineMultigrid::precondition(const double *r, double *z)
       kept++;
     }
   partial.resize(kept * w);
-  const auto all = o.ranks.gather(partial);
+  o.ranks.gather(partial, o.of_all);
   auto &coarse = o.coarse[0];
   coarse.b.setZero();
   for (std::size_t k = 0; k < o.of_ranks.size(); k++)
-    for (int a = 0; a < w; a++) coarse.b[o.of_ranks[k] * w + a] += all[k * w + a];
+    for (int a = 0; a < w; a++) coarse.b[o.of_ranks[k] * w + a] += o.of_all[k * w + a];
   o.cycle(0);
 
   for (int64_t node = 0; node < nnodes; node++) {
@@ -810,6 +818,11 @@ void SplineMultigrid::precondition(const double *r, double *z)
   o.smooth(r, z, false);
 }
 
+bool SplineMultigrid::usable() const
+{
+  return on->usable;
+}
+
 int SplineMultigrid::levels() const
 {
   return 1 + on->coarse.size();
@@ -822,11 +835,32 @@ double SplineMultigrid::largest_eigenvalue() const
 
 double SplineMultigrid::memory_usage() const
 {
-  double bytes = on->parts.capacity() * sizeof(Part);
-  for (const auto *vector :
-       {&on->projection, &on->inverse, &on->work[0], &on->work[1], &on->work[2], &on->rest})
-    bytes += vector->capacity() * sizeof(double);
-  for (const auto &level : on->coarse)
-    bytes += (level.A.nonZeros() + level.to_next.nonZeros()) * (sizeof(double) + sizeof(int));
+  const auto &o = *on;
+  // a node of a hash map: what it has, and a pointer in it and to it
+  constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
+  double bytes = o.parts.capacity() * sizeof(Part) + memory_of(o.factors) +
+      o.rim_factors.memory_usage() + o.plain.capacity() + o.in_system.capacity() +
+      (o.blocks.capacity() + o.rim_blocks.capacity()) * sizeof(Block) +
+      (o.block_at.size() + o.rim_block_at.size()) * HASHED +
+      (o.rim_owned.capacity() + o.nodes.capacity()) * sizeof(int64_t);
+  for (const auto *list : {&o.rim, &o.mine})
+    bytes += list->index.capacity() * sizeof(LatticeIndex) + list->number.size() * HASHED;
+  for (const auto *list : {&o.rim_number, &o.rim_of_ranks, &o.rim_local, &o.first, &o.number,
+                           &o.of_ranks, &o.local, &o.place})
+    bytes += list->capacity() * sizeof(int);
+  for (const auto *list :
+       {&o.projection, &o.inverse, &o.held_part, &o.work[0], &o.work[1], &o.work[2], &o.rest,
+        &o.rim_element, &o.rim_x, &o.rim_b, &o.partial, &o.of_all, &o.element, &o.G, &o.T})
+    bytes += list->capacity() * sizeof(double);
+  for (const auto &level : o.coarse) {
+    for (const auto *matrix : {&level.A, &level.to_next})
+      bytes += matrix->nonZeros() * (sizeof(double) + sizeof(int)) + matrix->rows() * sizeof(int);
+    bytes +=
+        (level.x.size() + level.b.size()) * sizeof(double) + level.rim.capacity() * sizeof(int);
+    for (const auto *list : {&level.inverse, &level.work[0], &level.work[1], &level.work[2],
+                             &level.rim_b, &level.rim_x})
+      bytes += list->capacity() * sizeof(double);
+    if (level.rim_factors) bytes += level.rim_factors->memory_usage();
+  }
   return bytes;
 }
