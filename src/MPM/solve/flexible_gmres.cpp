@@ -28,7 +28,7 @@ SolveReport FlexibleGMRES::solve(LinearSystem &system, const double *b, double *
   s.assign(longest, 0.0);
   g.assign(longest + 1, 0.0);
   report.right_side = std::sqrt(system.product(b, b));
-  const double enough = std::max(goal.relative * report.right_side, goal.absolute);
+  const double enough = goal.enough(report.right_side);
 
   bool exhausted = false;    // the space of Krylov was at the end of a cycle
   double before = 0.0;       // residual at its start
@@ -37,8 +37,7 @@ SolveReport FlexibleGMRES::solve(LinearSystem &system, const double *b, double *
 
     v[0].resize(n);
     auto &r = v[0];
-    system.apply(x, r.data());
-    for (int64_t i = 0; i < n; i++) r[i] = b[i] - r[i];
+    find_residual(system, b, x, r.data());
     const double residual = std::sqrt(system.product(r.data(), r.data()));
     if (report.residuals.empty()) report.residuals.push_back(residual);
     report.residuals.back() = residual;

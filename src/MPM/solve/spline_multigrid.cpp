@@ -361,55 +361,52 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
   const auto C = [&](int i, int j) {
     return 0.5 * (stiffness[i * m + j] + stiffness[j * m + i]);
   };
-  const int nr = o.rim_local.size();
   o.T.assign(m * w, 0.0);
-  for (int J = 0; J < nr; J++) {
-    const double *const gJ = gradient + o.rim_local[J] * ngrad;
-    for (int i = 0; i < m; i++)
-      for (int b = 0; b < w; b++) {
-        double sum = 0.0;
-        for (int l = 0; l < ngrad; l++) sum += C(i, l * w + b) * gJ[l];
-        o.T[i * w + b] = sum;
-      }
-    for (int I = J; I < nr; I++) {
-      const double *const gI = gradient + o.rim_local[I] * ngrad;
-      double *const K = o.rim_element.data() + (I * nr + J) * w * w;
-      for (int l = 0; l < ngrad; l++)
-        for (int ab = 0; ab < w * w; ab++) K[ab] += gI[l] * o.T[l * w * w + ab];
-    }
-  }
-  if (!o.held) {
-    // G_J: [ngrad] gradient of a coarse function
-
-    o.G.assign(nc * ngrad, 0.0);
-    o.T.assign(m * w, 0.0);
-    for (int i = 0; i < n; i++)
-      for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
-        double *const g = o.G.data() + o.place[o.parts[k].node] * ngrad;
-        for (int l = 0; l < ngrad; l++) g[l] += o.parts[k].weight * gradient[i * ngrad + l];
-      }
-    for (int J = 0; J < nc; J++) {
-      const double *const gJ = o.G.data() + J * ngrad;
+  // of functions with these gradients [ngrad]: one triangle of the blocks [number][number]
+  const auto add_blocks = [&](int number, const auto &gradient_of, std::vector<double> &element) {
+    for (int J = 0; J < number; J++) {
+      const double *const gJ = gradient_of(J);
       for (int i = 0; i < m; i++)
         for (int b = 0; b < w; b++) {
           double sum = 0.0;
           for (int l = 0; l < ngrad; l++) sum += C(i, l * w + b) * gJ[l];
           o.T[i * w + b] = sum;
         }
-      for (int I = J; I < nc; I++) {
-        const double *const gI = o.G.data() + I * ngrad;
-        double *const K = o.element.data() + (I * nc + J) * w * w;
+      for (int I = J; I < number; I++) {
+        const double *const gI = gradient_of(I);
+        double *const K = element.data() + (I * number + J) * w * w;
         for (int l = 0; l < ngrad; l++)
           for (int ab = 0; ab < w * w; ab++) K[ab] += gI[l] * o.T[l * w * w + ab];
       }
     }
+  };
+  add_blocks(
+      o.rim_local.size(),
+      [&](int J) {
+        return gradient + o.rim_local[J] * ngrad;
+      },
+      o.rim_element);
+  if (!o.held) {
+    // G_J: [ngrad] gradient of a coarse function
+
+    o.G.assign(nc * ngrad, 0.0);
+    for (int i = 0; i < n; i++)
+      for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
+        double *const g = o.G.data() + o.place[o.parts[k].node] * ngrad;
+        for (int l = 0; l < ngrad; l++) g[l] += o.parts[k].weight * gradient[i * ngrad + l];
+      }
+    add_blocks(
+        nc,
+        [&](int J) {
+          return o.G.data() + J * ngrad;
+        },
+        o.element);
     return;
   }
 
   // G_J: [ngrad][width][width], of projected functions, which turn a value into others
 
   o.G.assign((std::size_t) nc * m * w, 0.0);
-  o.T.assign(m * w, 0.0);
   for (int i = 0; i < n; i++) {
     const double *const P = o.projection_of(nodes[i]);
     for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
