@@ -102,6 +102,21 @@ SERIAL_TEST(Layers, InParallel)
   }
 }
 
+// a plate whose ends are off the faces, before or beyond: water comes in and goes out at its ends, so that the flow is that through its length
+SERIAL_TEST(Plate, EndsOffTheFaces)
+{
+  const int n = 12;
+  for (const double offset : {0.0, 0.25, 0.5})
+    for (const double off : {-0.2, -0.1, 0.0, 0.1, 0.2}) {
+      Scene run(replaced(plate(n, {{"block 0 1 INF INF INF INF", "constant 1"}}, 4.0 / n, offset),
+                         "fix grid",
+                         strprintf("displace_atoms all move %.17g 0 0\nfix grid", off / n)));
+      const double q = flow(run, 0.002, 2.0) * n / 4.0;
+      EXPECT_NEAR(measured(strprintf("nodes at %g, off the faces by %g cells", offset, off), q),
+                  1.0, 0.005);
+    }
+}
+
 // a checkerboard of permeabilities 1 and 10 has the mean root of 10 (J. B. Keller, J. Math. Phys. 5 (1964) 548)
 SERIAL_TEST(Layers, Checkerboard)
 {
