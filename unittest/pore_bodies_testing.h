@@ -33,38 +33,47 @@ inline std::string between_walls(const std::string &scene, const std::string &ki
       "fix b all mpm/boundary xlo xhi ylo yhi " + kind + "\n";
 }
 
-struct Named {
-  double tag, p;
+/** Pressure and saturation of the water of a point. */
+struct PointWater {
+  double tag, p, S;
 };
-/** Pressures of all points by a compute with the ID pore. */
-inline std::vector<Named> pressures(Scene &run)
+/** Those of all points by the computes of PORE. */
+inline std::vector<PointWater> water_of_points(Scene &run)
 {
-  auto *compute = run.lmp->modify->get_compute_by_id("pore");
-  compute->compute_peratom();
-  std::vector<Named> mine;
-  for (int i = 0; i < run.n(); i++)
-    mine.push_back({(double) run.lmp->atom->tag[i], compute->vector_atom[i]});
+  const auto values = [&](const char *id) {
+    auto *compute = run.lmp->modify->get_compute_by_id(id);
+    compute->compute_peratom();
+    return compute->vector_atom;
+  };
+  const double *const p = values("pore"), *const S = values("saturation");
+  std::vector<PointWater> mine;
+  for (int i = 0; i < run.n(); i++) mine.push_back({(double) run.lmp->atom->tag[i], p[i], S[i]});
   return all_by_tag(mine, run.lmp->world);
 }
-constexpr const char *PORE = "compute pore all mpm/atom pore\n";
+constexpr const char *PORE = "compute pore all mpm/atom pore\n"
+                             "compute saturation all mpm/atom saturation\n";
 
-/** The greatest difference of the pressures of the same points of two scenes; huge where there are others. */
-inline double pressure_difference(Scene &a, Scene &b)
+/** The greatest difference of the pressures and of the saturations of the same points of two scenes; huge where there
+ *  are others. */
+inline double water_difference(Scene &a, Scene &b)
 {
-  const auto one = pressures(a), other = pressures(b);
+  const auto one = water_of_points(a), other = water_of_points(b);
   if (one.empty() || one.size() != other.size()) return 1.0e300;
-  double most = 0.0;
-  for (std::size_t k = 0; k < one.size(); k++)
-    most = std::max(most, std::fabs(one[k].p - other[k].p));
-  return measured("difference", most);
+  double most[2] = {0.0, 0.0};
+  for (std::size_t k = 0; k < one.size(); k++) {
+    most[0] = std::max(most[0], std::fabs(one[k].p - other[k].p));
+    most[1] = std::max(most[1], std::fabs(one[k].S - other[k].S));
+  }
+  return std::max(measured("difference of pressures", most[0]),
+                  measured("of saturations", most[1]));
 }
 
-/** One rank and several: points, the pressures to this difference, and the water that came in. */
+/** One rank and several: points, pressures and saturations to this difference, and the water that came in. */
 inline void expect_same_on_ranks(const std::string &scene, double difference)
 {
   OnRanks run(scene + PORE, "run 300\n");
   EXPECT_LT(run.difference(), 1e-11);
-  EXPECT_LT(pressure_difference(run.serial, run.parallel), difference);
+  EXPECT_LT(water_difference(run.serial, run.parallel), difference);
   EXPECT_NEAR(run.serial.fix("water")->compute_scalar(),
               run.parallel.fix("water")->compute_scalar(), 1e-12);
 }
@@ -80,9 +89,9 @@ inline void expect_continues(const std::string &scene, const std::string &variab
   }
   Continued run(scene + PORE, 60, fixes + PORE + "timestep 0.005\n", 60);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
-  const auto one = pressures(run.whole), two = pressures(run.again);
+  const auto one = water_of_points(run.whole), two = water_of_points(run.again);
   ASSERT_EQ(one.size(), two.size());
-  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
+  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(PointWater)), 0);
   EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
 }
 

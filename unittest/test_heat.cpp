@@ -532,6 +532,31 @@ SERIAL_TEST(Corner, HasAFiniteFlow)
   EXPECT_NEAR(flow[1] / flow[0], 1.0, 0.01);
 }
 
+// both sides of a thin plate have nodes in common, and yet their whole coefficients: they are no edge
+SERIAL_TEST(ThinPlate, LetsHeatThrough)
+{
+  for (const double cells : {1.0, 1.5, 2.0, 3.0})
+    for (const double offset : {0.0, 0.5})
+      for (const double H : {1.0, 1e4}) {
+        Scene run(
+            plane("lj", "f p", strprintf("0 %g 0 4", cells), 1, 0.1) +
+            strprintf("fix grid all mpm 1.0 dtcheck no origin %g 0\n", offset) +
+            "create_points 1 box spacing 0.5\n"
+            "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.5 1.0\n" +
+            strprintf(
+                "fix heat all mpm/heat xlo convection %g 1.0 xhi convection %g 0.0 stages 9\n", H,
+                H));
+        run_to(run, 60.0, 1.0);
+        const double *const power = run.fix_vector("heat", 2);
+        // two points that are not in the middle of halves of cells are no integral: they fill the lines next to them by 0.99
+        const double error = cells == 1.0 && offset > 0.0 ? 0.02 : 1e-8;
+        for (int side = 0; side < 2; side++)
+          EXPECT_NEAR(measured(strprintf("%g cells, offset %g, H %g", cells, offset, H),
+                               (side ? -0.25 : 0.25) * power[side] * (2.0 / H + cells)),
+                      1.0, error);
+      }
+}
+
 // what is held there follows that outside in no time, and heat is what comes through the faces
 SERIAL_TEST(Corner, OfPerfectConvection)
 {

@@ -266,31 +266,64 @@ SERIAL_TEST(Moving, ExchangesTheSame)
   EXPECT_NEAR((1.0 - T[1]) / (1.0 - T[0]), 1.0, 0.01);
 }
 
+namespace {
+
+/** Two squares of 1 x 1 that touch, with 10 cells along their sides, conductivities of 1e-2 and 2e-2, room around them, and regions: low below the first one,
+ *  right where it is said. */
+std::string two_squares(double offset, const std::string &right, const std::string &heat)
+{
+  const std::string grid = strprintf(" mpm 0.1 dtcheck no origin %g %g\n", offset, offset);
+  return plane("lj", "f f", "-0.5 2.5 -0.5 1.5", 2, 0.02) +
+      "region a block 0 1 0 1 INF INF\nregion b block 1 2 0 1 INF INF\n"
+      "region low block -1 1 -1 0 INF INF\nregion right block " +
+      right +
+      " INF INF\n"
+      "create_points 1 region a spacing 0.05\ncreate_points 2 region b spacing 0.05\n"
+      "group a type 1\ngroup b type 2\nfix ga a" +
+      grid + "fix gb b" + grid +
+      "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e-2\n"
+      "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 2e-2\n"
+      "fix touch all mpm/contact ga gb\nfix heat all mpm/heat " +
+      heat + " stages 9 transfer relax 0\n";
+}
+
+}    // namespace
+
 // a contact that ends at regions of different temperatures: powers do not depend on the time step
 SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
 {
   for (const double offset : {0.0, 0.03}) {
     double power[2][3];
     for (const bool is_long : {false, true}) {
-      const std::string grid = strprintf(" mpm 0.1 dtcheck no origin %g %g\n", offset, offset);
-      Scene run(
-          plane("lj", "f f", "-0.5 2.5 -0.5 1.5", 2, 0.02) +
-          "region a block 0 1 0 1 INF INF\nregion b block 1 2 0 1 INF INF\n"
-          "region low block -1 1 -1 0 INF INF\nregion right block 2 3 -1 2 INF INF\n"
-          "create_points 1 region a spacing 0.05\ncreate_points 2 region b spacing 0.05\n"
-          "group a type 1\ngroup b type 2\nfix ga a" +
-          grid + "fix gb b" + grid +
-          "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e-2\n"
-          "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 2e-2\n"
-          "fix touch all mpm/contact ga gb\nvariable q atom 1e-2*gmask(a)\n"
-          "fix heat all mpm/heat region low convection 1e3 0.0 region right temperature 2.0 "
-          "contact ga gb conductance 1e3 source v_q stages 9 transfer relax 0\n");
+      Scene run(replaced(two_squares(offset, "2 3 -1 2",
+                                     "region low convection 1e3 0.0 region right temperature 2.0 "
+                                     "contact ga gb conductance 1e3 source v_q"),
+                         "fix heat", "variable q atom 1e-2*gmask(a)\nfix heat"));
       run_to(run, 300.0, is_long ? 1.0 : 0.05);
       const double *const all = run.fix_vector("heat", 12);
       for (int k = 0; k < 3; k++) power[is_long][k] = measured("power", all[9 + k]);
     }
     for (int k = 0; k < 3; k++) EXPECT_NEAR(power[1][k] / power[0][k], 1.0, 0.02) << k;
   }
+}
+
+// two bodies at different temperatures below, and a contact that ends there: what it lets through at the edge is what conduction
+// does, whatever the conductance and the time step are
+SERIAL_TEST(Edge, BetweenTwoTemperatures)
+{
+  for (const double offset : {0.0, 0.03})
+    for (const char *conductance : {"1", "1e8"}) {
+      double power[2];
+      for (const bool is_long : {false, true}) {
+        Scene run(two_squares(offset, "1 3 -1 0",
+                              std::string("region low temperature 0.0 region right temperature 2.0 "
+                                          "contact ga gb conductance ") +
+                                  conductance));
+        run_to(run, 200.0, is_long ? 1.0 : 0.05);
+        power[is_long] = measured("power", run.fix_vector("heat", 12)[11]);
+      }
+      EXPECT_NEAR(power[1] / power[0], 1.0, 1e-3) << offset << " " << conductance;
+    }
 }
 
 // two halves of a square that is turned, with any offset: each is a slab with Bi = 1 at t = 0.125

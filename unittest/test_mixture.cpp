@@ -826,6 +826,11 @@ SERIAL_TEST(Mixture, RefusesBadInput)
   expect_error(bed(2, 0.1, 0.9, "", 0.0) + "mpm_geostatic w 0.5\n", "name that of the soil, s");
   expect_error(bed(2, 0.1, 0.9, "", 0.0) + "delete_atoms group water\nmpm_geostatic s 0.5\n",
                "has no points of water");
+  // what carries nothing like its own weight
+  expect_error(replaced(bed(2, 0.1, 0.9, "", 0.0), strprintf("eos linear %.17g", Column().K),
+                        "eos linear 1e3") +
+                   "mpm_geostatic s 0.5\n",
+               "does not have the pressure at rest");
   const std::string good =
       slump(2) + replaced(replaced(stuff, "fix mix all", "#"), "compute e", "#");
   const std::string fix = "fix mix all mpm/mixture ";

@@ -513,6 +513,7 @@ SERIAL_TEST(BadInput, IsRefused)
        {soil + "xlo seepage 0", "seepage"},
        {"fix water all mpm/pore 2e7 6000 9810 soil m 0.4 constant 1e-5 retention gardner 1e-4",
         "below that of the water in its pores"},
+       {soil + "retention gardner 1e-3 initial -1e3 xlo flux -1000", "flows out of point"},
        {soil + "retention gardner 1e-3 initial -1e3 xlo flux -1000",
         "use a smaller time step (fix mpm/dt), or, where a flux"}},
       "run 100\n");

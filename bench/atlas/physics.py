@@ -34,7 +34,7 @@ from atlas_page import DOC, table    # noqa: E402
 # method: (variables of the scenes, physics of in.physics, its keyword more)
 METHODS = {
     "heat": {name: ({"transfer": name}, "heat", "transfer " + name)
-             for name in ("relax 1", "relax 0.3", "relax 0", "affine", "pic")},
+             for name in ("relax 1", "relax 0.3", "relax 0", "affine", "xpic 2", "pic")},
     "water": {"u-p": ({"formulation": "u-p"}, "pore", " "),
               "u-v-p": ({"formulation": "u-v-p"}, "pore", "formulation u-v-p"),
               "two sets": ({"sets": "yes"}, "sets", " ")},

@@ -244,9 +244,8 @@ void FixMPMBoundary::init()
 {
   // fields, in the order of their definition
 
+  require_field(lmp, *this);
   const auto fields = MPMField::all(lmp);
-  if (fields.empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary needs a fix mpm to act on");
   const bool moves = std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
     return !v.variable.empty() || v.value != 0.0;
   });

@@ -61,7 +61,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -249,6 +248,7 @@ void FixMPMContact::init()
   steps = 0;
   unsolved.begin();
   told_of_water = false;
+  std::fill_n(water_sums, 2, 0.0);
 }
 
 /** Called by fix mpm, whose init() may come before this one; a missing field is found here. */
@@ -1097,12 +1097,7 @@ void FixMPMContact::group_meetings()
 {
   const int n = (int) meetings.size(), nfields = (int) bodies.size();
   if (n < 2) return;
-  parent.resize(n);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int m) {
-    while (parent[m] != m) m = parent[m] = parent[parent[m]];
-    return m;
-  };
+  dependent.begin(n);
   for (int k = 0; k < nfields; k++) {
     const Body &body = bodies[k];
     const Grid &grid = body.field->grid;
@@ -1115,11 +1110,11 @@ void FixMPMContact::group_meetings()
         const int place = std::abs(body.foreseen.mirrored[3 * node + d]) - 1;
         if (place < 0) continue;
         if (first[place] < 0) first[place] = m;
-        parent[root(m)] = root(first[place]);
+        dependent.join(m, first[place]);
       }
     }
   }
-  for (int m = 0; m < n; m++) meetings[m].group = root(m);
+  for (int m = 0; m < n; m++) meetings[m].group = dependent.root(m);
   std::stable_sort(meetings.begin(), meetings.end(), [](const Meeting &a, const Meeting &b) {
     return a.group < b.group;
   });

@@ -19,6 +19,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "fix.h"
 #include "fix_mpm_boundary.h"
 #include "math/aitken.h"
+#include "math/sets.h"
 #include "mpm_first_note.h"
 #include "mpm_friction_heat.h"
 #include "mpm_node_action.h"
@@ -186,7 +187,8 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
 
   // of group_meetings()
 
-  std::vector<int> parent, first_with_mirror;
+  MPM_NS::Sets dependent;
+  std::vector<int> first_with_mirror;
 
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};

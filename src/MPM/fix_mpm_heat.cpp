@@ -223,11 +223,8 @@ double FixMPMHeat::sigma() const
 
 void FixMPMHeat::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/heat needs a fix mpm with the points");
-  if (modify->get_fix_by_style("^mpm/heat$").size() > 1)
-    error->all(FLERR, Error::NOLASTLINE,
-               "There is more than one fix mpm/heat: one acts on all points and faces");
+  require_field(lmp, *this);
+  refuse_second(lmp, *this, "one acts on all points and faces");
   if (grains)
     grain_heat->init();
   else if (atom->heatflow_flag && !grains_said)

@@ -96,10 +96,8 @@ FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
 
 void FixMPMImplicit::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/implicit needs a fix mpm");
-  if (modify->get_fix_by_style("^mpm/implicit$").size() > 1)
-    error->all(FLERR, Error::NOLASTLINE, "There is more than one fix mpm/implicit: remove one");
+  require_field(lmp, *this);
+  refuse_second(lmp, *this);
   for (auto *ifix : modify->get_fix_list()) {
     const std::string other = ifix->style;
     if (other == "mpm/dt" || other == "dt/reset")

@@ -341,11 +341,8 @@ void FixMPMPore::set_initial_pressure()
 
 void FixMPMPore::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/pore needs a fix mpm with the points");
-  if (modify->get_fix_by_style("^mpm/pore$").size() > 1)
-    error->all(FLERR, Error::NOLASTLINE,
-               "There is more than one fix mpm/pore: one has all soils, each with a keyword soil");
+  require_field(lmp, *this);
+  refuse_second(lmp, *this, "one has all soils, each with a keyword soil");
   std::set<std::string> known;
   for (const auto &soil : soils) {
     auto *const fix = dynamic_cast<FixMPMMaterial *>(modify->get_fix_by_id(soil.material));

@@ -75,10 +75,8 @@ FixMPMRelax::FixMPMRelax(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
 
 void FixMPMRelax::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/relax needs a fix mpm");
-  if (modify->get_fix_by_style("^mpm/relax$").size() > 1)
-    error->all(FLERR, Error::NOLASTLINE, "There is more than one fix mpm/relax: remove one");
+  require_field(lmp, *this);
+  refuse_second(lmp, *this);
 }
 
 void FixMPMRelax::init_physics(MPMPlan &plan)

@@ -150,8 +150,8 @@ void FixMPMRigid::init()
                  "Fix mpm/rigid {} and {} have the same region {}: they would be two bodies in the "
                  "same place, which do not feel each other",
                  id, other->id, region_id);
+  require_field(lmp, *this);
   const auto fields = MPMField::all(lmp);
-  if (fields.empty()) error->all(FLERR, Error::NOLASTLINE, "Fix mpm/rigid needs a fix mpm");
   for (const auto *field : fields)
     refuse_field(lmp, *this, *field,
                  {{field->options.total, "frame total",

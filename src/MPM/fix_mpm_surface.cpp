@@ -148,8 +148,7 @@ int FixMPMSurface::setmask()
 
 void FixMPMSurface::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/surface needs a fix mpm");
+  require_field(lmp, *this);
   if (!group_id.empty()) find_group(Error::NOLASTLINE);
   pre_exchange_migrate = moves_atoms();    // looked at by the history of pair styles, in its init()
   for (const auto *field : MPMField::all(lmp))

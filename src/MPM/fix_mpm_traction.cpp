@@ -145,8 +145,7 @@ void FixMPMTraction::find_load(int k)
 
 void FixMPMTraction::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/traction {} needs a fix mpm", id);
+  require_field(lmp, *this);
   for (int k = 0; k < 4; k++) find_load(k);
   if (surface == REGION && !defined && !domain->get_region_by_id(region))
     error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/traction {} does not exist", region,

@@ -232,12 +232,15 @@ void MPMConduction::init_layers()
     greatest = std::max(greatest, t.all.conductivity);
     fastest = std::max(fastest, t.all.conductivity / capacity);
   }
-  if (orthotropic && differ && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix mpm/heat: materials of different conductivity share fix mpm {}, and one of "
-                   "them is orthotropic: there are no means across their interfaces, and with few "
-                   "cells too little or too much heat goes through",
-                   field.id());
+  if (orthotropic && differ && !told_of_orthotropic) {
+    told_of_orthotropic = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/heat: materials of different conductivity share fix mpm {}, and one "
+                     "of them is orthotropic: there are no means across their interfaces, and with "
+                     "few cells too little or too much heat goes through",
+                     field.id());
+  }
   if (orthotropic) return;
   if (!differ) return;
   const bool along = greatest <= MPMLayerMean::MOST * fastest * least_capacity;

@@ -111,6 +111,7 @@ class MPMConduction : protected Pointers {
   std::unique_ptr<MPMLayerMean>
       layers;               // of materials that conduct differently; null: points have their own
   double greatest = 0.0;    // of all conductivities, with layers
+  bool told_of_orthotropic = false;
   std::vector<double>
       shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
 

@@ -54,6 +54,7 @@ using Matrix = Eigen::MatrixXd;
 static constexpr int BAND = MPMGeostatic::BAND;
 static constexpr int ROUNDS = 8;
 static constexpr double AT_REST = 1.0e-9;    // forces that are left over, in parts of the weight
+static constexpr double SAME = 1.0e-6;       // differences of pressures, of the largest one
 
 /* ---------------------------------------------------------------------- */
 
@@ -101,8 +102,9 @@ void MPMGeostaticWater::find_volumes(std::vector<double> &volumes) const
   for (int i = 0; i < atom->nlocal; i++) {
     const bool wet = water.is_point(i);
     if (!wet && !soil.is_point(i)) continue;
-    const double V = atom->vfrac[i] * soil.points->jacobian(i);
-    const int n = ground.planes(wet ? water : soil, i, list);
+    const MPMField &field = wet ? water : soil;
+    const double V = atom->vfrac[i] * field.points->jacobian(i);
+    const int n = ground.planes(field, i, list);
     for (int j = 0; j < n; j++) {
       const auto at = [&](int row) -> double & {
         return mine[row * nplanes + std::max(0, list[j].k)];
@@ -119,17 +121,18 @@ void MPMGeostaticWater::find_volumes(std::vector<double> &volumes) const
 }
 
 /* ----------------------------------------------------------------------
-   Volumes of points of water with which their law gives these pressures [n], by Newton's method
+   Volumes of points of water with which their law gives these pressures [n], by Newton's method. A law without stiffness, as
+   of water that has come apart, is strained towards where it may have some. Returns by how much pressures differ at the most
 ------------------------------------------------------------------------- */
 
-void MPMGeostaticWater::strain(const std::vector<double> &pressure) const
+double MPMGeostaticWater::strain(const std::vector<double> &pressure) const
 {
   constexpr int TURNS = 30;
   constexpr double DIFFERENCE = 1.0e-6, MOST = 0.1, CLOSE = 1.0e-14;
   Batch &batch = *water.batch;
   std::vector<int> list;
   const FixMPMMaterial *material = nullptr;
-  double now[2][BATCH];
+  double now[2][BATCH], worst = 0.0;
   const auto evaluate = [&](double shift, double *p) {
     load_state(water, batch, list.data(), (int) list.size(), material);
     batch.dt = 1.0;
@@ -151,17 +154,25 @@ void MPMGeostaticWater::strain(const std::vector<double> &pressure) const
       evaluate(-DIFFERENCE, now[1]);
       bool same = true;
       for (std::size_t k = 0; k < list.size(); k++) {
-        const double stiffness = (now[1][k] - now[0][k]) / DIFFERENCE;
-        const double change = std::clamp((now[0][k] - pressure[list[k]]) / stiffness, -MOST, MOST);
+        const double stiffness = (now[1][k] - now[0][k]) / DIFFERENCE,
+                     more = now[0][k] - pressure[list[k]];
+        double change = 0.0;
+        if (stiffness > 0.0)
+          change = std::clamp(more / stiffness, -MOST, MOST);
+        else if (more != 0.0)
+          change = std::copysign(MOST, more);
         same = same && fabs(change) <= CLOSE;
         water.points->F[list[k]][4 * axis] *= 1.0 + change;
       }
       if (same) break;
     }
     evaluate(0.0, now[0]);
-    for (std::size_t k = 0; k < list.size(); k++)
+    for (std::size_t k = 0; k < list.size(); k++) {
       for (int c = 0; c < 6; c++)
         water.points->tau[list[k]][c] = c < 3 ? -batch.J[k] * now[0][k] : 0.0;
+      const double differs = fabs(now[0][k] - pressure[list[k]]);
+      worst = differs <= worst ? worst : differs;    // also if it is not a number
+    }
     list.clear();
   };
   for (int i = 0; i < atom->nlocal; i++) {
@@ -172,6 +183,7 @@ void MPMGeostaticWater::strain(const std::vector<double> &pressure) const
     if (mine) list.push_back(i);
   }
   flush();
+  return worst;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -182,6 +194,7 @@ std::vector<double> MPMGeostaticWater::set_pressure()
   const int n = nplanes;
   std::vector<double> pressure(atom->nmax, 0.0), volumes, lambda(n, 0.0), carried;
   Part list[BAND];
+  double differs = 0.0;
   const auto lump = [&](int plane, double &value) {
     return ground.function_of(plane, value);
   };
@@ -196,7 +209,7 @@ std::vector<double> MPMGeostaticWater::set_pressure()
         pressure[i] += lambda[k] * value * list[j].slope;
       }
     }
-    strain(pressure);
+    differs = strain(pressure);
   };
 
   double left = 1.0;
@@ -273,7 +286,17 @@ std::vector<double> MPMGeostaticWater::set_pressure()
     const Eigen::VectorXd change = solver.solve(missing);
     for (int k = 0; k < n && left > 0.01 * AT_REST; k++) lambda[k] += change[k];
   }
-  if (left > AT_REST)
+  double mine[2] = {0.0, std::isfinite(differs) ? differs : 1.0e300}, most[2];
+  for (int i = 0; i < atom->nlocal; i++)
+    if (water.is_point(i)) mine[0] = std::max(mine[0], fabs(pressure[i]));
+  MPI_Allreduce(mine, most, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (!(most[1] <= SAME * most[0]))
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "{}: the material of the water of fix mpm {} does not have the pressure at rest at any "
+        "volume, up to {:.4g} at its bottom: use a larger bulk modulus",
+        who, water.id(), most[0]);
+  if (!(left <= AT_REST))
     error->all(FLERR, Error::NOLASTLINE,
                "{}: no pressure of the water of fix mpm {} is at rest, as {:.2g} of its weight is "
                "left over: it needs a level surface, at or above that of the soil",

@@ -39,7 +39,7 @@ class MPMGeostaticWater : protected Pointers {
 
   void find_water();
   void find_volumes(std::vector<double> &volumes) const;
-  void strain(const std::vector<double> &pressure) const;
+  double strain(const std::vector<double> &pressure) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -47,6 +47,7 @@
 #include "mpm_heat_faces.h"
 
 #include "domain.h"
+#include "math/sets.h"
 #include "math_special.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
@@ -214,18 +215,14 @@ void MPMHeatFaces::find_groups()
     }
   }
   std::sort(touched.begin(), touched.end());
-  std::vector<int> parent(lines.size()), size(lines.size(), 0), group_of(lines.size(), -1);
-  for (std::size_t k = 0; k < parent.size(); k++) parent[k] = (int) k;
-  const auto root = [&](int k) {
-    while (parent[k] != k) k = parent[k] = parent[parent[k]];
-    return k;
-  };
+  Sets sets(lines.size());
+  std::vector<int> size(lines.size(), 0), group_of(lines.size(), -1);
   for (std::size_t k = 1; k < touched.size(); k++)
     if (touched[k].first == touched[k - 1].first)
-      parent[root(touched[k].second)] = root(touched[k - 1].second);
-  for (std::size_t k = 0; k < lines.size(); k++) size[root((int) k)]++;
+      sets.join(touched[k].second, touched[k - 1].second);
+  for (std::size_t k = 0; k < lines.size(); k++) size[sets.root((int) k)]++;
   for (std::size_t k = 0; k < lines.size(); k++) {
-    const int r = root((int) k);
+    const int r = sets.root((int) k);
     if (size[r] < 2) continue;
     if (group_of[r] < 0) {
       group_of[r] = (int) groups.size();
@@ -236,13 +233,14 @@ void MPMHeatFaces::find_groups()
 }
 
 /** Faces that meet with different temperatures fight for the nodes of the edge: what they exchange there would be in proportion to
- *  their coefficients, and not what conduction lets through. */
+ *  their coefficients, and not what conduction lets through. Both sides of a thin body have nodes in common, too, but no
+ *  edge: what goes through has a length to go. */
 void MPMHeatFaces::slow_down(Group &group, double conduction) const
 {
-  const auto touches = [](const Member &member) {
-    return member.line->response > 0.0;
-  };
-  if (std::count_if(group.all.begin(), group.all.end(), touches) < 2) return;
+  int axes = 0;
+  for (const auto &member : group.all)
+    if (member.line->response > 0.0) axes |= 1 << member.face->axis;
+  if ((axes & (axes - 1)) == 0) return;
   for (const auto &member : group.all) {
     Line &line = *member.line;
     const double most = FIGHTS * conduction;
@@ -322,7 +320,8 @@ void MPMHeatFaces::solve(const Group &group, const std::vector<double> &temperat
   const auto &lines = group.lines;
   const auto &L = group.factor;
   const std::size_t n = lines.size();
-  std::vector<double> P(n);
+  auto &P = group.power;
+  P.assign(n, 0.0);
   for (std::size_t i = 0; i < n; i++) {
     const auto &[face, line] = lines[i];
     const auto &condition = conditions[face->face];
@@ -532,6 +531,6 @@ double MPMHeatFaces::memory_usage() const
   for (const auto &face : faces) bytes += face.lines.capacity() * sizeof(Line);
   for (const auto &group : groups)
     bytes += (group.all.capacity() + group.lines.capacity()) * sizeof(Member) +
-        group.factor.capacity() * sizeof(double);
+        (group.factor.capacity() + group.power.capacity()) * sizeof(double);
   return bytes;
 }

@@ -112,8 +112,9 @@ class MPMHeatFaces : protected Pointers {
   };
   /** Lines of several faces that have nodes in common. */
   struct Group {
-    std::vector<Member> all, lines;    // lines: with equations in this step
-    std::vector<double> factor;        // of their matrix [n*n]
+    std::vector<Member> all, lines;       // lines: with equations in this step
+    std::vector<double> factor;           // of their matrix [n*n]
+    mutable std::vector<double> power;    // of these lines
   };
   MPMField &field;
   const MPMHeatCondition *conditions;

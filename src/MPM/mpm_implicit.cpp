@@ -355,6 +355,7 @@ SolveReport MPMImplicit::solve(const SolveGoal &goal)
       find_blocks();
       field.nodes.complete(blocks.data(), width * width, width * width);
       prepare_levels();
+      if (!multigrid->usable()) break;
     }
     const auto solved = attempt();
     if (solved.converged()) {
@@ -365,6 +366,7 @@ SolveReport MPMImplicit::solve(const SolveGoal &goal)
     by_levels = false;
     if (made) break;    // levels of tangents that are not positive definite are none, either
   }
+  by_levels = false;
   find_blocks();
   prepare_blocks();
   return attempt();

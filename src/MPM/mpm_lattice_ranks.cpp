@@ -14,6 +14,7 @@
 #include "mpm_halo.h"
 
 #include <climits>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 
@@ -24,26 +25,24 @@ void MPMLatticeRanks::sum(double *values, int width)
   grid.copy_aliases(values, width);
 }
 
-std::vector<char> MPMLatticeRanks::gather_bytes(const void *mine, std::size_t bytes,
-                                                std::vector<std::size_t> &begin)
+const std::vector<char> &MPMLatticeRanks::gather_bytes(const void *mine, std::size_t bytes)
 {
   const int nprocs = lmp->comm->nprocs;
   const bigint mine_bytes = bytes;
-  std::vector<bigint> of_ranks(nprocs);
+  of_ranks.resize(nprocs);
   MPI_Allgather(&mine_bytes, 1, MPI_LMP_BIGINT, of_ranks.data(), 1, MPI_LMP_BIGINT, lmp->world);
-  begin.assign(nprocs + 1, 0);
-  for (int p = 0; p < nprocs; p++) begin[p + 1] = begin[p] + of_ranks[p];
-  if (begin[nprocs] > INT_MAX)
+  if (std::accumulate(of_ranks.begin(), of_ranks.end(), bigint(0)) > INT_MAX)
     lmp->error->all(
         FLERR,
         "Solve on the lattice is too large for its coarse levels, which all ranks have: use a "
         "larger node spacing");
-  std::vector<int> counts(nprocs), first(nprocs);
+  counts.resize(nprocs);
+  first.resize(nprocs + 1);
   for (int p = 0; p < nprocs; p++) {
     counts[p] = of_ranks[p];
-    first[p] = begin[p];
+    first[p + 1] = first[p] + counts[p];
   }
-  std::vector<char> all(begin[nprocs]);
+  all.resize(first[nprocs]);
   MPI_Allgatherv(mine, counts[lmp->comm->me], MPI_BYTE, all.data(), counts.data(), first.data(),
                  MPI_BYTE, lmp->world);
   return all;

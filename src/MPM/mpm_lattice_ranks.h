@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_LATTICE_RANKS_H
 #define LMP_MPM_LATTICE_RANKS_H
 
+#include "lmptype.h"
 #include "solve/lattice_ranks.h"
 
 namespace LAMMPS_NS {
@@ -24,13 +25,15 @@ class MPMLatticeRanks : public MPM_NS::LatticeRanks {
 
   void sum(double *values, int width) override;
   /** Stops with an error where it is more than an int can count. */
-  std::vector<char> gather_bytes(const void *mine, std::size_t bytes,
-                                 std::vector<std::size_t> &begin) override;
+  const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) override;
 
  private:
   class LAMMPS *const lmp;
   const MPM_NS::Grid &grid;
   MPMHalo &halo;
+  std::vector<bigint> of_ranks;
+  std::vector<int> counts, first;
+  std::vector<char> all;
 };
 
 }    // namespace LAMMPS_NS

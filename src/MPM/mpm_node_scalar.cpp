@@ -114,7 +114,7 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
 
 void MPMNodeScalar::add_terms(int terms, const GiveValues &capacities, std::vector<double> &u)
 {
-  const std::vector<double> first_term = u;
+  first_term = u;
   std::vector<double> &mapped = rate;    // has nothing yet that is needed
   double values[BATCH], of_points[BATCH];
   double *const tile = tiles[0].data(), *const from = tiles[1].data();
@@ -291,7 +291,7 @@ double MPMNodeScalar::memory_usage() const
 {
   double bytes = 0.0;
   for (const auto *list :
-       {&capacity, &volume, &value, &before, &rate, &tiles[0], &tiles[1], &tiles[2]})
+       {&capacity, &volume, &value, &before, &rate, &first_term, &tiles[0], &tiles[1], &tiles[2]})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

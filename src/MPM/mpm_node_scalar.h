@@ -93,7 +93,8 @@ class MPMNodeScalar {
   bool slopes = false, volumes = false;
   bool moments = false;    // g_p is the fit of moving least squares
   std::vector<double> tiles[3];
-  std::vector<char> has_part;    // [runs]
+  std::vector<double> first_term;    // of add_terms()
+  std::vector<char> has_part;        // [runs]
   MPM_NS::ScalarStencil stencil;
   /** Of base nodes in the tile of each active block: other sums over points, of walls and contact, may come between the
    *  calls of a step. */

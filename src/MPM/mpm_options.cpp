@@ -57,6 +57,20 @@ int LAMMPS_NS::read_precision(LAMMPS *lmp, int narg, char **arg, bool &single)
   return 2;
 }
 
+void LAMMPS_NS::require_field(LAMMPS *lmp, const Fix &user)
+{
+  if (lmp->modify->get_fix_by_style("^mpm$").empty())
+    lmp->error->all(FLERR, Error::NOLASTLINE, "Fix {} needs a fix mpm for the points: define one",
+                    user.style);
+}
+
+void LAMMPS_NS::refuse_second(LAMMPS *lmp, const Fix &user, const std::string &remedy)
+{
+  if (lmp->modify->get_fix_by_style(fmt::format("^{}$", user.style)).size() > 1)
+    lmp->error->all(FLERR, Error::NOLASTLINE, "There is more than one fix {}: {}", user.style,
+                    remedy);
+}
+
 void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
                              const OptionRules &rules)
 {

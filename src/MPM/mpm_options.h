@@ -27,6 +27,11 @@ int read_options(LAMMPS *, MPM_NS::Options &, int narg, char **arg, int iarg,
 /** Reads precision single|double of dump_modify and returns 2, or 0 for any other keyword. */
 int read_precision(LAMMPS *, int narg, char **arg, bool &single);
 
+/** At init(): stops with an error when there is no fix mpm for a fix to act on. */
+void require_field(LAMMPS *, const Fix &user);
+/** The same when there is another fix of this style; remedy: what one of them does, or what to do. */
+void refuse_second(LAMMPS *, const Fix &user, const std::string &remedy = "remove one");
+
 /** Stops with an error when a field (fix mpm) breaks one of the rules of a fix: their keyword is what
  *  of the field cannot be used, their text says why, and the remedy. */
 void refuse_field(LAMMPS *, const Fix &user, const MPMField &field, const MPM_NS::OptionRules &);

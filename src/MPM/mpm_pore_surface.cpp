@@ -53,6 +53,8 @@ enum { VOLUME = 3, GRADIENT = 4 };    // reals of a record
 static constexpr double INSET = 0.5;    // of places below the surface, in node spacings
 // gaps between material and a face of the box up to which it touches, and from which on not
 static constexpr double TOUCHES = 0.25, IS_APART = 0.5;
+// such gaps up to which they may be noise of sums over points, and from which on the soil ends there and not at the face
+static constexpr double AT_FACE = 0.05, OFF_FACE = 0.1;
 static constexpr double LEAK = 0.5;       // of what a step makes from rest, for water with inertia
 static constexpr double FULL = 0.97;      // of a cell: sums over points are not exactly integrals
 static constexpr double ENOUGH = 0.01;    // of a cell at a node, for its whole weight
@@ -227,6 +229,30 @@ int MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
   return there ? (int) (node.size() - first) : 0;
 }
 
+/** How far before the plane of a face of the box the soil ends on the line of nodes through this one, in node spacings,
+ *  negative: beyond; 0 for what may be noise. sum_i x_i g_i/sum_i g_i over the line is the place of a surface, exactly
+ *  for points in even distances. */
+double MPMPoreSurface::end_off_face(const int *index, int face, double wall) const
+{
+  const auto &lattice = field.lattice;
+  const int axis = face / 2;
+  const double sign = face % 2 ? 1.0 : -1.0, far = profile->reach() + IS_APART;
+  const double first = sign * (wall - lattice.origin[axis]) / lattice.h - sign * index[axis];
+  double area = 0.0, moment = 0.0;
+  int at[3] = {index[0], index[1], index[2]};
+  for (int k = (int) std::ceil(first - far); k <= (int) std::floor(first + far); k++) {
+    at[axis] = index[axis] + (sign > 0.0 ? k : -k);
+    const int64_t number = field.grid.locate(at);
+    if (number < 0) continue;
+    const double out = std::max(0.0, sign * nodes[number * field.pic.nreal + GRADIENT + axis]);
+    area += out;
+    moment += out * (first - k);
+  }
+  if (!(area > 0.0)) return 0.0;
+  const double gap = moment / area;
+  return gap * std::clamp((fabs(gap) - AT_FACE) / (OFF_FACE - AT_FACE), 0.0, 1.0);
+}
+
 /* ---------------------------------------------------------------------- */
 
 void MPMPoreSurface::find_places()
@@ -269,12 +295,15 @@ void MPMPoreSurface::find_places()
         const double touch = std::min(1.0, (IS_APART - fabs(gap)) / (IS_APART - TOUCHES));
         if (!(touch > 0.0)) continue;
         g[axis] *= 1.0 - touch;
-        if (conditions[face].kind == MPMPoreCondition::CLOSED || fabs(depth) >= 1.0) continue;
+        if (conditions[face].kind == MPMPoreCondition::CLOSED) continue;
+        const double off = end_off_face(index, face, wall);
+        const double below = depth - off;
+        if (fabs(below) >= 1.0) continue;
         double at[3] = {x[0], x[1], x[2]}, normal[3] = {0.0, 0.0, 0.0};
-        at[axis] = wall;
+        at[axis] = wall - sign * off * h;
         normal[axis] = sign;
-        const double part = std::min(1.0, out / function(depth));
-        add_place(stencil, face, touch * part * (1.0 - fabs(depth)) * side, touch, at, normal);
+        const double part = std::min(1.0, out / function(below));
+        add_place(stencil, face, touch * part * (1.0 - fabs(below)) * side, touch, at, normal);
       }
       if (conditions[FREE].kind == MPMPoreCondition::CLOSED) continue;
       const double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);

@@ -10,6 +10,8 @@
 
 #include "gtest/gtest.h"
 
+#include <limits>
+
 using namespace MPM_NS;
 
 namespace {
@@ -131,7 +133,10 @@ TEST(CellOperator, IterationsWithTheDiagonal)
   EXPECT_NEAR(fine.iterations(), 231, 23);
 }
 
-// Iterations in 3d, with densities that differ by 1 to 1e4 from place to place, and in a labyrinth.
+// Iterations in 3d, with densities that differ by 1 to 1e4 from place to place, and in a labyrinth. There are no
+// reference values for these: 21 and 27 are 1.5 times those by cosine transforms in the sloping tank of 32 and of 64 cells, to which part O7 of
+// the reference values binds that tank, and 1.45 is the growth that it allows when spacings are halved. Measured are 11, 11, and 1.2, and 14 in
+// the labyrinth, where conjugate gradients alone take as many as its way is long.
 TEST(CellMultigrid, IterationsOfHardCases)
 {
   CellScene ball{3, 24};
@@ -202,7 +207,8 @@ TEST(CellMultigrid, WaterAtRest)
   }
 }
 
-// One pool without a surface between two thin walls, next to one with a surface: they share larger cells, and no water.
+// One pool without a surface between two thin walls, next to one with a surface: they share larger cells, and no water. 30
+// iterations to 1e-12 are 1.5 times what the 14 by cosine transforms to 1e-8, as above, come to; 13 are measured.
 TEST(CellMultigrid, Pools)
 {
   CellScene two{2, 30};
@@ -248,7 +254,8 @@ TEST(CellMultigrid, Pools)
   EXPECT_TRUE(report.converged()) << report.describe();
 }
 
-// Cells of their own: with a surface (4 p = b), within walls (not in the system); and a box that is closed and periodic.
+// Cells of their own: with a surface (4 p = b), within walls (not in the system); and a box that is closed and periodic,
+// where 15 iterations are about those by cosine transforms in the sloping tank (14); 10 are measured.
 TEST(CellMultigrid, CellsOfTheirOwn)
 {
   CellScene drops{2, 9};
@@ -331,4 +338,22 @@ TEST(CellMultigrid, ReleasedColumn)
   }
   EXPECT_LT(error[0], 0.01 * 0.675314);
   EXPECT_GT(std::log2(error[0] / error[1]), 0.9);
+}
+
+// What is known outside counts infinitely: there are no factors of that, and it is said. The correction by the next level is left out then.
+TEST(CellMultigrid, IsUsableOrSaysSo)
+{
+  CellSystem system(CellScene{2, 32});
+  const int top[3] = {7, 31, 0};
+  auto &outside = system.A.outside[system.grid.locate(top)];
+  for (const double coefficient : {2.0, std::numeric_limits<double>::infinity()}) {
+    outside = coefficient;
+    system.A.finish();
+    system.multigrid.setup(system.A);
+    EXPECT_EQ(system.multigrid.usable(), std::isfinite(coefficient));
+  }
+  auto b = system.noise(1), z = system.zeros();
+  const int inside[3] = {20, 3, 0};
+  system.precondition(b.data(), z.data());
+  EXPECT_TRUE(std::isfinite(z[system.grid.locate(inside)]));
 }

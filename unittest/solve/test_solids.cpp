@@ -8,7 +8,11 @@
 
 #include "solid_scenes.h"
 
+#include "solve/rim_factors.h"
+
 #include "gtest/gtest.h"
+
+#include <limits>
 
 using namespace MPM_NS;
 
@@ -149,7 +153,8 @@ TEST(SplineMultigrid, BarUnderItsWeight)
   EXPECT_NEAR(u[1] - u[0], exact(1.0 - 0.75 / 24) - exact(0.5 - 0.75 / 24), 1.0 / (24 * 24 * M));
 }
 
-// Products with the matrix for two decades: at most 25, and as many for 64 times as many points.
+// Products with the matrix for two decades: at most 25 (each is one pass from points to nodes, for which this is the bound that the solver
+// was built for), and as many for 64 times as many points.
 TEST(SplineMultigrid, ProductsDoNotGrow)
 {
   double coarsest = 0.0;
@@ -250,4 +255,44 @@ TEST(SplineMultigrid, FreeBody)
   auto x = system.zeros();
   const auto report = system.solve(b, x, {1e-8, 0.0, 100});
   EXPECT_TRUE(report.converged()) << report.describe();
+}
+
+// Matrices that are not positive definite have factors with a shift, if they are not far from it.
+TEST(RimFactors, AreThereOrSaySo)
+{
+  const auto factors_of = [](double diagonal, double other) {
+    Eigen::SparseMatrix<double> A(2, 2);
+    const std::vector<Eigen::Triplet<double>> entries = {
+        {0, 0, diagonal}, {1, 1, diagonal}, {0, 1, other}, {1, 0, other}};
+    A.setFromTriplets(entries.begin(), entries.end());
+    CholeskyFactors factors;
+    const bool there = factorize(A, factors);
+    if (there) {
+      EXPECT_GT(factors.vectorD().minCoeff(), 0.0);
+      // an entry below the diagonal, and the diagonal
+      EXPECT_GE(memory_of(factors), 3 * sizeof(double));
+    }
+    return there;
+  };
+  EXPECT_TRUE(factors_of(1.0, 0.5));
+  EXPECT_TRUE(factors_of(1.0, 1.0));
+  EXPECT_TRUE(factors_of(1.0, 3.0));
+  EXPECT_FALSE(factors_of(1.0, 1e9));
+  EXPECT_FALSE(factors_of(1.0, std::numeric_limits<double>::quiet_NaN()));
+}
+
+// Points whose stiffness is not finite: levels are of no use, and it is said.
+TEST(SplineMultigrid, IsUsableOrSaysSo)
+{
+  for (const double E : {2.0, std::numeric_limits<double>::infinity()}) {
+    auto scene = block(2, 16);
+    scene.young = [E](const double *x) {
+      return std::hypot(x[0] - 0.5, x[1] - 0.5) < 0.1 ? E : 1.0;
+    };
+    SolidSystem system(scene);
+    system.setup();
+    EXPECT_EQ(system.multigrid->usable(), std::isfinite(E));
+    // what it holds at least: factors and blocks of all nodes
+    EXPECT_GT(system.multigrid->memory_usage(), 8.0 * system.size() * 4.0);
+  }
 }

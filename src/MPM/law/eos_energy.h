@@ -56,6 +56,27 @@ namespace {
     }
   }
 
+  /** The energy at the end of a step with the pressure p = cold + gamma E there, by E = E_old - (p_old + p)/2 dJ + heat. */
+  struct EndOfStep {
+    double gamma, dJ, pold,
+        limited;    ///< limited: 1 + gamma dJ/2, but for compressions too violent
+
+    MPM_INLINE EndOfStep(double gamma, double dJ, double pold) :
+        gamma(gamma), dJ(dJ), pold(pold), limited(max(1.0 + 0.5 * gamma * dJ, 0.1))
+    {
+    }
+    MPM_INLINE double energy(double cold, double Eold, double heat) const
+    {
+      return (Eold - 0.5 * (pold + cold) * dJ + heat) / limited;
+    }
+    /** dp/dJ = -slope + gamma dE/dJ with dE/dJ = [-(p_old + p)/2 + slope dJ/2]/limited; slope: -dp/dJ at constant E. */
+    MPM_INLINE double by_J(double p, double slope) const
+    {
+      return gamma / limited * 0.5 * (slope * dJ - pold - p) - slope;
+    }
+    MPM_INLINE double by_heat() const { return gamma / limited; }
+  };
+
   // options for the tension that an equation of state bears
   constexpr Parameter limits[] = {
       {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED, "lowest pressure, not positive"},
@@ -114,8 +135,6 @@ namespace {
         loop<false>(eos, tension, b, history);
     }
 
-    /** dp/dJ = -slope + gamma dE/dJ with dE/dJ = [-(p_old + p)/2 + slope (J - J_old)/2] / [1 + gamma (J - J_old)/2], but
-     *  for compressions of a step so violent that this last factor is limited. */
     static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
     {
       const Eos eos(p);
@@ -128,13 +147,12 @@ namespace {
         const double lowest = broken[i] > 0.0 ? 0.0 : tension.pmin;
         const double cold = eos.cold(J), gamma = eos.gamma(J);
         const double pold = max(eos.cold(Jold) + eos.gamma(Jold) * Eold, lowest);
-        const double inv = 1.0 / max(1.0 + 0.5 * gamma * dJ, 0.1);
-        const double E = inv * (Eold - 0.5 * (pold + cold) * dJ + b.heat[i]);
-        const double end = cold + gamma * E, slope = eos.exact_slope(J, E);
+        const EndOfStep step(gamma, dJ, pold);
+        const double E = step.energy(cold, Eold, b.heat[i]), end = cold + gamma * E;
         const double flat = end < lowest ? 0.0 : 1.0;
         pressure[i] = end < lowest ? tension.after : end;
-        by_J[i] = flat * (gamma * inv * 0.5 * (slope * dJ - pold - end) - slope);
-        by_heat[i] = flat * gamma * inv;
+        by_J[i] = flat * step.by_J(end, eos.exact_slope(J, E));
+        by_heat[i] = flat * step.by_heat();
       }
       update(p, b, history);
       add_pressure(b, pressure, by_J, by_heat, t);
@@ -171,8 +189,7 @@ namespace {
         const double lowest = broken ? 0.0 : tension.pmin;
         const double cold = eos.cold(J), gamma = eos.gamma(J);
         const double pold = max(eos.cold(Jold) + eos.gamma(Jold) * Eold, lowest);
-        const double E =
-            (Eold - 0.5 * (pold + cold) * dJ + b.heat[i]) / max(1.0 + 0.5 * gamma * dJ, 0.1);
+        const double E = EndOfStep(gamma, dJ, pold).energy(cold, Eold, b.heat[i]);
         const double pressure = cold + gamma * E;
         const bool below = pressure < lowest;
         subtract_pressure(b, i, below ? after : pressure);
@@ -523,8 +540,7 @@ namespace {
         const double burn = min(max((time - history[LIGHTING][i]) * rate, before), 1.0);
         const double cold = burn * eos.cold(J), gamma = burn * eos.omega / J;
         const double pold = max(before * (eos.cold(Jold) + eos.omega / Jold * Eold), 0.0);
-        const double E =
-            (Eold - 0.5 * (pold + cold) * dJ + batch.heat[i]) / max(1.0 + 0.5 * gamma * dJ, 0.1);
+        const double E = EndOfStep(gamma, dJ, pold).energy(cold, Eold, batch.heat[i]);
         const double pressure = cold + gamma * E;
         const bool below = pressure < 0.0;
         subtract_pressure(batch, i, below ? 0.0 : pressure);
@@ -548,13 +564,12 @@ namespace {
         const double burn = min(max((time - history[LIGHTING][i]) * rate, before), 1.0);
         const double cold = burn * eos.cold(J), gamma = burn * eos.omega / J;
         const double pold = max(before * (eos.cold(Jold) + eos.omega / Jold * Eold), 0.0);
-        const double inv = 1.0 / max(1.0 + 0.5 * gamma * dJ, 0.1);
-        const double E = inv * (Eold - 0.5 * (pold + cold) * dJ + batch.heat[i]);
-        const double end = cold + gamma * E, slope = burn * eos.slope(J) + gamma / J * E;
+        const EndOfStep step(gamma, dJ, pold);
+        const double E = step.energy(cold, Eold, batch.heat[i]), end = cold + gamma * E;
         const double flat = end < 0.0 ? 0.0 : 1.0;
         pressure[i] = flat * end;
-        by_J[i] = flat * (gamma * inv * 0.5 * (slope * dJ - pold - end) - slope);
-        by_heat[i] = flat * gamma * inv;
+        by_J[i] = flat * step.by_J(end, burn * eos.slope(J) + gamma / J * E);
+        by_heat[i] = flat * step.by_heat();
       }
       update(p, batch, history);
       add_pressure(batch, pressure, by_J, by_heat, t);

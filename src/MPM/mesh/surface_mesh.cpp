@@ -8,12 +8,13 @@
 
 #include "mesh/surface_mesh.h"
 
+#include "math/sets.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <unordered_map>
@@ -65,23 +66,12 @@ namespace {
 
 /** Farther than anything, and its square is still a number. */
 constexpr double FAR_AWAY = 1.0e150;
-/** Numbers of things that belong together. */
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0); }
-  void join(int i, int j) { parent[root(i)] = root(j); }
-  /** Of the set of i, in the order in which sets are asked for. */
-  int number(int i) { return numbers.emplace(root(i), (int) numbers.size()).first->second; }
-  std::size_t size() const { return numbers.size(); }
-
- private:
-  std::vector<int> parent;
+/** Sets with numbers, in the order in which they are asked for. */
+struct NumberedSets : Sets {
   std::map<int, int> numbers;
-  int root(int i)
-  {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
+
+  using Sets::Sets;
+  int number(int i) { return numbers.emplace(root(i), (int) numbers.size()).first->second; }
 };
 }    // namespace
 
@@ -281,7 +271,7 @@ void SurfaceMesh::normals()
 void SurfaceMesh::find_parts()
 {
   const double sharp = std::sqrt(0.5);
-  Sets parts(triangles.size()), shells(triangles.size());
+  NumberedSets parts(triangles.size()), shells(triangles.size());
   std::map<std::pair<int, int>, int> edges;
   for (int i = 0; i < (int) triangles.size(); i++)
     for (int c = 0; c < 3; c++)
@@ -296,10 +286,10 @@ void SurfaceMesh::find_parts()
     }
   for (int i = 0; i < (int) triangles.size(); i++) {
     triangles[i].part = parts.number(i);
-    shell_of.resize(parts.size());
+    shell_of.resize(parts.numbers.size());
     shell_of[triangles[i].part] = shells.number(i);
   }
-  nparts = (int) parts.size();
+  nparts = (int) parts.numbers.size();
 }
 
 std::vector<SurfaceMesh::Shell> SurfaceMesh::find_shells() const

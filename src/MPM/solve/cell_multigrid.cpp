@@ -8,11 +8,13 @@
 
 #include "solve/cell_multigrid.h"
 
-#include <Eigen/SparseCholesky>
+#include "math/sets.h"
+#include "solve/rim_factors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 using namespace MPM_NS;
 
@@ -36,22 +38,9 @@ struct Flow {    // between two pieces, or out of one of them
   double value;
 };
 
-uint64_t key_of(const int *index)
-{
-  uint64_t key = 0;
-  for (int d = 0; d < 3; d++) key = key << 21 | (uint64_t) ((index[d] >> 1) + (1 << 20));
-  return key;
-}
-
 int bit_of(const int *index)
 {
   return (index[0] & 1) << 2 | (index[1] & 1) << 1 | (index[2] & 1);
-}
-
-int root_of(std::vector<int> &parent, int i)
-{
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
 }
 
 /** Cells of a level, and its cells by larger ones. */
@@ -67,16 +56,16 @@ class Pieces {
     cell_at.assign(vector_size, -1);
     for (int cell = 0; cell < n; cell++) cell_at[graph.where[cell]] = cell;
     std::vector<uint64_t> key(n);
-    std::vector<int> order(n), parent(n);
-    for (int cell = 0; cell < n; cell++) key[cell] = key_of(graph.index.data() + 3 * cell);
+    std::vector<int> order(n);
+    Sets joined(n);
+    for (int cell = 0; cell < n; cell++) {
+      const int *const index = graph.index.data() + 3 * cell;
+      key[cell] = lattice_key({index[0] >> 1, index[1] >> 1, index[2] >> 1});
+    }
     std::iota(order.begin(), order.end(), 0);
-    std::iota(parent.begin(), parent.end(), 0);
     std::sort(order.begin(), order.end(), [&](int a, int b) {
       return key[a] < key[b] || (key[a] == key[b] && a < b);
     });
-    const auto join = [&](int a, int b) {
-      parent[root_of(parent, a)] = root_of(parent, b);
-    };
     piece.resize(n);
     for (int i = 0, j; i < n; i = j) {
       int same[8];
@@ -85,14 +74,14 @@ class Pieces {
         const int cell = order[j];
         for (int k = graph.first[cell]; k < graph.first[cell + 1]; k++) {
           const int other = cell_at[graph.neighbor[k]];
-          if (key[other] == key[cell]) join(cell, other);
+          if (key[other] == key[cell]) joined.join(cell, other);
         }
         int &known = same[bit_of(graph.index.data() + 3 * cell)];
-        if (!split && known >= 0) join(cell, known);
+        if (!split && known >= 0) joined.join(cell, known);
         known = cell;
       }
       for (int k = i; k < j; k++) {
-        const int root = root_of(parent, order[k]);
+        const int root = joined.root(order[k]);
         if (root == order[k]) {
           piece[root] = all.size();
           all.push_back({key[root], 0});
@@ -100,7 +89,7 @@ class Pieces {
       }
       for (int k = i; k < j; k++) {
         const int cell = order[k];
-        piece[cell] = piece[root_of(parent, cell)];
+        piece[cell] = piece[joined.root(cell)];
         all[piece[cell]].cells |= uint64_t(1) << bit_of(graph.index.data() + 3 * cell);
       }
     }
@@ -127,9 +116,7 @@ CellGraph coarse_graph(const std::vector<Piece> &pieces, std::vector<Flow> &flow
   graph.first.push_back(0);
   std::size_t k = 0;
   for (int cell = 0; cell < n; cell++) {
-    for (int d = 0; d < 3; d++)
-      graph.index.push_back((int) (pieces[cell].key >> (21 * (2 - d)) & ((1 << 21) - 1)) -
-                            (1 << 20));
+    for (const int i : lattice_index(pieces[cell].key)) graph.index.push_back(i);
     while (k < flows.size() && flows[k].a == cell) {
       double sum = 0.0;
       const int other = flows[k].b;
@@ -177,7 +164,7 @@ struct CellMultigrid::Levels {
   std::vector<int> piece;       // [cell] the part of this rank of a coarse cell
   std::vector<int> number;      // [piece] the coarse cell
   std::vector<int> of_ranks;    // coarse cells of the pieces of all ranks, rank by rank
-  std::vector<double> partial, node_values;
+  std::vector<double> partial, of_all, node_values;
 
   struct Level {
     CellGraph graph;
@@ -185,8 +172,9 @@ struct CellMultigrid::Levels {
     std::vector<double> x, b, r;
   };
   std::vector<Level> coarse;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;
+  CholeskyFactors factors;
   Eigen::VectorXd rest, solution;
+  bool usable = true;    // these are factors
 
   // closed pools
   std::vector<int> pool;    // [cell of the first coarse level], -1: not closed
@@ -279,14 +267,14 @@ void CellMultigrid::Levels::factorize()
 {
   const auto &graph = coarse.back().graph;
   const int n = graph.size();
-  std::vector<int> component(n);
-  std::iota(component.begin(), component.end(), 0);
+  Sets pools(n);
   for (int cell = 0; cell < n; cell++)
     for (int k = graph.first[cell]; k < graph.first[cell + 1]; k++)
-      component[root_of(component, cell)] = root_of(component, graph.neighbor[k]);
+      pools.join(cell, graph.neighbor[k]);
+  std::vector<int> component(n);
   std::vector<char> closed(n, 1);
   for (int cell = 0; cell < n; cell++) {
-    component[cell] = root_of(component, cell);
+    component[cell] = pools.root(cell);
     if (graph.outside[cell] > 0.0) closed[component[cell]] = 0;
   }
 
@@ -301,6 +289,9 @@ void CellMultigrid::Levels::factorize()
   Eigen::SparseMatrix<double> A(n, n);
   A.setFromTriplets(entries.begin(), entries.end());
   factors.compute(A);
+  usable = n == 0 ||
+      (factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0.0 &&
+       std::isfinite(factors.vectorD().sum()));
   rest.resize(n);
   find_pools(component, closed);
 }
@@ -344,9 +335,9 @@ void CellMultigrid::Levels::means(const Number &value, std::vector<double> &mean
     const int which = pool[number[piece[cell]]];
     if (which >= 0 && fine->grid.owns(graph.where[cell])) mine[which] += value(graph.where[cell]);
   }
-  const auto all = fine->ranks.gather(mine);
+  fine->ranks.gather(mine, of_all);
   mean.assign(npools, 0.0);
-  for (std::size_t k = 0; k < all.size(); k++) mean[k % npools] += all[k];
+  for (std::size_t k = 0; k < of_all.size(); k++) mean[k % npools] += of_all[k];
   for (std::size_t k = 0; k < npools; k++) mean[k] /= cells_of_pool[k];
 }
 
@@ -404,10 +395,10 @@ void CellMultigrid::Levels::restrict_fine(const double *r, const double *z)
     const int64_t place = graph.where[cell];
     partial[piece[cell]] += (fine->grid.owns(place) ? r[place] : 0.0) - graph.flow(cell, z);
   }
-  const auto all = fine->ranks.gather(partial);
+  fine->ranks.gather(partial, of_all);
   auto &b = coarse[0].b;
   std::fill(b.begin(), b.end(), 0.0);
-  for (std::size_t k = 0; k < all.size(); k++) b[of_ranks[k]] += all[k];
+  for (std::size_t k = 0; k < of_all.size(); k++) b[of_ranks[k]] += of_all[k];
 }
 
 /** x of a coarse level from its b. */
@@ -418,8 +409,11 @@ void CellMultigrid::Levels::cycle(std::size_t which)
   const int n = graph.size();
   if (which + 1 == coarse.size()) {
     std::copy(level.b.begin(), level.b.end(), rest.data());
-    if (n > 0) solution = factors.solve(rest);
-    std::copy_n(solution.data(), n, level.x.begin());
+    if (n > 0 && usable) solution = factors.solve(rest);
+    if (usable)
+      std::copy_n(solution.data(), n, level.x.begin());
+    else
+      std::fill(level.x.begin(), level.x.end(), 0.0);
     return;
   }
 
@@ -460,6 +454,11 @@ void CellMultigrid::precondition(const double *r, double *z)
   if (!on->pool.empty()) project(z);
 }
 
+bool CellMultigrid::usable() const
+{
+  return on->usable;
+}
+
 int CellMultigrid::closed_pools() const
 {
   return on->pool.empty() ? 0 : on->cells_of_pool.size();
@@ -475,7 +474,10 @@ double CellMultigrid::memory_usage() const
   double bytes = (on->piece.capacity() + on->number.capacity() + on->of_ranks.capacity() +
                   on->pool.capacity()) *
           sizeof(int) +
-      (on->partial.capacity() + on->node_values.capacity()) * sizeof(double);
+      (on->partial.capacity() + on->of_all.capacity() + on->node_values.capacity() +
+       on->cells_of_pool.capacity() + on->rest.size() + on->solution.size()) *
+          sizeof(double) +
+      memory_of(on->factors);
   for (const auto &level : on->coarse)
     bytes += level.graph.memory_usage() + level.next.capacity() * sizeof(int) +
         3 * level.x.capacity() * sizeof(double);

@@ -37,6 +37,9 @@ class CellMultigrid {
   /** Closed pools get the mean of 0, and cells that are not in the system 0: solvable right sides, and pressures that are
    *  unique.  Returns the largest mean that there was, by absolute value.  Collective. */
   double project(double *x);
+  /** Could the coarsest level be factorized? Not where coefficients are negative or not finite; its correction is then left
+   *  out.  The same on all ranks. */
+  bool usable() const;
   /** Closed pools of all ranks. */
   int closed_pools() const;
   int levels() const;

@@ -8,6 +8,7 @@
 
 #include "solve/flexible_gmres.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace MPM_NS;
@@ -27,7 +28,7 @@ SolveReport FlexibleGMRES::solve(LinearSystem &system, const double *b, double *
   s.assign(longest, 0.0);
   g.assign(longest + 1, 0.0);
   report.right_side = std::sqrt(system.product(b, b));
-  const double enough = std::max(goal.relative * report.right_side, goal.absolute);
+  const double enough = goal.enough(report.right_side);
 
   bool exhausted = false;    // the space of Krylov was at the end of a cycle
   double before = 0.0;       // residual at its start
@@ -36,8 +37,7 @@ SolveReport FlexibleGMRES::solve(LinearSystem &system, const double *b, double *
 
     v[0].resize(n);
     auto &r = v[0];
-    system.apply(x, r.data());
-    for (int64_t i = 0; i < n; i++) r[i] = b[i] - r[i];
+    find_residual(system, b, x, r.data());
     const double residual = std::sqrt(system.product(r.data(), r.data()));
     if (report.residuals.empty()) report.residuals.push_back(residual);
     report.residuals.back() = residual;
@@ -103,10 +103,10 @@ void FlexibleGMRES::orthogonalize(LinearSystem &system, int j, double &largest)
 
   // classical Gram and Schmidt twice: as good as the modified form once, with two sums over ranks and not j + 1
 
-  std::vector<const double *> left(j + 2), right(j + 2, next.data());
-  for (int k = 0; k <= j; k++) left[k] = v[k].data();
-  left[j + 1] = next.data();
-  std::vector<double> part(j + 2);
+  left.resize(j + 2);
+  right.assign(j + 2, next.data());
+  part.resize(j + 2);
+  for (int k = 0; k < j + 2; k++) left[k] = v[k].data();
   for (int pass = 0; pass < 2; pass++) {
     system.products(j + 2, left.data(), right.data(), part.data());
     if (pass == 0) largest = std::max(largest, std::sqrt(part[j + 1]));
@@ -122,9 +122,10 @@ void FlexibleGMRES::orthogonalize(LinearSystem &system, int j, double &largest)
 }
 
 /** Add the best combination of the first n vectors to x. */
-void FlexibleGMRES::update(int n, double *x) const
+void FlexibleGMRES::update(int n, double *x)
 {
-  std::vector<double> y(n);
+  auto &y = part;
+  y.resize(n);
   for (int j = n - 1; j >= 0; j--) {
     y[j] = g[j];
     for (int k = j + 1; k < n; k++) y[j] -= h[(std::size_t) k * (longest + 2) + j] * y[k];

@@ -30,11 +30,13 @@ class FlexibleGMRES {
   std::vector<std::vector<double>> v, z;    // basis, and what the preconditioner makes of it
   std::vector<double> h;          // columns of the Hessenberg matrix, rotated to a triangle
   std::vector<double> c, s, g;    // rotations, and the rotated right side
+  std::vector<const double *> left, right;    // of products with the vectors of the basis
+  std::vector<double> part;
 
   double *column(int j) { return h.data() + (std::size_t) j * (longest + 2); }
   /** Vector j + 1 of the basis; its part along each of the others and its length become column j. */
   void orthogonalize(LinearSystem &, int j, double &largest);
-  void update(int n, double *x) const;
+  void update(int n, double *x);
 };
 
 }    // namespace MPM_NS

@@ -31,6 +31,13 @@ std::string SolveReport::describe() const
   return all;
 }
 
+void MPM_NS::find_residual(LinearSystem &system, const double *b, const double *x, double *r)
+{
+  const int64_t n = system.size();
+  system.apply(x, r);
+  for (int64_t i = 0; i < n; i++) r[i] = b[i] - r[i];
+}
+
 SolveReport ConjugateGradients::solve(LinearSystem &system, const double *b, double *x,
                                       const SolveGoal &goal)
 {
@@ -38,8 +45,7 @@ SolveReport ConjugateGradients::solve(LinearSystem &system, const double *b, dou
   const int64_t n = system.size();
   for (auto *vector : {&r, &z, &p, &Ap}) vector->resize(n);
 
-  system.apply(x, Ap.data());
-  for (int64_t i = 0; i < n; i++) r[i] = b[i] - Ap[i];
+  find_residual(system, b, x, r.data());
   const auto precondition = [&](double &rz, double &rr) {
     system.precondition(r.data(), z.data());
     const double *const left[] = {r.data(), r.data()}, *const right[] = {z.data(), r.data()};
@@ -50,7 +56,7 @@ SolveReport ConjugateGradients::solve(LinearSystem &system, const double *b, dou
   };
 
   report.right_side = std::sqrt(system.product(b, b));
-  const double enough = std::max(goal.relative * report.right_side, goal.absolute);
+  const double enough = goal.enough(report.right_side);
   double rz, rr;
   precondition(rz, rr);
   p = z;

@@ -11,6 +11,7 @@
 
 #include "solve/linear_system.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,13 @@ struct SolveGoal {
   double relative = 1.0e-8;
   double absolute = 0.0;
   int most_iterations = 1000;
+
+  /** The largest residual that is good enough for |b|. */
+  double enough(double right_side) const { return std::max(relative * right_side, absolute); }
 };
+
+/** r = b - A x.  Collective. */
+void find_residual(LinearSystem &, const double *b, const double *x, double *r);
 
 /** What became of a solve. */
 struct SolveReport {

@@ -25,17 +25,20 @@ class LatticeRanks {
    *  them have the same sum afterwards, bit by bit.  Collective. */
   virtual void sum(double *values, int width) = 0;
 
-  /** What ranks give, one after the other: begin[r] is the first byte of rank r, with the number of all at its end.  Collective. */
-  virtual std::vector<char> gather_bytes(const void *mine, std::size_t bytes,
-                                         std::vector<std::size_t> &begin) = 0;
+  /** What ranks give, in order of ranks.  Valid until the next call.  Collective. */
+  virtual const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) = 0;
 
   /** The same for lists of any plain type. */
+  template <class T> void gather(const std::vector<T> &mine, std::vector<T> &all)
+  {
+    const auto &bytes = gather_bytes(mine.data(), mine.size() * sizeof(T));
+    all.resize(bytes.size() / sizeof(T));
+    if (!all.empty()) std::memcpy(all.data(), bytes.data(), bytes.size());
+  }
   template <class T> std::vector<T> gather(const std::vector<T> &mine)
   {
-    std::vector<std::size_t> begin;
-    const auto bytes = gather_bytes(mine.data(), mine.size() * sizeof(T), begin);
-    std::vector<T> all(bytes.size() / sizeof(T));
-    if (!all.empty()) std::memcpy(all.data(), bytes.data(), bytes.size());
+    std::vector<T> all;
+    gather(mine, all);
     return all;
   }
 };
@@ -49,16 +52,16 @@ class OneRank : public LatticeRanks {
     grid.fold_aliases(values, width, 0, width);
     grid.copy_aliases(values, width);
   }
-  std::vector<char> gather_bytes(const void *mine, std::size_t bytes,
-                                 std::vector<std::size_t> &begin) override
+  const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) override
   {
-    begin = {0, bytes};
     const char *const first = static_cast<const char *>(mine);
-    return std::vector<char>(first, first + bytes);
+    all.assign(first, first + bytes);
+    return all;
   }
 
  private:
   const Grid &grid;
+  std::vector<char> all;
 };
 
 }    // namespace MPM_NS

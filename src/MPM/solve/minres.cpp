@@ -8,7 +8,9 @@
 
 #include "solve/minres.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 using namespace MPM_NS;
 
@@ -22,14 +24,13 @@ SolveReport MinimalResiduals::solve(LinearSystem &system, const double *b, doubl
   const int64_t n = system.size();
   for (auto *vector : {&r, &Az, &v, &v_old, &z, &z_new, &w, &w_old}) vector->resize(n);
   report.right_side = std::sqrt(system.product(b, b));
-  const double enough = std::max(goal.relative * report.right_side, goal.absolute);
+  const double enough = goal.enough(report.right_side);
 
   // residuals are known by recurrence, from which round-off may lead away: where this shows, from the start with what is left
 
   double before = 0.0;
   while (true) {
-    system.apply(x, Az.data());
-    for (int64_t i = 0; i < n; i++) r[i] = b[i] - Az[i];
+    find_residual(system, b, x, r.data());
     const double residual = std::sqrt(system.product(r.data(), r.data()));
     const bool first = report.residuals.empty();
     if (first) report.residuals.push_back(0.0);

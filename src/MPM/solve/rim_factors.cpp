@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 using namespace MPM_NS;
 
@@ -44,10 +45,10 @@ std::unordered_set<uint64_t> MPM_NS::rim_of(const std::vector<LatticeIndex> &nod
   return rim;
 }
 
-void MPM_NS::factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &factors)
+bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &factors)
 {
   const int n = A.rows();
-  if (n == 0) return;
+  if (n == 0) return true;
   Eigen::VectorXd diagonal(n);
   for (int i = 0; i < n; i++) diagonal[i] = A.coeff(i, i);
   const double tiny = 1.0e-14 * diagonal.maxCoeff();
@@ -56,8 +57,18 @@ void MPM_NS::factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &factors)
       A.coeffRef(i, i) = diagonal[i] > tiny ? diagonal[i] * (1.0 + shift)
                                             : std::max(tiny, 1.0e-300) * 1.0e14;
     factors.compute(A);
-    if (factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0.0) return;
+    if (factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0.0 &&
+        std::isfinite(factors.vectorD().sum()))
+      return true;
   }
+  return false;
+}
+
+double MPM_NS::memory_of(const CholeskyFactors &factors)
+{
+  if (factors.rows() == 0 || factors.info() != Eigen::Success) return 0.0;
+  return factors.matrixL().nestedExpression().nonZeros() * (sizeof(double) + sizeof(int)) +
+      factors.rows() * (sizeof(double) + 5 * sizeof(int));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -106,14 +117,14 @@ void RimFactors::add(int row, int column, const double *value)
     }
 }
 
-void RimFactors::factorize()
+bool RimFactors::factorize()
 {
   const int n = chunk.size() * width;
   Eigen::SparseMatrix<double> A(n, n);
   A.setFromTriplets(entries.begin(), entries.end());
   entries = {};
-  MPM_NS::factorize(std::move(A), factors);
   from.resize(n);
+  return MPM_NS::factorize(std::move(A), factors);
 }
 
 /** Copies of a node share what it has, so that those in many chunks do not get too much. */
@@ -140,5 +151,6 @@ void RimFactors::solve(const double *b, double *x)
 double RimFactors::memory_usage() const
 {
   return (first.capacity() + chunk.capacity()) * sizeof(int) +
-      (chunk.empty() ? 0.0 : factors.matrixL().nestedExpression().nonZeros() * 12.0);
+      entries.capacity() * sizeof(Eigen::Triplet<double>) +
+      (from.size() + to.size()) * sizeof(double) + memory_of(factors);
 }

@@ -9,24 +9,16 @@
 #ifndef MPM_SOLVE_RIM_FACTORS_H
 #define MPM_SOLVE_RIM_FACTORS_H
 
+#include "solve/lattice_key.h"
+
 #include <Eigen/SparseCholesky>
 
-#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 namespace MPM_NS {
-
-using LatticeIndex = std::array<int, 3>;
-
-inline uint64_t lattice_key(const LatticeIndex &index)
-{
-  uint64_t key = 0;
-  for (const int i : index) key = key << 21 | (uint64_t) (i + (1 << 20));
-  return key;
-}
 
 /** Nodes by their index, in the order in which they came. */
 struct LatticeNodes {
@@ -54,8 +46,10 @@ std::unordered_set<uint64_t> rim_of(const std::vector<LatticeIndex> &nodes, int 
 using CholeskyFactors = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
 /** Factors of a symmetric matrix with a shift of its diagonal: functions that points cannot tell apart, and free bodies, make it
- *  singular, and more than that where a tangent is not positive definite.  Factors are. */
-void factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &);
+ *  singular, and more than that where a tangent is not positive definite.  Factors are.  False: no shift makes it so, or it is
+ *  not finite; the factors are of no use then. */
+bool factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &);
+double memory_of(const CholeskyFactors &);
 
 /** An approximate inverse for nodes at the surface of a body.
  *
@@ -70,7 +64,7 @@ class RimFactors {
   bool together(int a, int b) const;
   /** value: [width][width] of both triangles is added to the matrix, and its transposed if the nodes are not the same. */
   void add(int row, int column, const double *value);
-  void factorize();
+  bool factorize();    ///< false: the factors are of no use
   /** x, b: [node][width]. */
   void solve(const double *b, double *x);
   double memory_usage() const;

@@ -16,7 +16,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <unordered_map>
+#include <utility>
 
 using namespace MPM_NS;
 
@@ -115,6 +117,7 @@ struct SplineMultigrid::Levels {
   std::vector<char> in_system;       // [node] it has a stiffness
   std::vector<double> held_part;     // [node of the rim][width][width]
   double largest = 0.0;
+  bool usable = true;    // all factors are there
   std::vector<double> work[3], rest;
 
   // nodes at the surface, whose functions are nearly dependent: chunks of them are factorized, on all ranks
@@ -134,7 +137,7 @@ struct SplineMultigrid::Levels {
   std::vector<int> first;    // [nodes + 1] range in parts
   std::vector<Part> parts;
   std::vector<int> number, of_ranks;
-  std::vector<double> partial;
+  std::vector<double> partial, of_all;
 
   // stiffness of points with the same nodes, and that of this rank
   std::vector<int64_t> nodes;
@@ -358,55 +361,52 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
   const auto C = [&](int i, int j) {
     return 0.5 * (stiffness[i * m + j] + stiffness[j * m + i]);
   };
-  const int nr = o.rim_local.size();
   o.T.assign(m * w, 0.0);
-  for (int J = 0; J < nr; J++) {
-    const double *const gJ = gradient + o.rim_local[J] * ngrad;
-    for (int i = 0; i < m; i++)
-      for (int b = 0; b < w; b++) {
-        double sum = 0.0;
-        for (int l = 0; l < ngrad; l++) sum += C(i, l * w + b) * gJ[l];
-        o.T[i * w + b] = sum;
-      }
-    for (int I = J; I < nr; I++) {
-      const double *const gI = gradient + o.rim_local[I] * ngrad;
-      double *const K = o.rim_element.data() + (I * nr + J) * w * w;
-      for (int l = 0; l < ngrad; l++)
-        for (int ab = 0; ab < w * w; ab++) K[ab] += gI[l] * o.T[l * w * w + ab];
-    }
-  }
-  if (!o.held) {
-    // G_J: [ngrad] gradient of a coarse function
-
-    o.G.assign(nc * ngrad, 0.0);
-    o.T.assign(m * w, 0.0);
-    for (int i = 0; i < n; i++)
-      for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
-        double *const g = o.G.data() + o.place[o.parts[k].node] * ngrad;
-        for (int l = 0; l < ngrad; l++) g[l] += o.parts[k].weight * gradient[i * ngrad + l];
-      }
-    for (int J = 0; J < nc; J++) {
-      const double *const gJ = o.G.data() + J * ngrad;
+  // of functions with these gradients [ngrad]: one triangle of the blocks [number][number]
+  const auto add_blocks = [&](int number, const auto &gradient_of, std::vector<double> &element) {
+    for (int J = 0; J < number; J++) {
+      const double *const gJ = gradient_of(J);
       for (int i = 0; i < m; i++)
         for (int b = 0; b < w; b++) {
           double sum = 0.0;
           for (int l = 0; l < ngrad; l++) sum += C(i, l * w + b) * gJ[l];
           o.T[i * w + b] = sum;
         }
-      for (int I = J; I < nc; I++) {
-        const double *const gI = o.G.data() + I * ngrad;
-        double *const K = o.element.data() + (I * nc + J) * w * w;
+      for (int I = J; I < number; I++) {
+        const double *const gI = gradient_of(I);
+        double *const K = element.data() + (I * number + J) * w * w;
         for (int l = 0; l < ngrad; l++)
           for (int ab = 0; ab < w * w; ab++) K[ab] += gI[l] * o.T[l * w * w + ab];
       }
     }
+  };
+  add_blocks(
+      o.rim_local.size(),
+      [&](int J) {
+        return gradient + o.rim_local[J] * ngrad;
+      },
+      o.rim_element);
+  if (!o.held) {
+    // G_J: [ngrad] gradient of a coarse function
+
+    o.G.assign(nc * ngrad, 0.0);
+    for (int i = 0; i < n; i++)
+      for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
+        double *const g = o.G.data() + o.place[o.parts[k].node] * ngrad;
+        for (int l = 0; l < ngrad; l++) g[l] += o.parts[k].weight * gradient[i * ngrad + l];
+      }
+    add_blocks(
+        nc,
+        [&](int J) {
+          return o.G.data() + J * ngrad;
+        },
+        o.element);
     return;
   }
 
   // G_J: [ngrad][width][width], of projected functions, which turn a value into others
 
   o.G.assign((std::size_t) nc * m * w, 0.0);
-  o.T.assign(m * w, 0.0);
   for (int i = 0; i < n; i++) {
     const double *const P = o.projection_of(nodes[i]);
     for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
@@ -582,7 +582,8 @@ void SplineMultigrid::Levels::smoother_of(Level &level, const LatticeNodes &node
       level.rim_factors->add(number[node], number[j], value);
     }
   }
-  level.rim_factors->factorize();
+  usable = level.rim_factors->factorize() && usable;
+  if (!usable) return;
   level.rim_b.resize(level.rim.size());
   level.rim_x.resize(level.rim.size());
 
@@ -664,7 +665,7 @@ void SplineMultigrid::Levels::factorize_rim(const double *mass)
   rim_blocks = {};
   rim_block_at = {};
   for (const auto &b : of_all) rim_factors.add(b.row, b.column, b.value);
-  rim_factors.factorize();
+  usable = rim_factors.factorize() && usable;
   rim_b.resize(rim.index.size() * w);
   rim_x.resize(rim.index.size() * w);
 }
@@ -682,9 +683,9 @@ void SplineMultigrid::Levels::by_blocks(const double *r, double *z)
   partial.resize(rim_owned.size() * w);
   for (std::size_t k = 0; k < rim_owned.size(); k++)
     project(rim_owned[k], r + rim_owned[k] * w, true, partial.data() + k * w);
-  const auto all = ranks.gather(partial);
+  ranks.gather(partial, of_all);
   for (std::size_t k = 0; k < rim_of_ranks.size(); k++)
-    for (int a = 0; a < w; a++) rim_b[rim_of_ranks[k] * w + a] = all[k * w + a];
+    for (int a = 0; a < w; a++) rim_b[rim_of_ranks[k] * w + a] = of_all[k * w + a];
   rim_factors.solve(rim_b.data(), rim_x.data());
   for (int64_t node = 0; node < grid.nnodes(); node++)
     if (rim_number[node] >= 0)
@@ -719,8 +720,8 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
   LatticeNodes all;
   o.merge_ranks(all);
   o.coarsen(std::move(all));
-  factorize(o.coarse.back().A, o.factors);
-  o.estimate_largest();
+  o.usable = o.usable && factorize(o.coarse.back().A, o.factors);
+  if (o.usable) o.estimate_largest();
 }
 
 void SplineMultigrid::Levels::smooth(const double *r, double *z, bool from_zero)
@@ -767,6 +768,10 @@ void SplineMultigrid::precondition(const double *r, double *z)
   auto &o = *on;
   const int w = o.width;
   const int64_t nnodes = o.grid.nnodes();
+  if (!o.usable) {
+    std::copy_n(r, nnodes * w, z);
+    return;
+  }
   std::fill_n(z, nnodes * w, 0.0);
   o.smooth(r, z, true);
 
@@ -791,11 +796,11 @@ void SplineMultigrid::precondition(const double *r, double *z)
       kept++;
     }
   partial.resize(kept * w);
-  const auto all = o.ranks.gather(partial);
+  o.ranks.gather(partial, o.of_all);
   auto &coarse = o.coarse[0];
   coarse.b.setZero();
   for (std::size_t k = 0; k < o.of_ranks.size(); k++)
-    for (int a = 0; a < w; a++) coarse.b[o.of_ranks[k] * w + a] += all[k * w + a];
+    for (int a = 0; a < w; a++) coarse.b[o.of_ranks[k] * w + a] += o.of_all[k * w + a];
   o.cycle(0);
 
   for (int64_t node = 0; node < nnodes; node++) {
@@ -810,6 +815,11 @@ void SplineMultigrid::precondition(const double *r, double *z)
   o.smooth(r, z, false);
 }
 
+bool SplineMultigrid::usable() const
+{
+  return on->usable;
+}
+
 int SplineMultigrid::levels() const
 {
   return 1 + on->coarse.size();
@@ -822,11 +832,32 @@ double SplineMultigrid::largest_eigenvalue() const
 
 double SplineMultigrid::memory_usage() const
 {
-  double bytes = on->parts.capacity() * sizeof(Part);
-  for (const auto *vector :
-       {&on->projection, &on->inverse, &on->work[0], &on->work[1], &on->work[2], &on->rest})
-    bytes += vector->capacity() * sizeof(double);
-  for (const auto &level : on->coarse)
-    bytes += (level.A.nonZeros() + level.to_next.nonZeros()) * (sizeof(double) + sizeof(int));
+  const auto &o = *on;
+  // a node of a hash map: what it has, and a pointer in it and to it
+  constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
+  double bytes = o.parts.capacity() * sizeof(Part) + memory_of(o.factors) +
+      o.rim_factors.memory_usage() + o.plain.capacity() + o.in_system.capacity() +
+      (o.blocks.capacity() + o.rim_blocks.capacity()) * sizeof(Block) +
+      (o.block_at.size() + o.rim_block_at.size()) * HASHED +
+      (o.rim_owned.capacity() + o.nodes.capacity()) * sizeof(int64_t);
+  for (const auto *list : {&o.rim, &o.mine})
+    bytes += list->index.capacity() * sizeof(LatticeIndex) + list->number.size() * HASHED;
+  for (const auto *list : {&o.rim_number, &o.rim_of_ranks, &o.rim_local, &o.first, &o.number,
+                           &o.of_ranks, &o.local, &o.place})
+    bytes += list->capacity() * sizeof(int);
+  for (const auto *list :
+       {&o.projection, &o.inverse, &o.held_part, &o.work[0], &o.work[1], &o.work[2], &o.rest,
+        &o.rim_element, &o.rim_x, &o.rim_b, &o.partial, &o.of_all, &o.element, &o.G, &o.T})
+    bytes += list->capacity() * sizeof(double);
+  for (const auto &level : o.coarse) {
+    for (const auto *matrix : {&level.A, &level.to_next})
+      bytes += matrix->nonZeros() * (sizeof(double) + sizeof(int)) + matrix->rows() * sizeof(int);
+    bytes +=
+        (level.x.size() + level.b.size()) * sizeof(double) + level.rim.capacity() * sizeof(int);
+    for (const auto *list : {&level.inverse, &level.work[0], &level.work[1], &level.work[2],
+                             &level.rim_b, &level.rim_x})
+      bytes += list->capacity() * sizeof(double);
+    if (level.rim_factors) bytes += level.rim_factors->memory_usage();
+  }
   return bytes;
 }

@@ -49,9 +49,12 @@ class SplineMultigrid {
   /** mass: [node], of all ranks, times what makes it a stiffness; null where there is none.  system: A, whose product is wanted
    *  here (some ten times) and in precondition() (four times).  Collective. */
   void finish(LinearSystem &system, const double *mass);
-  /** z: one cycle for A z = r.  Collective. */
+  /** z: one cycle for A z = r; r itself if the levels are not usable.  Collective. */
   void precondition(const double *r, double *z);
 
+  /** Could all be factorized? Not where stiffnesses are not finite, or far from positive definite: take another
+   *  preconditioner.  The same on all ranks. */
+  bool usable() const;
   int levels() const;
   double largest_eigenvalue() const;    ///< of A relative to the blocks
   double memory_usage() const;

@@ -1,0 +1,43 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MATH_SETS_H
+#define MPM_MATH_SETS_H
+
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+namespace MPM_NS {
+
+/** Which of the things 0 ... n - 1 belong together (union and find, with paths that get shorter as they are walked). */
+class Sets {
+ public:
+  explicit Sets(std::size_t n = 0) { begin(n); }
+
+  /** Each thing on its own. */
+  void begin(std::size_t n)
+  {
+    parent.resize(n);
+    std::iota(parent.begin(), parent.end(), 0);
+  }
+  void join(int i, int j) { parent[root(i)] = root(j); }
+  /** One thing of the set of i, the same for all of them until the next join(). */
+  int root(int i)
+  {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+  std::size_t size() const { return parent.size(); }
+
+ private:
+  std::vector<int> parent;
+};
+
+}    // namespace MPM_NS
+#endif
