@@ -200,6 +200,7 @@ void FixMPMIncompressible::init()
                "Fix mpm/incompressible requires a box of constant size and shape: remove the fix "
                "that changes it");
   cells.check_box(style);
+  forces_known = false;
 
   // points need no ghosts, see FixMPM::init()
 
@@ -268,6 +269,27 @@ void FixMPMIncompressible::check_points()
           "give the fixes disjoint groups",
           nall, id, style, other->id, other->style);
   }
+  check_others();
+}
+
+/** Others in the same box that this flow would go through. */
+void FixMPMIncompressible::check_others() const
+{
+  for (const auto *other : modify->get_fix_by_style("^mpm/incompressible$"))
+    if (other != this)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fluids of fixes {} and {} (style {}) would go through each other: give their "
+                 "points to one "
+                 "of these fixes",
+                 id, other->id, style);
+  for (const auto *other : modify->get_fix_by_style("^mpm$"))
+    if (comm->me == 0 && !told_of_bodies)
+      error->warning(
+          FLERR,
+          "Points of fix {} (style {}) go through those of fix {} (style {}), as neither feels "
+          "the other",
+          id, style, other->id, other->style);
+  told_of_bodies = true;
 }
 
 void FixMPMIncompressible::setup(int)
@@ -276,6 +298,22 @@ void FixMPMIncompressible::setup(int)
     error->all(FLERR, Error::NOLASTLINE, "Fix {} requires a positive time step: {}", style,
                update->dt);
   fit_gradients();
+  cells.find_cells();
+  give_to_cells(cells, points_now(0.0), sums);
+  cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
+  find_velocities();
+  pressure->find_wet(share);
+  note_filling();
+  forces_known = true;
+}
+
+/** What points fill. */
+void FixMPMIncompressible::note_filling()
+{
+  last.wet = (double) pressure->nwet();
+  last.filled = 0.0;
+  for (const auto &cell : cells.cells) last.filled += std::min(1.0, share[cell.number]);
+  last.filled *= cells.lattice.cell_volume();
 }
 
 /* ----------------------------------------------------------------------
@@ -372,10 +410,7 @@ void FixMPMIncompressible::initial_integrate(int)
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
 
-  last.wet = (double) pressure->nwet();
-  last.filled = 0.0;
-  for (const auto &cell : cells.cells) last.filled += std::min(1.0, share[cell.number]);
-  last.filled *= cells.lattice.cell_volume();
+  note_filling();
 }
 
 /** Velocities after forces and viscosity of a duration, which go to star, and the pressure. */
@@ -533,6 +568,20 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   const double nu = viscosity * acceleration_of_stress();
   tag = 0;
   if (nu > 0.0) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
+
+  // At the start of a run there are no forces. Those at the end of the last run count by the limit that they gave, also if
+  // it was the run that has written the restart file; at the start of the first one there is the weight
+
+  double weight[3] = {0.0, 0.0, 0.0};
+  if (!forces_known && limit_before > 0.0)
+    dt = std::min(dt, limit_before);
+  else if (!forces_known)
+    for (auto *gravity : modify->get_fix_by_style("^gravity")) {
+      int width;
+      const auto *const g = (const double *) gravity->extract("gvec", width);
+      for (int d = 0; d < cells.lattice.dim; d++) weight[d] += g[d];
+    }
+  const double least = MathExtra::len3(weight) * force->ftm2v;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
     double square = 0.0, force_square = 0.0;
@@ -540,7 +589,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
       square += atom->v[i][d] * atom->v[i][d];
       force_square += atom->f[i][d] * atom->f[i][d];
     }
-    const double a = std::sqrt(force_square) * force->ftm2v / atom->rmass[i];
+    const double a = std::max(least, std::sqrt(force_square) * force->ftm2v / atom->rmass[i]);
     const double speed = 0.5 * (std::sqrt(square) + std::sqrt(square + 4.0 * a * h));
     if (speed * dt > h) {
       dt = h / speed;
@@ -550,6 +599,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
       return 0.0;
     }
   }
+  if (forces_known) limit_before = dt;
   return dt;
 }
 
@@ -586,18 +636,25 @@ double FixMPMIncompressible::compute_vector(int k)
   return all;
 }
 
-/** The duration of the last step. */
+/** The duration of the last step, and the limit of the one to come, with forces. */
 void FixMPMIncompressible::write_restart(FILE *fp)
 {
+  tagint tag;
+  double mine = stable_dt(tag), limit;
+  MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
   if (comm->me) return;
-  const int size = sizeof(double);
+  const double state[] = {dt_before, limit};
+  const int size = sizeof(state);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&dt_before, sizeof(double), 1, fp);
+  fwrite(state, size, 1, fp);
 }
 
 void FixMPMIncompressible::restart(char *buf)
 {
-  memcpy(&dt_before, buf, sizeof(double));
+  double state[2];
+  memcpy(state, buf, sizeof(state));
+  dt_before = state[0];
+  limit_before = state[1];
 }
 
 double FixMPMIncompressible::memory_usage()

@@ -80,6 +80,10 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
+  mutable double limit_before =
+      0.0;                      // last stable_dt() with forces, on restart of all ranks; 0: none
+  bool forces_known = false;    // they are cleared at the start of a run
+  mutable bool told_of_bodies = false;
 
   struct {
     double iterations = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0, filled = 0.0;
@@ -89,6 +93,8 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   double acceleration_of_stress() const;
   MPMFlowPoints points_now(double dt) const;
   void check_points();
+  void check_others() const;
+  void note_filling();
   void fit_gradients();
   void find_shift();
   void go_on_into_air();

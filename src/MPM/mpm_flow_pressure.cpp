@@ -16,9 +16,9 @@ using namespace MPM_NS;
 
 // nearest place of the surface to the middle of a cell that equations are made for, in spacings
 static constexpr double NEAREST = 1.0e-8;
+// distance in which points make room for others, in spacings
+static constexpr double SPREAD = 8.0;
 // share of the surroundings of a cell, and mean of its neighbors, from which on it is wet
-static constexpr double SPREAD =
-    8.0;    // distance in which points make room for others, in spacings
 static constexpr double HALF = 0.5, SURROUNDED = 0.6;
 
 /** Depth below a flat surface, in spacings, of which this share of a hat is filled. */
