@@ -45,6 +45,9 @@ static constexpr double DIFFERENT_DT = 0.01;
 static constexpr double SAME_DENSITY = 1.0e-9;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
+// accelerations over that of the weight for which the first step of a fluid at rest is made: at the edges of a block of water
+// that is released the pressure makes such ones
+static constexpr double FIRST_FALL = 4.0;
 // passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
@@ -581,7 +584,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
       const auto *const g = (const double *) gravity->extract("gvec", width);
       for (int d = 0; d < cells.lattice.dim; d++) weight[d] += g[d];
     }
-  const double least = MathExtra::len3(weight) * force->ftm2v;
+  const double least = FIRST_FALL * MathExtra::len3(weight) * force->ftm2v;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
     double square = 0.0, force_square = 0.0;

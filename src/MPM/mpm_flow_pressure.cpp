@@ -84,6 +84,28 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
     wet.push_back(one);
   }
   cells.publish(inverse_diagonal.data(), 1);
+  levels_are_there = false;
+}
+
+/** The same equations for the multigrid preconditioner: owners of cells give what flows through their upper faces. */
+void MPMFlowPressure::find_levels()
+{
+  if (levels_are_there) return;
+  const int dim = cells.lattice.dim;
+  coefficients.clear();
+  for (const auto &one : wet) {
+    const int64_t number = cells.cells[one.cell].number;
+    double outside = 0.0,
+           inside = 0.0;    // apart: a closed pool has nothing outside, to the last digit
+    for (int s = 0; s < 2 * dim; s++) {
+      (one.near[s] < 0 ? outside : inside) += one.weight[s];
+      if (s % 2 && one.near[s] >= 0) coefficients.face[number * dim + s / 2] = one.weight[s];
+    }
+    coefficients.outside[number] = inside + outside > 0.0 ? outside : one.diagonal;
+  }
+  coefficients.finish();
+  multigrid.setup(coefficients);
+  levels_are_there = true;
 }
 
 void MPMFlowPressure::apply(const double *x, double *y)
@@ -102,6 +124,7 @@ void MPMFlowPressure::apply(const double *x, double *y)
 
 void MPMFlowPressure::precondition(const double *r, double *z)
 {
+  if (screen == 0.0) return multigrid.precondition(r, z);
   for (int64_t k = 0; k < size(); k++) z[k] = inverse_diagonal[k] * r[k];
 }
 
@@ -124,6 +147,8 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
     right_side[cell.number] = sum / h;
   }
   cells.publish(right_side.data(), 1);
+  find_levels();
+  multigrid.project(right_side.data());
   const SolveReport report = method.solve(*this, right_side.data(), psi.data(), goal);
   subtract_gradient(psi, before, after, known);
   return report;
@@ -231,5 +256,6 @@ double MPMFlowPressure::memory_usage() const
   return (psi.capacity() + excess.capacity() + flag.capacity() + right_side.capacity() +
           inverse_diagonal.capacity()) *
       sizeof(double) +
-      wet.capacity() * sizeof(Wet) + method.memory_usage();
+      wet.capacity() * sizeof(Wet) + method.memory_usage() + coefficients.memory_usage() +
+      multigrid.memory_usage();
 }

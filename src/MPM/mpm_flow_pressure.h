@@ -10,7 +10,9 @@
 #define LMP_MPM_FLOW_PRESSURE_H
 
 #include "mpm_flow_lattice.h"
+#include "mpm_lattice_ranks.h"
 #include "mpm_node_system.h"
+#include "solve/cell_multigrid.h"
 #include "solve/krylov.h"
 
 #include <vector>
@@ -24,11 +26,13 @@ namespace LAMMPS_NS {
  *  a hat that has the depth s below a flat surface is filled by 1/2 + s - s^2/2 of points that are squares (cubes), which tells how far from the middle of a
  *  wet cell the pressure is zero (F. Gibou, R.P. Fedkiw, L.-T. Cheng, M. Kang, J. Comput. Phys. 176 (2002) 205).
  *
- *  The unknown is the potential psi = dt p/density, whose gradient velocities lose. */
+ *  The unknown is the potential psi = dt p/density, whose gradient velocities lose. Its solve has a multigrid preconditioner,
+ *  which is the faster one from the smallest flows on; that of points that spread reaches but a few cells, and the diagonal is enough. */
 class MPMFlowPressure : public MPMNodeSystem {
  public:
   MPMFlowPressure(class LAMMPS *lmp, const MPMFlowLattice &cells) :
-      MPMNodeSystem(lmp, cells.grid, 1), cells(cells)
+      MPMNodeSystem(lmp, cells.grid, 1), cells(cells),
+      ranks(lmp, cells.grid, cells.halo_of_cells()), coefficients(cells.grid, ranks)
   {
   }
 
@@ -77,6 +81,10 @@ class MPMFlowPressure : public MPMNodeSystem {
     double diagonal;
   };
   const MPMFlowLattice &cells;
+  MPMLatticeRanks ranks;
+  MPM_NS::CellOperator coefficients;    // as the multigrid preconditioner has them
+  MPM_NS::CellMultigrid multigrid;
+  bool levels_are_there = false;    // for the cells that are wet now
   std::vector<Wet> wet;
   std::vector<double> excess, flag, right_side, inverse_diagonal;
   const double *share_of = nullptr;
@@ -88,6 +96,7 @@ class MPMFlowPressure : public MPMNodeSystem {
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;
+  void find_levels();
 };
 
 }    // namespace LAMMPS_NS
