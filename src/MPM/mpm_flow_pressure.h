@@ -18,6 +18,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMFlowRegions;
 
 /** The pressure that makes a flow free of divergence: the Poisson equation on the cells that are wet.
  *
@@ -36,15 +37,21 @@ class MPMFlowPressure : public MPMNodeSystem {
   {
   }
 
+  /** Regions that are solid; null: none. */
+  const MPMFlowRegions *regions = nullptr;
+
   /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
   void find_wet(const std::vector<double> &share);
   bool is_wet(int64_t number) const { return flag[number] > 0.0; }
 
-  /** Is the lower face of a cell along an axis in a wall, or next to a wet cell? */
+  /** Is the lower face of a cell along an axis in a wall, or open next to a wet cell? */
   bool is_next_to_water(const MPMFlowLattice::Cell &cell, int axis) const
   {
-    return cell.walls >> 2 * axis & 1 || is_wet(cell.number) || is_wet(cell.near[2 * axis]);
+    return cell.walls >> 2 * axis & 1 ||
+        ((is_wet(cell.number) || is_wet(cell.near[2 * axis])) && open(cell.number, axis) > 0.0);
   }
+  /** Open share of the lower face of a cell along an axis. */
+  double open(int64_t cell, int axis) const;
 
   /** From the middle of a wet cell to the surface, towards a neighbor that is dry, in spacings. */
   double distance(int64_t wet_cell, int64_t dry) const;
@@ -92,10 +99,13 @@ class MPMFlowPressure : public MPMNodeSystem {
   MPM_NS::ConjugateGradients method;
 
   double weight_to(int64_t wet_cell, int64_t other) const;
+  double open_side(const MPMFlowLattice::Cell &cell, int side) const;
+  double flux(const double *velocity, int64_t cell, int axis) const;
   bool is_deep(const MPMFlowLattice::Cell &) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;
+  void follow_neighbors();
   void find_levels();
 };
 
