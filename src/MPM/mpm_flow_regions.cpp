@@ -25,6 +25,8 @@ using namespace MPM_NS;
 
 // distance in which a wall is looked at, and in which closed faces have its normal velocity, in spacings
 static constexpr double FAR = 4.0, HELD = 3.5;
+// open share of a face that is none but rounding
+static constexpr double NO_SHARE = 1.0e-9;
 // points are kept so far outside of walls, in spacings
 static constexpr double MARGIN = 1.0e-6;
 // open share of the surroundings of a cell below which the cells around count, too
@@ -251,9 +253,9 @@ void MPMFlowRegions::find_shares()
       }
       for (int d = 0; d < dim; d++) {
         const int e = d == 0 ? 2 : 1, f = d == 2 ? 2 : 4;    // the other axes
-        shares[number * dim + d] = dim == 2
-            ? positive(corner[0], corner[e])
-            : positive(corner[0], corner[e], corner[e | f], corner[f]);
+        const double share = dim == 2 ? positive(corner[0], corner[e])
+                                      : positive(corner[0], corner[e], corner[e | f], corner[f]);
+        shares[number * dim + d] = share < NO_SHARE ? 0.0 : share;
         slope[d] /= ncorner / 2;
       }
 
