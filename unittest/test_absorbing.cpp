@@ -228,12 +228,14 @@ SERIAL_TEST(Spring, BearsALoad)
 
 TEST(Absorbing, RanksAndRestart)
 {
-  // a block on four sides of which waves leave, at 45 degrees to the lattice, too
+  // a block, through two faces of which waves leave and come in
   for (const char *options : {"", "frame total"}) {
-    const auto scene = space("si", "f f f", "0 2 0 2 0 2", 1, 0.03) + "fix grid all mpm 0.1 " +
+    const auto scene = space("si", "f f f", "0 2 0 2 0 1.7", 1, 0.03) + "fix grid all mpm 0.1 " +
         options +
-        "\nregion block block 0.4 1.33 0.5 1.3 0.5 1.3\ncreate_points 1 region block ppc 2\n"
-        "fix m all mpm/material density 1000 neohookean 1e6 0.3\nregion low plane 0 0 0.5 0 0 1\n"
+        "\nregion block block 0.4 1.33 0.5 1.3 0.35 1.15\ncreate_points 1 region block ppc 2\n"
+        // layers below the face belong to two ranks of four, which see other nodes
+        "displace_atoms all move 0 0 0.025\n"
+        "fix m all mpm/material density 1000 neohookean 1e6 0.3\nregion low plane 0 0 0.375 0 0 1\n"
         "region side plane 0.4 0 0 1 0 0\ntimestep 2e-4\n"
         "variable v equal 0.1*sin(100*time)\n";
     // the far side holds the stress that the body has by then
@@ -249,7 +251,9 @@ TEST(Absorbing, RanksAndRestart)
     OnRanks columns(scene + start + fixes, "run 60\n", layers);
     EXPECT_LT(measured("difference to one rank", columns.difference()), 1e-11);
     const auto next = "neighbor 0.03 bin\n" +
-        replaced(scene.substr(scene.find("fix grid")), "create_points 1 region block ppc 2\n", "");
+        replaced(replaced(scene.substr(scene.find("fix grid")),
+                          "create_points 1 region block ppc 2\n", ""),
+                 "displace_atoms all move 0 0 0.025\n", "");
     Continued again(scene + start + fixes, 20, next + fixes, 30);
     EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
     for (const char *id : {"low", "side"}) {
@@ -276,6 +280,22 @@ SERIAL_TEST(Units, OfForce)
                 -1e-6 * 6.0 * (2.0 * 3.0 + 2.0 * 5.0 * 4.0), 1e-8)
         << units;
   }
+}
+
+// a face at 45 degrees to the lattice, of a body that moves as a whole: rho cp along its normal, rho cs along it
+SERIAL_TEST(Inclined, ForceOnTheFace)
+{
+  Scene run(plane("lj", "f f", "0 24 0 24", 1, 0.3) + "fix grid all mpm 1.0\n" +
+            "region body block 2 22 2 22 INF INF\nregion face plane 12 12 0 -1 -1 0\n"
+            "region half intersect 2 body face\ncreate_points 1 region half ppc 2\n" +
+            MATERIAL +
+            strprintf("fix far all mpm/absorbing region face 1 %.17g spacing %.17g "
+                      "area %.17g\nvelocity all set 1e-3 3e-3 0\ntimestep 1e-4\nrun 1\n",
+                      CS, sqrt(0.125), 20.0 * sqrt(2.0)));
+  const double *const f = run.fix_vector("far", 7), scale = 1e-3 * f[6] / sqrt(2.0);
+  // velocities 4e-3/sqrt(2) along the normal and 2e-3/sqrt(2) in the plane
+  EXPECT_NEAR((f[0] + f[1]) / (-4.0 * scale * sqrt(2.0)), 1.0, 1e-3);
+  EXPECT_NEAR((f[1] - f[0]) / (-2.0 * CS * scale * sqrt(2.0)), 1.0, 1e-3);
 }
 
 SERIAL_TEST(Absorbing, BadInput)
