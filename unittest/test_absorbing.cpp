@@ -180,6 +180,36 @@ PARAMETER_TEST(Rock, ShakesTheLayer, double, Values(1.0, 1.5707963267948966))
   EXPECT_NEAR(measured("top over rock, over exact", most / 2e-4 / exact), 1.0, 0.02);
 }
 
+// A rigid base whose velocity is given, and the frame that moves with it, in which its acceleration is a weight, are the same
+SERIAL_TEST(RigidBase, IsAWeightInItsFrame)
+{
+  const double T = 30.0, V = 1e-4;
+  std::vector<double> top[2];
+  for (const bool moves : {true, false}) {
+    Scene run(plane("lj", "f p", "0 24 0 4", 1, 0.3) +
+              "fix grid all mpm 1.0 transfer aflip 1.0\nregion strip block 0 20 INF INF INF INF\n"
+              "create_points 1 region strip ppc 2\n" +
+              MATERIAL + strprintf("variable v equal (time<%g)*%g*sin(PI*time/%g)^2\n", T, V, T) +
+              strprintf("variable g equal (time<%g)*%.17g*sin(2*PI*time/%g)\n", T, -V * PI / T, T) +
+              (moves
+                   ? "fix base all mpm/boundary xlo stick velocity 0 v_v 0\n"
+                   : "fix base all mpm/boundary xlo stick\nfix g all gravity v_g vector 0 1 0\n") +
+              "timestep 0.1\n");
+    for (int k = 0; k < 60; k++) {
+      run.commands("run 20 post no\n");
+      const auto w = waves(run, 19.0, 20.1, true);
+      top[moves].push_back(w[0] + w[1] - (moves ? run.variable("v") : 0.0));
+    }
+  }
+  double most = 0.0, off = 0.0;
+  for (int k = 0; k < 60; k++) {
+    most = std::max(most, std::fabs(top[0][k]));
+    off = std::max(off, std::fabs(top[0][k] - top[1][k]));
+  }
+  EXPECT_GT(most, V);
+  EXPECT_LT(measured("difference of the two", off / most), 0.01);
+}
+
 // Ground that has its stress stands on the dashpots, and does not drift; with springs even from no stress at all
 SERIAL_TEST(Static, Stays)
 {

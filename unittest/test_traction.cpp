@@ -512,6 +512,22 @@ TEST(Bar, RanksAndRestart)
   }
 }
 
+// a load is not lost in silence with the points that carry it
+SERIAL_TEST(Traction, TellsOfLostPoints)
+{
+  for (const char *load :
+       {"mpm/traction region end pressure 1", "mpm/traction points 1 1 0 0 pressure 1",
+        "mpm/absorbing region end 30 20"}) {
+    const auto said =
+        lines_that_say(bar("", 0.4, "", "") + "fix load all " + load +
+                           "\ntimestep 1e-5\nrun 1\nrun 1\nregion part block 0.9 1.1 0 0.2 0 0.2\n"
+                           "delete_atoms region part\nrun 1\nrun 1\n",
+                       "points of its surface are gone");
+    ASSERT_EQ(said.size(), 1u) << load;
+    EXPECT_NE(said[0].find(": 32 of the "), std::string::npos) << said[0];
+  }
+}
+
 SERIAL_TEST(Traction, BadInput)
 {
   const auto plain = bar("", 0.4, "", "");

@@ -169,7 +169,16 @@ FixMPMAbsorbing::Body &FixMPMAbsorbing::body_of(const MPMField &field)
 void FixMPMAbsorbing::setup(int vflag)
 {
   if (!defined) define();
+  post_run();
   post_force(vflag);
+}
+
+/** Have points of the surface been deleted? */
+void FixMPMAbsorbing::post_run()
+{
+  int here = 0;
+  for (int i = 0; i < atom->nlocal; i++) here += rows[i][SHARE] != 0.0 || rows[i][AREA] != 0.0;
+  MPMFace::note_lost(lmp, "Fix mpm/absorbing " + std::string(id), here, known);
 }
 
 void FixMPMAbsorbing::define()
@@ -602,7 +611,8 @@ double FixMPMAbsorbing::memory_usage()
 void FixMPMAbsorbing::write_restart(FILE *fp)
 {
   std::vector<double> totals = {work};
-  write_totals(fp, world, totals, {defined ? 1.0 : 0.0, supports ? 1.0 : 0.0, fresh ? 1.0 : 0.0});
+  write_totals(fp, world, totals,
+               {defined ? 1.0 : 0.0, supports ? 1.0 : 0.0, fresh ? 1.0 : 0.0, known});
   work = totals[0];
 }
 
@@ -613,4 +623,5 @@ void FixMPMAbsorbing::restart(char *buf)
   defined = list[1] != 0.0;
   supports = list[2] != 0.0;
   fresh = list[3] != 0.0;
+  known = list[4];
 }

@@ -53,6 +53,7 @@ class FixMPMAbsorbing :
   void init() override;
   void setup(int) override;
   void post_force(int) override;
+  void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -107,6 +108,7 @@ class FixMPMAbsorbing :
   };
   std::vector<Body> bodies;
   bool defined = false;     // where the surface is
+  double known = 0.0;       // how many points have a part in it
   bool supports = false;    // there is a stress to hold
   bool fresh = false;       // what it lacks is not known yet
   double work = 0.0;    // on the bodies, without the support, this rank's share [mass velocity^2]

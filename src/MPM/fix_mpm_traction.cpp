@@ -166,7 +166,17 @@ bool FixMPMTraction::belongs(const MPMField &field, int i) const
 void FixMPMTraction::setup(int vflag)
 {
   if (surface != FREE && !defined) define();
+  post_run();
   post_force(vflag);
+}
+
+/** Have points of the surface been deleted? */
+void FixMPMTraction::post_run()
+{
+  if (surface == FREE) return;
+  int here = 0;
+  for (int i = 0; i < atom->nlocal; i++) here += rows[i][AREA] != 0.0 || rows[i][STRESS] != 0.0;
+  MPMFace::note_lost(lmp, "Fix mpm/traction " + std::string(id), here, known);
 }
 
 void FixMPMTraction::define()
@@ -325,8 +335,8 @@ void FixMPMTraction::add_forces()
 
 void FixMPMTraction::find_gradient(std::vector<double> &gradient)
 {
+  if (now[3].of_points.empty()) return;    // the same everywhere
   gradient.assign(3 * (std::size_t) atom->nmax, 0.0);
-  if (now[3].of_points.empty()) return;
   const int n = atom->nlocal, dim = domain->dimension;
   double **const x = atom->x;
   const double step = 0.25 * fields[0]->lattice.h, scale = 0.5 / (step * force->nktv2p);
@@ -361,7 +371,7 @@ void FixMPMTraction::press()
       const bool known = row[VOLUME] > 0.0;
       double moved[3], push[3], torque[3], place[3];
       for (int d = 0; d < 3; d++) {
-        push[d] = -volume * gradient[3 * (std::size_t) i + d];
+        push[d] = gradient.empty() ? 0.0 : -volume * gradient[3 * (std::size_t) i + d];
         moved[d] = x[d] - row[AT + d];
       }
       nearest_image(*domain, moved);
@@ -454,7 +464,7 @@ double FixMPMTraction::memory_usage()
 void FixMPMTraction::write_restart(FILE *fp)
 {
   std::vector<double> totals(work, work + 2);
-  write_totals(fp, world, totals, {defined ? 1.0 : 0.0});
+  write_totals(fp, world, totals, {defined ? 1.0 : 0.0, known});
   std::copy_n(totals.begin(), 2, work);
 }
 
@@ -463,4 +473,5 @@ void FixMPMTraction::restart(char *buf)
   const auto *const list = (const double *) buf;
   if (comm->me == 0) std::copy_n(list, 2, work);
   defined = list[2] != 0.0;
+  known = list[3];
 }

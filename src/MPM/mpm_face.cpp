@@ -133,3 +133,16 @@ void MPMFace::add_stress(const double *T, const double *n, double share, double 
     tau[c] -= share * (T[a] * n[b] + n[a] * T[b] - along * n[a] * n[b]);
   }
 }
+
+void MPMFace::note_lost(LAMMPS *lmp, const std::string &user, int here, double &known)
+{
+  const double mine = here;
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+  if (all < known && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "{}: {:.0f} of the {:.0f} points of its surface are gone, and with them "
+                        "their share of it",
+                        user, known - all, known);
+  known = all;
+}

@@ -71,6 +71,10 @@ class MPMFace : protected Pointers {
    *  share is W, in units of the stress, times J over the present area of the surface for that of T. */
   static void add_stress(const double *T, const double *n, double share, double *tau);
 
+  /** Collective, at the start and end of runs: warns when points of the surface have been deleted since the last look. here: of
+   *  this rank; known: of all ranks at the last look, which becomes the present number. */
+  static void note_lost(LAMMPS *, const std::string &user, int here, double &known);
+
  private:
   Region *const region;
   const double spacing;
