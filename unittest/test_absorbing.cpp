@@ -256,6 +256,31 @@ SERIAL_TEST(Spring, BearsALoad)
   }
 }
 
+// A block of ground that is cut out of more of it: base and sides hold it together, and edges do not count twice
+SERIAL_TEST(Static, CutOnThreeSides)
+{
+  Scene run(
+      plane("si", "f f", "-5 35 0 24", 1, 0.3) + "fix grid all mpm 1.0 transfer aflip 1.0\n" +
+      "region ground block 0 30 0 20 INF INF\ncreate_points 1 region ground ppc 2\n"
+      "fix m all mpm/material density 2000 linear 1e8 0.25\n"
+      "fix g all gravity 9.81 vector 0 -1 0\nfix floor all mpm/boundary ylo slip\n"
+      "region left block -5 0 INF INF INF INF\nregion right block 30 35 INF INF INF INF\n"
+      "fix left all mpm/boundary region left slip\nfix right all mpm/boundary region right slip\n"
+      "mpm_geostatic grid 0.5\ntimestep 1e-3\nfix rest all mpm/relax 1e-6\nrun 5000\n"
+      "unfix rest\nunfix floor\nunfix left\nunfix right\n"
+      "region b plane 0 0 0 0 1 0\nregion l plane 0 0 0 1 0 0\nregion r plane 30 0 0 -1 0 0\n"
+      "fix b all mpm/absorbing region b 245 141\nfix l all mpm/absorbing region l 245 141\n"
+      "fix r all mpm/absorbing region r 245 141\nvariable y equal xcm(all,y)\nrun 0\n");
+  const double before = run.variable("y"), sag = 2000 * 9.81 * 20.0 * 20.0 / (2.0 * 1.2e8);
+  run.commands("run 1500\n");
+  EXPECT_LT(std::fabs(measured("motion over settlement", (run.variable("y") - before) / sag)),
+            0.01);
+  double weight = 0.0;
+  for (const char *id : {"b", "l", "r"}) weight += run.fix_vector(id, 7)[4];
+  EXPECT_NEAR(measured("support over weight", weight / (2000 * 9.81 * 20 * 30)), 1.0, 1e-5);
+  EXPECT_NEAR(run.fix_vector("l", 7)[3] / (0.25 * 2000 * 9.81 * 20 * 20), 1.0, 0.03);
+}
+
 TEST(Absorbing, RanksAndRestart)
 {
   // a block, through two faces of which waves leave and come in

@@ -316,46 +316,61 @@ void FixMPMAbsorbing::place_marks(Body &body)
   });
 }
 
-/* ----------------------------------------------------------------------
-   Forces that would accelerate nodes next to the surface in the first step, at rest those that walls had borne but for what the support
-   has on points: each node gives it to the marks that see it, from the surface down, by their functions
-------------------------------------------------------------------------- */
-
-void FixMPMAbsorbing::complete_support(Body &body, double dt)
+/** Calls f(point, node, function) for the nodes around the places of marks and below them, a cell after the other. */
+template <class F> void FixMPMAbsorbing::visit_below(const Body &body, const F &f) const
 {
-  MPMField &field = *body.field;
+  const MPMField &field = *body.field;
   const auto &lattice = field.lattice;
   const MPMStencil stencil(field);
-  const auto each_node = [&](const auto &f) {
-    visit_marks(body, [&](int i, const double *x) {
-      for (int j = 0; j <= DEPTH; j++) {
-        int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
-        double w[3][4] = {{1.0}, {1.0}, {1.0}};
-        for (int d = 0; d < lattice.dim; d++) {
-          const double y = x[d] - j * lattice.h * rows[i][NORMAL + d];
-          count[d] = stencil.weights((y - lattice.origin[d]) / lattice.h, base[d], w[d]);
-        }
-        for (k[0] = 0; k[0] < count[0]; k[0]++)
-          for (k[1] = 0; k[1] < count[1]; k[1]++)
-            for (k[2] = 0; k[2] < count[2]; k[2]++) {
-              const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
-              const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
-              const int64_t node = field.grid.locate(index);
-              if (node >= 0 && N > 0.0) f(i, body.canonical[node], N);
-            }
+  visit_marks(body, [&](int i, const double *x) {
+    for (int j = 0; j <= DEPTH; j++) {
+      int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
+      double w[3][4] = {{1.0}, {1.0}, {1.0}};
+      for (int d = 0; d < lattice.dim; d++) {
+        const double y = x[d] - j * lattice.h * rows[i][NORMAL + d];
+        count[d] = stencil.weights((y - lattice.origin[d]) / lattice.h, base[d], w[d]);
       }
-    });
-  };
-  body.rates->zero();
-  each_node([&](int i, int64_t node, double N) {
-    body.rates->at(node)[0] += rows[i][AREA] * N;
+      for (k[0] = 0; k[0] < count[0]; k[0]++)
+        for (k[1] = 0; k[1] < count[1]; k[1]++)
+          for (k[2] = 0; k[2] < count[2]; k[2]++) {
+            const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
+            const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+            const int64_t node = field.grid.locate(index);
+            if (node >= 0 && N > 0.0) f(i, body.canonical[node], N);
+          }
+    }
   });
-  field.nodes.sum(*body.rates);
-  each_node([&](int i, int64_t node, double N) {
-    const double *const record = field.grid.record(node);
-    const double share = N * record[3] / (dt * body.rates->at(node)[0]);
-    for (int d = 0; d < lattice.dim; d++) rows[i][LACK + d] -= share * (record[d] - record[4 + d]);
-  });
+}
+
+/* ----------------------------------------------------------------------
+   Forces that would accelerate nodes next to the surface in the first step, at rest those that walls had borne but for what the support
+   has on points: each node gives it to the marks that see it, from the surface down, by their functions. Where surfaces of several
+   fixes meet at an edge, the marks of all of them share, or else both would bear it
+------------------------------------------------------------------------- */
+
+void FixMPMAbsorbing::complete_supports(double dt)
+{
+  std::vector<FixMPMAbsorbing *> all;
+  for (auto *other : find_fixes<FixMPMAbsorbing>(lmp))
+    if (other->fresh) all.push_back(other);
+  for (std::size_t b = 0; b < bodies.size(); b++) {
+    MPMField &field = *bodies[b].field;
+    NodeField &sums = *bodies[b].rates;
+    sums.zero();
+    for (const auto *other : all)
+      other->visit_below(other->bodies[b], [&](int i, int64_t node, double N) {
+        sums.at(node)[0] += other->rows[i][AREA] * N;
+      });
+    field.nodes.sum(sums);
+    for (auto *other : all)
+      other->visit_below(other->bodies[b], [&](int i, int64_t node, double N) {
+        const double *const record = field.grid.record(node);
+        const double share = N * record[3] / (dt * sums.at(node)[0]);
+        for (int d = 0; d < field.lattice.dim; d++)
+          other->rows[i][LACK + d] -= share * (record[d] - record[4 + d]);
+      });
+  }
+  for (auto *other : all) other->fresh = false;
 }
 
 /* ----------------------------------------------------------------------
@@ -529,14 +544,13 @@ void FixMPMAbsorbing::act(double dt, Stage stage)
   if (stage != STEP) return;
   std::fill_n(sums, 3, 0.0);
   sums_known = false;
+  if (fresh) complete_supports(dt);
   for (auto &body : bodies) {
     place_marks(body);
-    if (fresh) complete_support(body, dt);
     find_rates(body);
     push(body, dt);
     apply(body, dt);
   }
-  fresh = false;
 }
 
 /* ----------------------------------------------------------------------

@@ -124,7 +124,8 @@ class FixMPMAbsorbing :
   void place_marks(Body &);
   bool weigh(Body &, const Mark &, double dt, double *damping) const;
   void find_rates(Body &);
-  void complete_support(Body &, double dt);
+  template <class F> void visit_below(const Body &, const F &f) const;
+  void complete_supports(double dt);
   void push(Body &, double dt);
   void apply(Body &, double dt);
 };
