@@ -305,6 +305,9 @@ TEST(Absorbing, RanksAndRestart)
         strprintf("processors 1 1 %d\n", nranks());    // also between layers of points
     OnRanks columns(scene + start + fixes, "run 60\n", layers);
     EXPECT_LT(measured("difference to one rank", columns.difference()), 1e-11);
+    OnRanks even(scene + start + fixes, "run 60\n",
+                 "comm_style tiled\nfix even all balance 10 1.0 rcb\n");
+    EXPECT_LT(measured("difference to one rank, balanced", even.difference()), 1e-11);
     const auto next = "neighbor 0.03 bin\n" +
         replaced(replaced(scene.substr(scene.find("fix grid")),
                           "create_points 1 region block ppc 2\n", ""),

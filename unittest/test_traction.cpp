@@ -501,6 +501,8 @@ TEST(Bar, RanksAndRestart)
         "fix load all mpm/traction " + surface + "\n";
     OnRanks run(scene, "run 60\n");
     EXPECT_LT(run.difference(), 1e-11);
+    OnRanks even(scene, "run 60\n", "comm_style tiled\nfix even all balance 10 1.0 rcb\n");
+    EXPECT_LT(even.difference(), 1e-11);
     const auto fixes = "neighbor 0.03 bin\n" +
         replaced(scene.substr(scene.find("fix grid")), "create_points 1 region bar ppc 2\n", "");
     Continued again(scene, 20, fixes, 30);
