@@ -237,9 +237,8 @@ void FixMPMAbsorbing::define()
 template <class F> void FixMPMAbsorbing::visit_marks(const Body &body, const F &f) const
 {
   const auto places = body.field->frame->places();
-  for (int i = 0; i < atom->nlocal; i++) {
+  for (const int i : body.points) {
     const double *const row = rows[i];
-    if (!(row[AREA] > 0.0) || !body.field->is_point(i)) continue;
     double x[3];
     for (int d = 0; d < 3; d++) x[d] = places[i][d] + row[WAY + d];
     f(i, x);
@@ -252,6 +251,9 @@ void FixMPMAbsorbing::extend_topology(MPMField &field)
   Grid &grid = field.grid;
   const auto &lattice = field.lattice;
   const MPMStencil stencil(field);
+  body.points.clear();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (rows[i][AREA] > 0.0 && field.is_point(i)) body.points.push_back(i);
   body.blocks.clear();
   visit_marks(body, [&](int, const double *x) {
     int low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, b[3];
@@ -291,7 +293,9 @@ void FixMPMAbsorbing::place_marks(Body &body)
 {
   const MPMField &field = *body.field;
   const auto &lattice = field.lattice;
+  const Grid &grid = field.grid;
   const MPMStencil stencil(field);
+  int slot = -1;    // of the block of the first node
   body.marks.clear();
   body.nodes.clear();
   visit_marks(body, [&](int i, const double *x) {
@@ -302,12 +306,16 @@ void FixMPMAbsorbing::place_marks(Body &body)
       count[d] = stencil.weights(t[d], base[d], w[d]);
     }
     const int first = (int) body.nodes.size();
+    int b[3];
+    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
+    if (slot < 0 || !std::equal(b, b + 3, grid.blocks[slot].b)) slot = grid.find(b);
     for (k[0] = 0; k[0] < count[0]; k[0]++)
       for (k[1] = 0; k[1] < count[1]; k[1]++)
         for (k[2] = 0; k[2] < count[2]; k[2]++) {
           const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
           const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
-          const int64_t node = field.grid.locate(index);
+          const int64_t node = slot < 0 ? grid.locate(index)
+                                        : grid.locate_near(grid.blocks[slot], index);
           if (node < 0 || !(N > 0.0)) continue;
           body.nodes.push_back(
               {body.canonical[node], N, N, {index[0] - t[0], index[1] - t[1], index[2] - t[2]}});

@@ -102,6 +102,8 @@ class FixMPMAbsorbing :
     MPMField *field;
     MPM_NS::NodeField *rates, *pushes;
     std::vector<int64_t> canonical;
+    std::vector<int>
+        points;    // with marks, until the topology is renewed, which is when points move in memory
     std::vector<uint64_t> blocks;    // that marks reach, by their keys, sorted
     std::vector<Mark> marks;
     std::vector<Node> nodes;
