@@ -24,11 +24,11 @@ PAGE = os.path.join(PAGES, "Howto_mpm_gallery.rst")
 # in this order; a scene that is in none of them is an error
 TOPICS = {
     "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall hypervelocity "
-                         "ring-on-block scratch",
+                         "ring-on-block scratch blast-on-plate",
      "Elastic bodies": "rubber-band beam arch buckling tube cook-membrane two-disks ring-collision spinning-disk incline vortex",
     "Heat": "cooling-plate quench casting friction-weld machining hot-grains",
     "Fluids and gases": "dam-break sloshing elastic-gate elastic-plate poiseuille shock-tube settling",
-    "Soil and grains": "sand-column consolidation levee submarine-slide ball-in-sand hopper boulders-in-debris tyre-on-gravel "
+    "Soil and grains": "sand-column consolidation earthquake-slope levee submarine-slide ball-in-sand hopper boulders-in-debris tyre-on-gravel "
                        "grains-on-block",
     "Atoms and material points": "handshake impact-on-crystal",
     "Laws and physics of your own, and Python": "point own-material own-physics python",

@@ -501,6 +501,8 @@ TEST(Bar, RanksAndRestart)
         "fix load all mpm/traction " + surface + "\n";
     OnRanks run(scene, "run 60\n");
     EXPECT_LT(run.difference(), 1e-11);
+    OnRanks even(scene, "run 60\n", "comm_style tiled\nfix even all balance 10 1.0 rcb\n");
+    EXPECT_LT(even.difference(), 1e-11);
     const auto fixes = "neighbor 0.03 bin\n" +
         replaced(scene.substr(scene.find("fix grid")), "create_points 1 region bar ppc 2\n", "");
     Continued again(scene, 20, fixes, 30);
@@ -509,6 +511,22 @@ TEST(Bar, RanksAndRestart)
     for (int k = 0; k < 7; k++)
       EXPECT_EQ(again.whole.fix("load")->compute_vector(k),
                 again.again.fix("load")->compute_vector(k));
+  }
+}
+
+// a load is not lost in silence with the points that carry it
+SERIAL_TEST(Traction, TellsOfLostPoints)
+{
+  for (const char *load :
+       {"mpm/traction region end pressure 1", "mpm/traction points 1 1 0 0 pressure 1",
+        "mpm/absorbing region end 30 20"}) {
+    const auto said =
+        lines_that_say(bar("", 0.4, "", "") + "fix load all " + load +
+                           "\ntimestep 1e-5\nrun 1\nrun 1\nregion part block 0.9 1.1 0 0.2 0 0.2\n"
+                           "delete_atoms region part\nrun 1\nrun 1\n",
+                       "points of its surface are gone");
+    ASSERT_EQ(said.size(), 1u) << load;
+    EXPECT_NE(said[0].find(": 32 of the "), std::string::npos) << said[0];
   }
 }
 

@@ -47,14 +47,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-// what is refused: center of the force below a plane, and below other surfaces, in spacings; difference of the areas of two
-// layers below a plane; and what is told of these
-static constexpr double TOO_DEEP = 0.25, TOO_DEEP_CURVED = 0.6;
-static constexpr double TOO_UNEQUAL = 0.05, UNEQUAL = 0.01;
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/traction surface values keyword values ...
@@ -169,7 +165,17 @@ bool FixMPMTraction::belongs(const MPMField &field, int i) const
 void FixMPMTraction::setup(int vflag)
 {
   if (surface != FREE && !defined) define();
+  post_run();
   post_force(vflag);
+}
+
+/** Have points of the surface been deleted? */
+void FixMPMTraction::post_run()
+{
+  if (surface == FREE) return;
+  int here = 0;
+  for (int i = 0; i < atom->nlocal; i++) here += rows[i][AREA] != 0.0 || rows[i][STRESS] != 0.0;
+  MPMFace::note_lost(lmp, "Fix mpm/traction " + std::string(id), here, known);
 }
 
 void FixMPMTraction::define()
@@ -190,12 +196,11 @@ void FixMPMTraction::define()
     mine[0] += share.area;
     mine[1] += 1.0;
   };
-  MPMFace::Judgement layers = {};
+  std::unique_ptr<MPMFace> face;
   double given = area;
   if (surface == REGION) {
-    MPMFace face(lmp, domain->get_region_by_id(region), spacing);
-    for (const auto *field : fields) face.find(*field, groupbit, add);
-    layers = face.judge();
+    face = std::make_unique<MPMFace>(lmp, domain->get_region_by_id(region), spacing);
+    for (const auto *field : fields) face->find(*field, groupbit, add);
   } else {
     given = points_area;
     const double length = std::sqrt(dot(points_normal, points_normal));
@@ -218,22 +223,7 @@ void FixMPMTraction::define()
   if (all[1] == 0.0)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/traction {} has no points in group {}", id,
                group->names[igroup]);
-  const double unequal = layers.flat && area == 0.0 ? layers.unequal : 0.0;
-  if (!(all[0] > 0.0) || unequal > TOO_UNEQUAL ||
-      std::fabs(layers.depth) > (layers.flat ? TOO_DEEP : TOO_DEEP_CURVED))
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/traction {}: the points below the surface of region {} are not in layers of "
-        "the spacing that is expected, or in less than three of them: the force would act {:.3g} "
-        "spacings below it, and the areas of two layers differ by {:.3g} %; use the keywords "
-        "spacing and area, more points across the body, or points A nx ny nz",
-        id, region, layers.depth, 100.0 * unequal);
-  if (unequal > UNEQUAL && comm->me == 0)
-    error->warning(
-        FLERR,
-        "Fix mpm/traction {}: the areas of two layers of points below region {} differ by "
-        "{:.3g} %, and what is found may be wrong by more: use the keywords spacing or area",
-        id, region, 100.0 * unequal);
+  if (face) face->check("Fix mpm/traction " + std::string(id), area > 0.0);
   const double scale = given > 0.0 ? given / all[0] : 1.0;
   for (int i = 0; i < atom->nlocal; i++) {
     rows[i][AREA] *= scale;
@@ -344,8 +334,8 @@ void FixMPMTraction::add_forces()
 
 void FixMPMTraction::find_gradient(std::vector<double> &gradient)
 {
+  if (now[3].of_points.empty()) return;    // the same everywhere
   gradient.assign(3 * (std::size_t) atom->nmax, 0.0);
-  if (now[3].of_points.empty()) return;
   const int n = atom->nlocal, dim = domain->dimension;
   double **const x = atom->x;
   const double step = 0.25 * fields[0]->lattice.h, scale = 0.5 / (step * force->nktv2p);
@@ -380,7 +370,7 @@ void FixMPMTraction::press()
       const bool known = row[VOLUME] > 0.0;
       double moved[3], push[3], torque[3], place[3];
       for (int d = 0; d < 3; d++) {
-        push[d] = -volume * gradient[3 * (std::size_t) i + d];
+        push[d] = gradient.empty() ? 0.0 : -volume * gradient[3 * (std::size_t) i + d];
         moved[d] = x[d] - row[AT + d];
       }
       nearest_image(*domain, moved);
@@ -413,7 +403,6 @@ bool FixMPMTraction::adds_stress(const MPMField &field, int first, int last) con
 
 void FixMPMTraction::add_stress(const MPMField &field, int first, int n, double *tau) const
 {
-  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
   const double unit = force->nktv2p;
   for (int k = 0; k < n; k++, tau += 6) {
     const int i = first + k;
@@ -429,11 +418,7 @@ void FixMPMTraction::add_stress(const MPMField &field, int first, int n, double 
     present_area(field.points->F[i], row + NORMAL, n);
     const double size = std::sqrt(dot(n, n));
     for (double &component : n) component /= size;
-    const double along = dot(T, n), share = unit * row[STRESS] * field.points->jacobian(i) / size;
-    for (int c = 0; c < 6; c++) {
-      const int a = ROW[c], b = COLUMN[c];
-      tau[c] -= share * (T[a] * n[b] + n[a] * T[b] - along * n[a] * n[b]);
-    }
+    MPMFace::add_stress(T, n, unit * row[STRESS] * field.points->jacobian(i) / size, tau);
   }
 }
 
@@ -478,7 +463,7 @@ double FixMPMTraction::memory_usage()
 void FixMPMTraction::write_restart(FILE *fp)
 {
   std::vector<double> totals(work, work + 2);
-  write_totals(fp, world, totals, {defined ? 1.0 : 0.0});
+  write_totals(fp, world, totals, {defined ? 1.0 : 0.0, known});
   std::copy_n(totals.begin(), 2, work);
 }
 
@@ -487,4 +472,5 @@ void FixMPMTraction::restart(char *buf)
   const auto *const list = (const double *) buf;
   if (comm->me == 0) std::copy_n(list, 2, work);
   defined = list[2] != 0.0;
+  known = list[3];
 }

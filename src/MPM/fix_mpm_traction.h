@@ -48,6 +48,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   void init() override;
   void setup(int) override;
   void post_force(int) override;
+  void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -76,6 +77,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   MPMRows inside;
   enum { PRESSURE, VOLUME, PUSH, AT = PUSH + 3, INSIDE_WIDTH = AT + 3 };
   bool defined = false;    // which points belong to the surface
+  double known = 0.0;      // how many they are
   std::vector<MPMField *> fields;
   static constexpr int NSUM = 7;                  // force [3], present area, torque [3]
   double sums[NSUM] = {}, all_sums[NSUM] = {};    // of compute_vector(): this rank's share, and all

@@ -14,6 +14,8 @@
 #include "mpm_region_surface.h"
 
 #include "atom.h"
+#include "comm.h"
+#include "error.h"
 #include "region.h"
 
 #include <algorithm>
@@ -22,6 +24,11 @@
 using namespace LAMMPS_NS;
 
 static constexpr double DEEPEST = 3.0;    // point with a share
+
+// what is refused: center of the force below a plane, and below other surfaces, in spacings; difference of the areas of two
+// layers below a plane; and what is told of these
+static constexpr double TOO_DEEP = 0.25, TOO_DEEP_CURVED = 0.6;
+static constexpr double TOO_UNEQUAL = 0.05, UNEQUAL = 0.01;
 
 MPMFace::MPMFace(LAMMPS *lmp, Region *region, double spacing) :
     Pointers(lmp), region(region), spacing(spacing)
@@ -74,6 +81,8 @@ void MPMFace::find(const MPMField &field, int groupbit,
     surface.normal(x, far, 1.0e-4 * apart, share.normal);
     share.area = force_share(depth) * volume / apart;
     share.stress = stress_share(depth);
+    share.depth = depth * apart;
+    share.covered = hat(depth - 1.0) * volume / apart;
     sums[0] += share.area;
     sums[1] += share.area * depth;
     sums[2] += volume;
@@ -90,4 +99,50 @@ MPMFace::Judgement MPMFace::judge() const
   const double *const n = all + 3, area = all[0] != 0.0 ? all[0] : 1.0;
   return {std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) > (1.0 - 1.0e-6) * all[2],
           all[1] / area, std::fabs((all[6] - all[7]) / area)};
+}
+
+void MPMFace::check(const std::string &user, bool area_known) const
+{
+  double total;
+  MPI_Allreduce(sums, &total, 1, MPI_DOUBLE, MPI_SUM, world);
+  const Judgement layers = judge();
+  const double unequal = layers.flat && !area_known ? layers.unequal : 0.0;
+  if (!(total > 0.0) || unequal > TOO_UNEQUAL ||
+      std::fabs(layers.depth) > (layers.flat ? TOO_DEEP : TOO_DEEP_CURVED))
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "{}: the points below the surface of region {} are not in layers of "
+        "the spacing that is expected, or in less than three of them: the force would act {:.3g} "
+        "spacings below it, and the areas of two layers differ by {:.3g} %; use the keywords "
+        "spacing and area, more points across the body, or points A nx ny nz",
+        user, region->id, layers.depth, 100.0 * unequal);
+  if (unequal > UNEQUAL && comm->me == 0)
+    error->warning(
+        FLERR,
+        "{}: the areas of two layers of points below region {} differ by "
+        "{:.3g} %, and what is found may be wrong by more: use the keywords spacing or area",
+        user, region->id, 100.0 * unequal);
+}
+
+void MPMFace::add_stress(const double *T, const double *n, double share, double *tau)
+{
+  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+  const double along = T[0] * n[0] + T[1] * n[1] + T[2] * n[2];
+  for (int c = 0; c < 6; c++) {
+    const int a = ROW[c], b = COLUMN[c];
+    tau[c] -= share * (T[a] * n[b] + n[a] * T[b] - along * n[a] * n[b]);
+  }
+}
+
+void MPMFace::note_lost(LAMMPS *lmp, const std::string &user, int here, double &known)
+{
+  const double mine = here;
+  double all;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+  if (all < known && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "{}: {:.0f} of the {:.0f} points of its surface are gone, and with them "
+                        "their share of it",
+                        user, known - all, known);
+  known = all;
 }

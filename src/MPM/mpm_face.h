@@ -12,6 +12,7 @@
 #include "pointers.h"
 
 #include <functional>
+#include <string>
 
 namespace LAMMPS_NS {
 class MPMField;
@@ -46,6 +47,9 @@ class MPMFace : protected Pointers {
         area;    ///< k times volume over distance of layers; 2d: for a thickness of 1; of a ring around an axis
     double stress;       ///< W
     double normal[3];    ///< out of the region
+    double depth;        ///< of the point below the surface [distance]
+    /** The area as two layers have it with the hat around 1, which is never negative; its sum is that of the surface. */
+    double covered;
   };
   /** Calls f(i, share) for all points of the field and group that have one. */
   void find(const MPMField &, int groupbit, const std::function<void(int, const Share &)> &f);
@@ -59,6 +63,17 @@ class MPMFace : protected Pointers {
   /** Collective. Below a plane, depth and unequal are zero where there are at least three layers at that distance; below a surface of
    *  radius R the depth is 11/3 s/R, as deeper layers of a ball are smaller. */
   Judgement judge() const;
+  /** Collective. Stops with an error, or warns, where these are not what they should be; area_known: sums of shares do not
+   *  matter. user: what looks for the surface, for example fix mpm/traction load. */
+  void check(const std::string &user, bool area_known) const;
+
+  /** Add to the Kirchhoff stress tau [6] of a point what a traction T on a surface with the unit normal n has besides forces:
+   *  share is W, in units of the stress, times J over the present area of the surface for that of T. */
+  static void add_stress(const double *T, const double *n, double share, double *tau);
+
+  /** Collective, at the start and end of runs: warns when points of the surface have been deleted since the last look. here: of
+   *  this rank; known: of all ranks at the last look, which becomes the present number. */
+  static void note_lost(LAMMPS *, const std::string &user, int here, double &known);
 
  private:
   Region *const region;

@@ -15,6 +15,7 @@
 #include "declare/table_testing.h"
 
 #include "create_points.h"
+#include "fix_mpm_absorbing.h"
 #include "fix_mpm_boundary.h"
 #include "fix_mpm_contact.h"
 #include "fix_mpm_dt.h"
@@ -65,6 +66,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_relax", MPMRelaxOptions().declare());
   add("fix_mpm_rigid", MPMRigidOptions().declare());
   add("fix_mpm_surface", MPMSurfaceOptions().declare());
+  add("fix_mpm_absorbing", MPMAbsorbingOptions().declare(3));
   add("fix_mpm_traction", MPMTractionOptions().declare(3));
   add("mpm_point", MPMPointOptions().declare());
   add("pair_mpm_penalty", MPMPenaltyOptions().declare());

@@ -1,0 +1,649 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Behind its surface a body goes on for ever. A plane wave that arrives along the normal n takes the traction
+
+     t = -Z (v - 2 v_in) + t_0,   Z = rho c_p n n + rho c_s (1 - n n)
+
+   with it, where v_in is the velocity of a wave that comes from the far side, and t_0 what the far side bears at rest (J. Lysmer,
+   R.L. Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859; the incoming wave: W.B. Joyner, A.T.F. Chen, Bull. Seismol. Soc. Am. 65
+   (1975) 1315).
+
+   Marks. The velocity must be that on the surface: a dashpot half a spacing of points below it reflects k s/4 of a wave of the
+   wave number k, as the layer in front of it is a mass. Each point of the first two layers, with shares of
+   the area hat(depth - 1) that sum to one wherever the layers are, has a mark at its foot on the surface. The mark sees v = sum_i w_i v_i of
+   the nodes around it, and its impulse P goes to these with the same w_i, so that the dashpots only take energy. The weights are
+   the functions of the lattice there. Nodes beyond the surface that points hardly reach would fly off: those on which dashpots would act faster
+   than FASTEST get less, and the others so much more that the sum of w_i is one and that of w_i x_i stays at the mark.
+
+   Time. With a = dt w M^-1 w A Z a dashpot alone on its nodes obeys du/ds = -a (u - b) + D within a step, s from 0 to 1, from the old
+   velocity u_0 at the mark on. D is what forces change in the step, and b = 2 v_in. Its mean over the step,
+   phi u_0 + (1 - phi)/a D + (1 - phi) b with phi = (1 - exp(-a))/a, times A dt Z is what the dashpot takes. This is of second order in the time step,
+   has the right state at rest, and damps for any step. Marks share nodes: a is that of a wave which all of them see, by the
+   sums of A Z at the nodes. As none of these is negative, no wave has a larger one.
+
+   The static support is a dead load with the stress at the start, which is put on the layers of points as that of fix mpm/traction. The
+   stress of points next to a face is not quite what nodes bear there (0.3 % of the weight of 20 cells), and that would move the body with
+   a constant velocity. What nodes next to the surface lack in the first step so as not to be accelerated is a part of the support, too, at the marks.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_absorbing.h"
+
+#include "math/matrix.h"
+#include "mpm_face.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_options.h"
+#include "mpm_point_map.h"
+#include "mpm_points.h"
+#include "mpm_stencil.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "group.h"
+#include "modify.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// rate of a node, in wave speeds over node spacings: with stress mls, stress pulls less at nodes that points hardly reach than
+// the functions there tell, and dashpots must not pull more
+static constexpr double FASTEST = 20.0, FASTEST_MLS = 8.0;
+
+static constexpr int DEPTH =
+    3;    // cells below the surface whose nodes count for what the support lacks
+
+/* ----------------------------------------------------------------------
+   fix ID group mpm/absorbing region REG cp cs keyword values ...
+------------------------------------------------------------------------- */
+
+Options MPMAbsorbingOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/absorbing");
+  o.argument(word(surface, {{"region", REGION, "", {text(region, "REG", "")}}}, "surface"));
+  o.argument(number(speed_p, "cp", POSITIVE, "velocity", ""));
+  o.argument(number(speed_s, "cs", NOT_NEGATIVE, "velocity", ""));
+  o.add("density",
+        {number(density, "rho", POSITIVE, "mass/distance^dim", "of the material on the far side")})
+      .standard("that of the points next to the surface");
+  o.add("incoming",
+        {variables(incoming, 3, "vx vy vz", "velocity",
+                   "of the material in waves that come from the far side, can be variables")})
+      .then([this] {
+        has_incoming = true;
+      })
+      .standard("none");
+  o.add("support", {yes_no(support)}, "hold the stress that the surface has at the start");
+  o.add("spring",
+        {number(relax, "tau", POSITIVE, "time",
+                "springs besides the dashpots, of stiffness rho c/tau for each area")})
+      .standard("none");
+  o.add("spacing",
+        {number(spacing, "s", POSITIVE, "distance",
+                "of the layers of points along the normal of the region")})
+      .standard("cube root of the volume of a point, in 2d square root of its area");
+  o.add("area",
+        {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
+                "area of the surface of the region, if it is known: shares of points are scaled")})
+      .standard("the sum of the shares of points");
+  o.refuse([=] {
+    return OptionRules{{speed_s >= speed_p, "",
+                        "has a speed of shear waves that is not below that of pressure waves"},
+                       {dim == 2 && (incoming[2].value != 0.0 || !incoming[2].variable.empty()),
+                        "incoming", "must be along x and y in 2d: {incoming}"}};
+  });
+  return o;
+}
+
+FixMPMAbsorbing::FixMPMAbsorbing(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
+{
+  Options options = declare(domain->dimension);
+  read_options(lmp, options, narg, arg, 3);
+  scalar_flag = vector_flag = 1;
+  size_vector = 7;
+  global_freq = 1;
+  extscalar = extvector = 1;
+  restart_global = 1;
+  dynamic_group_allow = 0;
+  state.declare(rows, "mark", WIDTH);
+  keep_arrays();
+}
+
+void FixMPMAbsorbing::init()
+{
+  if (modify->get_fix_by_style("^mpm$").empty())
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/absorbing {} needs a fix mpm", id);
+  for (auto &v : incoming) find_variable(lmp, v, "fix mpm/absorbing " + std::string(id));
+  if (!defined && !domain->get_region_by_id(region))
+    error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/absorbing {} does not exist",
+               region, id);
+  static const char *const WATER[] = {"pore", "mixture", "incompressible"};
+  for (const char *style : WATER)
+    if (!modify->get_fix_by_style(std::string("^mpm/") + style + "$").empty())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/absorbing {} takes waves of one material, and there is a fix mpm/{}: use "
+                 "faces further away, or soil without water",
+                 id, style);
+}
+
+/** The nodes are those of this run. */
+void FixMPMAbsorbing::init_physics(MPMPlan &plan)
+{
+  bodies.clear();
+  for (auto *field : plan.fields) {
+    const auto &options = field->options;
+    refuse_field(lmp, *this, *field,
+                 {{options.modified_edges, "edges modified", "use edges plain, the default"},
+                  {options.has_fmpm(), "transfer fmpm",
+                   "its terms do not have the dashpots: use another transfer"}});
+    field->keep_old = true;
+    bodies.push_back({field, &field->nodes.add_field("rates of " + std::string(id), 6),
+                      &field->nodes.add_field("pushes of " + std::string(id), 3)});
+  }
+}
+
+FixMPMAbsorbing::Body &FixMPMAbsorbing::body_of(const MPMField &field)
+{
+  return *std::find_if(bodies.begin(), bodies.end(), [&](const Body &body) {
+    return body.field == &field;
+  });
+}
+
+/* ----------------------------------------------------------------------
+   what this run starts with: the surface, where points are now, and the stress that it bears
+------------------------------------------------------------------------- */
+
+void FixMPMAbsorbing::setup(int vflag)
+{
+  if (!defined) define();
+  post_run();
+  post_force(vflag);
+}
+
+/** Have points of the surface been deleted? */
+void FixMPMAbsorbing::post_run()
+{
+  int here = 0;
+  for (int i = 0; i < atom->nlocal; i++) here += rows[i][SHARE] != 0.0 || rows[i][AREA] != 0.0;
+  MPMFace::note_lost(lmp, "Fix mpm/absorbing " + std::string(id), here, known);
+}
+
+void FixMPMAbsorbing::define()
+{
+  const auto *const points = MPMPoints::get(atom);
+  double mine[2] = {0.0, 0.0}, all[2];    // area, points with a share
+  double most = 0.0, most_of_all;         // stress that is held
+  MPMFace face(lmp, domain->get_region_by_id(region), spacing);
+  for (const auto &body : bodies)
+    face.find(*body.field, groupbit, [&](int i, const MPMFace::Share &share) {
+      double *const row = rows[i], sigma[6];
+      const double *const n = share.normal;
+      points->cauchy(i, sigma);
+      const double held[3] = {sigma[0] * n[0] + sigma[3] * n[1] + sigma[4] * n[2],
+                              sigma[3] * n[0] + sigma[1] * n[1] + sigma[5] * n[2],
+                              sigma[4] * n[0] + sigma[5] * n[1] + sigma[2] * n[2]};
+      row[AREA] = share.covered;
+      row[SHARE] = share.area;
+      row[STRESS] = share.stress;
+      row[DENSITY] = density > 0.0 ? density
+                                   : atom->rmass[i] / (atom->vfrac[i] * points->jacobian(i));
+      for (int d = 0; d < 3; d++) {
+        row[NORMAL + d] = n[d];
+        row[WAY + d] = share.depth * n[d];
+        row[HELD + d] = support && d < domain->dimension ? held[d] / force->nktv2p : 0.0;
+        row[MOTION + d] = row[LACK + d] = 0.0;
+        most = std::max(most, std::fabs(row[HELD + d]));
+      }
+      mine[0] += share.covered;
+      mine[1] += 1.0;
+    });
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&most, &most_of_all, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (all[1] == 0.0)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/absorbing {} finds no points of group {} below the surface of region {}: the "
+        "body must be inside of the region, next to its surface",
+        id, group->names[igroup], region);
+  face.check("Fix mpm/absorbing " + std::string(id), area > 0.0);
+  const double scale = area > 0.0 ? area / all[0] : 1.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (const int k : {(int) AREA, (int) SHARE, (int) STRESS}) rows[i][k] *= scale;
+  supports = fresh = most_of_all > 0.0;
+  defined = true;
+  for (auto &body : bodies) body.field->map->valid = false;    // marks may need other blocks
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Fix mpm/absorbing {}: area {:.8g} of {:.0f} points\n", id, all[0] * scale,
+                   all[1]);
+}
+
+/* ----------------------------------------------------------------------
+   blocks around marks: points of other ranks may be the only ones that reach these
+------------------------------------------------------------------------- */
+
+template <class F> void FixMPMAbsorbing::visit_marks(const Body &body, const F &f) const
+{
+  const auto places = body.field->frame->places();
+  for (const int i : body.points) {
+    const double *const row = rows[i];
+    double x[3];
+    for (int d = 0; d < 3; d++) x[d] = places[i][d] + row[WAY + d];
+    f(i, x);
+  }
+}
+
+void FixMPMAbsorbing::extend_topology(MPMField &field)
+{
+  Body &body = body_of(field);
+  Grid &grid = field.grid;
+  const auto &lattice = field.lattice;
+  const MPMStencil stencil(field);
+  body.points.clear();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (rows[i][AREA] > 0.0 && field.is_point(i)) body.points.push_back(i);
+  body.blocks.clear();
+  visit_marks(body, [&](int, const double *x) {
+    int low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, b[3];
+    for (int d = 0; d < lattice.dim; d++) {
+      double w[4];
+      const int n = stencil.weights((x[d] - lattice.origin[d]) / lattice.h, low[d], w);
+      // points may move by a cell before blocks are renewed
+      const int more = fresh ? 1 + DEPTH : 1;
+      high[d] = (low[d] + n - 1 + more) >> grid.shift_bits;
+      low[d] = (low[d] - more) >> grid.shift_bits;
+    }
+    for (b[0] = low[0]; b[0] <= high[0]; b[0]++)
+      for (b[1] = low[1]; b[1] <= high[1]; b[1]++)
+        for (b[2] = low[2]; b[2] <= high[2]; b[2]++)
+          body.blocks.push_back(Grid::block_key(grid.blocks[grid.activate(b)]));
+  });
+  std::sort(body.blocks.begin(), body.blocks.end());
+  body.blocks.erase(std::unique(body.blocks.begin(), body.blocks.end()), body.blocks.end());
+}
+
+bool FixMPMAbsorbing::looks_at_all(const MPMField &field, const Grid::Block &block) const
+{
+  return std::any_of(bodies.begin(), bodies.end(), [&](const Body &body) {
+    return body.field == &field &&
+        std::binary_search(body.blocks.begin(), body.blocks.end(), Grid::block_key(block));
+  });
+}
+
+void FixMPMAbsorbing::topology_changed(MPMField &field)
+{
+  body_of(field).canonical = field.grid.canonical();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMAbsorbing::place_marks(Body &body)
+{
+  const MPMField &field = *body.field;
+  const auto &lattice = field.lattice;
+  const Grid &grid = field.grid;
+  const MPMStencil stencil(field);
+  int slot = -1;    // of the block of the first node
+  body.marks.clear();
+  body.nodes.clear();
+  visit_marks(body, [&](int i, const double *x) {
+    int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
+    double t[3] = {0.0, 0.0, 0.0}, w[3][4] = {{1.0}, {1.0}, {1.0}};
+    for (int d = 0; d < lattice.dim; d++) {
+      t[d] = (x[d] - lattice.origin[d]) / lattice.h;
+      count[d] = stencil.weights(t[d], base[d], w[d]);
+    }
+    const int first = (int) body.nodes.size();
+    int b[3];
+    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
+    if (slot < 0 || !std::equal(b, b + 3, grid.blocks[slot].b)) slot = grid.find(b);
+    for (k[0] = 0; k[0] < count[0]; k[0]++)
+      for (k[1] = 0; k[1] < count[1]; k[1]++)
+        for (k[2] = 0; k[2] < count[2]; k[2]++) {
+          const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
+          const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+          const int64_t node = slot < 0 ? grid.locate(index)
+                                        : grid.locate_near(grid.blocks[slot], index);
+          if (node < 0 || !(N > 0.0)) continue;
+          body.nodes.push_back(
+              {body.canonical[node], N, N, {index[0] - t[0], index[1] - t[1], index[2] - t[2]}});
+        }
+    body.marks.push_back({i, first, (int) body.nodes.size()});
+  });
+}
+
+/** Calls f(point, node, function) for the nodes around the places of marks and below them, a cell after the other. */
+template <class F> void FixMPMAbsorbing::visit_below(const Body &body, const F &f) const
+{
+  const MPMField &field = *body.field;
+  const auto &lattice = field.lattice;
+  const MPMStencil stencil(field);
+  visit_marks(body, [&](int i, const double *x) {
+    for (int j = 0; j <= DEPTH; j++) {
+      int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
+      double w[3][4] = {{1.0}, {1.0}, {1.0}};
+      for (int d = 0; d < lattice.dim; d++) {
+        const double y = x[d] - j * lattice.h * rows[i][NORMAL + d];
+        count[d] = stencil.weights((y - lattice.origin[d]) / lattice.h, base[d], w[d]);
+      }
+      for (k[0] = 0; k[0] < count[0]; k[0]++)
+        for (k[1] = 0; k[1] < count[1]; k[1]++)
+          for (k[2] = 0; k[2] < count[2]; k[2]++) {
+            const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
+            const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+            const int64_t node = field.grid.locate(index);
+            if (node >= 0 && N > 0.0) f(i, body.canonical[node], N);
+          }
+    }
+  });
+}
+
+/* ----------------------------------------------------------------------
+   Forces that would accelerate nodes next to the surface in the first step, at rest those that walls had borne but for what the support
+   has on points: each node gives it to the marks that see it, from the surface down, by their functions. Where surfaces of several
+   fixes meet at an edge, the marks of all of them share, or else both would bear it
+------------------------------------------------------------------------- */
+
+void FixMPMAbsorbing::complete_supports(double dt)
+{
+  std::vector<FixMPMAbsorbing *> all;
+  for (auto *other : find_fixes<FixMPMAbsorbing>(lmp))
+    if (other->fresh) all.push_back(other);
+  for (std::size_t b = 0; b < bodies.size(); b++) {
+    MPMField &field = *bodies[b].field;
+    NodeField &sums = *bodies[b].rates;
+    sums.zero();
+    for (const auto *other : all)
+      other->visit_below(other->bodies[b], [&](int i, int64_t node, double N) {
+        sums.at(node)[0] += other->rows[i][AREA] * N;
+      });
+    field.nodes.sum(sums);
+    for (auto *other : all)
+      other->visit_below(other->bodies[b], [&](int i, int64_t node, double N) {
+        const double *const record = field.grid.record(node);
+        const double share = N * record[3] / (dt * sums.at(node)[0]);
+        for (int d = 0; d < field.lattice.dim; d++)
+          other->rows[i][LACK + d] -= share * (record[d] - record[4 + d]);
+      });
+  }
+  for (auto *other : all) other->fresh = false;
+}
+
+/* ----------------------------------------------------------------------
+   sums of A Z at the nodes: xx yy zz xy xz yz, over the mass rates of their velocities
+------------------------------------------------------------------------- */
+
+void FixMPMAbsorbing::find_rates(Body &body)
+{
+  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+  const int dim = body.field->lattice.dim;
+  body.rates->zero();
+  for (const auto &mark : body.marks) {
+    const double *const row = rows[mark.point], *const n = row + NORMAL,
+                        scale = row[AREA] * row[DENSITY];
+    double Z[6];
+    for (int c = 0; c < 6; c++)
+      Z[c] = scale * ((speed_p - speed_s) * n[ROW[c]] * n[COLUMN[c]] + (c < dim ? speed_s : 0.0));
+    for (int k = mark.first; k < mark.last; k++) {
+      double *const to = body.rates->at(body.nodes[k].number);
+      for (int c = 0; c < 6; c++) to[c] += body.nodes[k].function * Z[c];
+    }
+  }
+  body.field->nodes.sum(*body.rates);
+}
+
+/* ----------------------------------------------------------------------
+   weights of the nodes of a mark, and a along its normal and in its plane. False where no node can take an impulse
+------------------------------------------------------------------------- */
+
+bool FixMPMAbsorbing::weigh(Body &body, const Mark &mark, double dt, double *damping) const
+{
+  Grid &grid = body.field->grid;
+  const int dim = grid.lattice.dim;
+  Node *const first = body.nodes.data() + mark.first, *const last = body.nodes.data() + mark.last;
+  const auto &options = body.field->options;
+  const double fastest = is_mls(options.shape, options.transfer) && !options.strains_by_gradient()
+      ? FASTEST_MLS
+      : FASTEST;
+  const double most = fastest * (speed_p + (dim - 1) * speed_s) / grid.lattice.h;
+  double total = 0.0, center[3] = {0.0, 0.0, 0.0}, spread[3] = {0.0, 0.0, 0.0};
+  for (Node *node = first; node < last; node++) {
+    const double mass = grid.record(node->number)[3], *const L = body.rates->at(node->number);
+    const double rate = L[0] + L[1] + L[2];
+    node->weight = mass > 0.0 ? node->function : 0.0;
+    if (rate > most * mass) node->weight *= most * mass / rate * (most * mass / rate);
+    total += node->weight;
+  }
+  if (!(total > 0.0)) return false;
+  for (Node *node = first; node < last; node++) {
+    node->weight /= total;
+    for (int d = 0; d < dim; d++) {
+      center[d] += node->weight * node->r[d];
+      spread[d] += node->weight * node->r[d] * node->r[d];
+    }
+  }
+  double K[6] = {};
+  for (Node *node = first; node < last; node++) {
+    double factor = 1.0;
+    for (int d = 0; d < dim; d++) {
+      const double variance = spread[d] - center[d] * center[d];
+      if (std::fabs(center[d]) < 0.5 * variance)
+        factor -= center[d] * (node->r[d] - center[d]) / variance;
+    }
+    node->weight *= factor;
+    if (node->weight == 0.0) continue;
+    const double share =
+        node->weight * node->weight / (node->function * grid.record(node->number)[3]);
+    for (int c = 0; c < 6; c++) K[c] += share * body.rates->at(node->number)[c];
+  }
+  const double *const n = rows[mark.point] + NORMAL;
+  const double along = K[0] * n[0] * n[0] + K[1] * n[1] * n[1] + K[2] * n[2] * n[2] +
+      2.0 * (K[3] * n[0] * n[1] + K[4] * n[0] * n[2] + K[5] * n[1] * n[2]);
+  damping[0] = dt * along;
+  damping[1] = std::max(0.0, dt * (K[0] + K[1] + K[2] - along) / (dim - 1));
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   impulses of the dashpots on the nodes
+------------------------------------------------------------------------- */
+
+void FixMPMAbsorbing::push(Body &body, double dt)
+{
+  Grid &grid = body.field->grid;
+  const int dim = grid.lattice.dim;
+  body.pushes->zero();
+  for (const auto &mark : body.marks) {
+    const double *const row = rows[mark.point], *const n = row + NORMAL;
+    double a[2];
+    if (!weigh(body, mark, dt, a)) continue;
+    double begin[3] = {0.0, 0.0, 0.0}, change[3] = {0.0, 0.0, 0.0};
+    for (int k = mark.first; k < mark.last; k++) {
+      const double *const record = grid.record(body.nodes[k].number), w = body.nodes[k].weight;
+      for (int d = 0; d < dim && w != 0.0; d++) {
+        begin[d] += w * record[4 + d];
+        change[d] += w * (record[d] - record[4 + d]);
+      }
+    }
+    for (int d = 0; d < dim; d++) {
+      begin[d] -= 2.0 * arriving[d];
+      if (relax > 0.0) begin[d] += row[MOTION + d] / relax;
+    }
+    // a traction is one of the dashpots at a velocity less, but for a fluid, which has none in the plane
+    const double lack = dot(row + LACK, n);
+    double along[3] = {0.0, 0.0, 0.0};
+    for (int d = 0; d < dim; d++) {
+      along[d] = row[LACK + d] - lack * n[d];
+      begin[d] -= lack * n[d] / (row[DENSITY] * speed_p);
+      if (speed_s > 0.0) begin[d] -= along[d] / (row[DENSITY] * speed_s);
+    }
+    // mean over the step: along the normal, and all as if it were in the plane
+    double mean[2][3];
+    for (int k = 0; k < 2; k++) {
+      const bool small = a[k] < 1.0e-4;
+      const double phi = small ? 1.0 - 0.5 * a[k] : -std::expm1(-a[k]) / a[k];
+      const double rest = small ? 0.5 - a[k] / 6.0 : (1.0 - phi) / a[k];
+      for (int d = 0; d < 3; d++) mean[k][d] = phi * begin[d] + rest * change[d];
+    }
+    const double normal = speed_p * dot(mean[0], n) - speed_s * dot(mean[1], n);
+    double impulse[3];
+    for (int d = 0; d < dim; d++)
+      impulse[d] = -row[AREA] * dt *
+          (row[DENSITY] * (normal * n[d] + speed_s * mean[1][d]) -
+           (speed_s > 0.0 ? 0.0 : along[d]));
+    for (int k = mark.first; k < mark.last; k++) {
+      double *const to = body.pushes->at(body.nodes[k].number);
+      for (int d = 0; d < dim; d++) to[d] += body.nodes[k].weight * impulse[d];
+    }
+  }
+  body.field->nodes.sum(*body.pushes);
+}
+
+/* ----------------------------------------------------------------------
+   Work of impulses is that of the mean of the old and the new velocity, as for forces
+------------------------------------------------------------------------- */
+
+void FixMPMAbsorbing::apply(Body &body, double dt)
+{
+  Grid &grid = body.field->grid;
+  auto &ledger = body.field->ledger;
+  const int dim = grid.lattice.dim;
+  double done = 0.0;
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    const double *const impulse = body.pushes->at(node);
+    double *const record = grid.record(node), change[3] = {0.0, 0.0, 0.0};
+    if ((impulse[0] == 0.0 && impulse[1] == 0.0 && impulse[2] == 0.0) || !(record[3] > 0.0))
+      continue;
+    const bool owned = grid.owns(node);
+    for (int d = 0; d < dim; d++) {
+      change[d] = impulse[d] / record[3];
+      record[d] += change[d];
+      if (!owned) continue;
+      done += 0.5 * impulse[d] * (record[d] + record[4 + d]);
+      sums[d] += impulse[d] / (dt * force->ftm2v);
+    }
+    if (owned && ledger.on) ledger.note_push(record, change);
+  }
+  work += done;
+  ledger.boundary += done * force->mvv2e;
+  ledger.driven += done * force->mvv2e;
+  if (relax > 0.0)
+    for (const auto &mark : body.marks)
+      for (int k = mark.first; k < mark.last; k++)
+        for (int d = 0; d < dim; d++)
+          rows[mark.point][MOTION + d] +=
+              dt * body.nodes[k].weight * grid.record(body.nodes[k].number)[d];
+}
+
+void FixMPMAbsorbing::act(double dt, Stage stage)
+{
+  if (stage != STEP) return;
+  std::fill_n(sums, 3, 0.0);
+  sums_known = false;
+  if (fresh) complete_supports(dt);
+  for (auto &body : bodies) {
+    place_marks(body);
+    find_rates(body);
+    push(body, dt);
+    apply(body, dt);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the support, and waves that come in at this time, around which the velocities of nodes are half a step before and behind
+------------------------------------------------------------------------- */
+
+void FixMPMAbsorbing::post_force(int)
+{
+  const bool any = std::any_of(incoming, incoming + 3, [](const NumberOrVariable &v) {
+    return !v.variable.empty();
+  });
+  evaluate_in_step(lmp, has_incoming && any, [this]() {
+    for (int d = 0; d < 3 && has_incoming; d++) arriving[d] = evaluate(lmp, incoming[d]);
+  });
+  std::fill_n(sums + 3, NSUM - 3, 0.0);
+  sums_known = false;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const double *const row = rows[i];
+    sums[6] += row[AREA];
+    for (int d = 0; d < 3 && supports; d++) {
+      const double share = row[SHARE] * row[HELD + d];
+      atom->f[i][d] += share;
+      sums[3 + d] += share;
+      sums[7 + d] += row[AREA] * row[LACK + d] / force->ftm2v;
+    }
+  }
+}
+
+bool FixMPMAbsorbing::adds_stress(const MPMField &, int first, int last) const
+{
+  for (int i = first; i < last && supports; i++)
+    if (rows[i][STRESS] != 0.0) return true;
+  return false;
+}
+
+void FixMPMAbsorbing::add_stress(const MPMField &field, int first, int n, double *tau) const
+{
+  for (int i = first; i < first + n && supports; i++, tau += 6) {
+    const double *const row = rows[i];
+    if (row[STRESS] == 0.0) continue;
+    MPMFace::add_stress(row + HELD, row + NORMAL,
+                        force->nktv2p * row[STRESS] * field.points->jacobian(i), tau);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+double FixMPMAbsorbing::compute_scalar()
+{
+  double all;
+  MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all * force->mvv2e;
+}
+
+double FixMPMAbsorbing::compute_vector(int k)
+{
+  if (!sums_known) MPI_Allreduce(sums, all_sums, NSUM, MPI_DOUBLE, MPI_SUM, world);
+  sums_known = true;
+  if (k < 3) return all_sums[k] + all_sums[3 + k];
+  return k < 6 ? all_sums[k] + all_sums[4 + k] : all_sums[k];
+}
+
+double FixMPMAbsorbing::memory_usage()
+{
+  double bytes = FixMPMState::memory_usage();
+  for (const auto &body : bodies)
+    bytes += body.marks.capacity() * sizeof(Mark) + body.nodes.capacity() * sizeof(Node) +
+        body.canonical.capacity() * sizeof(int64_t);
+  return bytes;
+}
+
+void FixMPMAbsorbing::write_restart(FILE *fp)
+{
+  std::vector<double> totals = {work};
+  write_totals(fp, world, totals,
+               {defined ? 1.0 : 0.0, supports ? 1.0 : 0.0, fresh ? 1.0 : 0.0, known});
+  work = totals[0];
+}
+
+void FixMPMAbsorbing::restart(char *buf)
+{
+  const auto *const list = (const double *) buf;
+  work = comm->me == 0 ? list[0] : 0.0;
+  defined = list[1] != 0.0;
+  supports = list[2] != 0.0;
+  fresh = list[3] != 0.0;
+  known = list[4];
+}

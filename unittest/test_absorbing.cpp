@@ -1,0 +1,381 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// Fix mpm/absorbing: waves leave bodies through dashpots and come in through them (benchmarks S3 and S4).
+
+#include "mpm_lammps.h"
+
+#include <complex>
+
+using namespace MPM_TEST;
+
+namespace {
+
+// density 1, Poisson number 1/4, speed of pressure waves 1
+constexpr double CS = 0.57735026918962576;
+const std::string MATERIAL = "fix m all mpm/material density 1 linear 0.83333333333333333 0.25\n";
+
+/** A strip along x from offset to offset + length, periodic along y. */
+std::string strip(const std::string &options, double offset, int length, int height)
+{
+  return plane("lj", "f p", strprintf("-4 %d 0 %d", length + 8, height), 1, 0.3) +
+      "fix grid all mpm 1.0 " + options +
+      strprintf("\nregion strip block 0 %d INF INF INF INF\n", length) +
+      "create_points 1 region strip ppc 2\n" +
+      strprintf("displace_atoms all move %.17g 0 0\n", offset) + MATERIAL +
+      strprintf("region left plane %.17g 0 0 1 0 0\nregion right plane %.17g 0 0 -1 0 0\n", offset,
+                offset + length);
+}
+
+/** Velocity and stress of the wave of direction a along y or x, sum over points of a section of the strip: the part that
+ *  goes to the right, and to the left. */
+std::array<double, 2> waves(Scene &run, double low, double high, bool shear)
+{
+  double right = 0.0, left = 0.0, n = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double x = run.x()[i][0];
+    if (x < low || x > high) continue;
+    const double v = run.v()[i][shear ? 1 : 0], s = run.points().tau[i][shear ? 3 : 0],
+                 Z = shear ? CS : 1.0;
+    right += 0.5 * (v - s / Z);
+    left += 0.5 * (v + s / Z);
+    n += 1.0;
+  }
+  return {right / n, left / n};
+}
+
+}    // namespace
+
+// A pulse of waves of 20 cells along the normal of the face, wherever that is in a cell: reflection below 0.01, and what
+// leaves is what the ledger has lost, to 1 %
+struct Pulse {
+  const char *options;
+  double offset;
+  bool shear;
+  double dt;
+  friend void PrintTo(const Pulse &p, std::ostream *out)
+  {
+    *out << p.options << " " << p.offset << " " << p.shear << " " << p.dt;
+  }
+};
+PARAMETER_TEST(Normal, Leaves, Pulse,
+               Values(Pulse{"transfer aflip 1.0", 0.0, false, 0.5},
+                      Pulse{"transfer aflip 1.0", 0.25, false, 0.5},
+                      Pulse{"transfer aflip 1.0", 0.5, false, 0.5},
+                      Pulse{"transfer aflip 1.0", 0.6, false, 0.5},
+                      Pulse{"transfer aflip 1.0", 0.88, false, 0.5},
+                      Pulse{"transfer aflip 1.0", 0.95, false, 0.1},
+                      Pulse{"transfer aflip 1.0", 0.3, true, 0.8}, Pulse{"", 0.0, false, 0.5},
+                      Pulse{"shape cubic", 0.4, false, 0.5},
+                      Pulse{"transfer flip 1.0", 0.9, false, 0.5},
+                      Pulse{"frame total transfer flip 1.0", 0.0, false, 0.5},
+                      Pulse{"shape linear transfer flip 1.0", 0.0, false, 0.5},
+                      Pulse{"shape cpdi transfer flip 1.0", 0.0, false, 0.5},
+                      Pulse{"scheme musl", 0.0, false, 0.1}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto &p = GetParam();
+  const double c = p.shear ? CS : 1.0;
+  Scene run(strip(p.options, p.offset, 140, 4) +
+            strprintf("variable s equal exp(-1.0*((time*%.17g-30)/10)^2)*"
+                      "cos(2*PI*(time*%.17g-30)/20)*1e-4\n",
+                      c, c) +
+            "fix src all mpm/traction region left traction " +
+            (p.shear ? "0 v_s 0\n" : "v_s 0 0\n") +
+            "fix far all mpm/absorbing region right 1.0 0.57735026918962576\n"
+            "compute e all mpm/energy\nthermo_style custom step c_e\n" +
+            strprintf("timestep %.17g\nrun %d\n", p.dt, (int) (62.0 / c / p.dt)));
+  const double *const e = run.compute_vector();
+  run.lmp->modify->get_compute_by_id("e")->compute_scalar();
+  const double there = e[0] + e[1], lost_before = e[8] + e[9];
+  double most[2] = {0.0, 0.0};
+  const int every = (int) std::lround(1.0 / p.dt / c);
+  for (int k = 0; k < 156; k++) {
+    run.commands(strprintf("run %d post no\n", every));
+    const auto w = waves(run, 99.9, 102.1, p.shear);
+    const double t = 62.0 + k;    // the pulse is at the section at 131, and its echo at 209
+    most[0] = std::max(most[0], t < 170.0 ? std::fabs(w[0]) : 0.0);
+    most[1] = std::max(most[1], t > 172.0 ? std::fabs(w[1]) : 0.0);
+  }
+  EXPECT_LT(measured("reflection", most[1] / most[0]), 0.01);
+  run.compute_vector();
+  const double dropped = there + (e[8] + e[9] - lost_before) - e[0] - e[1];
+  EXPECT_NEAR(measured("work of the dashpots over drop of energy", -e[6] / dropped), 1.0, 0.01);
+  EXPECT_DOUBLE_EQ(run.fix("far")->compute_scalar(), e[6]);
+  EXPECT_NEAR(e[10] / there, 0.0, 1e-11);
+}
+
+// Pressure waves that come at an angle are reflected as pressure and shear waves, with the amplitudes of the theory to 0.02
+PARAMETER_TEST(Oblique, Reflects, int, Values(30, 45, 60))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  struct Case {
+    int angle, height;    // a wave of some 24 cells
+    double p, s;
+  };
+  const Case *which = nullptr;
+  static const Case CASES[] = {
+      {30, 48, .01604, -.00895}, {45, 34, -.01384, -.07090}, {60, 28, -.13397, -.13397}};
+  for (const auto &c : CASES)
+    if (c.angle == GetParam()) which = &c;
+  const double theta = which->angle * PI / 180.0, ky = 2.0 * PI / which->height,
+               k = ky / sin(theta);
+  const double sine = CS * sin(theta), cosine = sqrt(1.0 - sine * sine), ks = k / CS;
+  Scene run(strip("transfer aflip 1.0", 0.0, 180, which->height) +
+            "fix far all mpm/absorbing region right 1.0 0.57735026918962576\ntimestep 0.3\n");
+  // displacement d cos(k.x - w t) of an envelope around x = 90
+  const double d[2] = {cos(theta), sin(theta)};
+  for (int i = 0; i < run.n(); i++) {
+    const double *const x = run.x()[i], along = x[0] * d[0] + x[1] * d[1];
+    const double envelope = 1e-4 * exp(-pow((x[0] - 90.0) / 22.0, 2)),
+                 shift = 0.15;    // half a step before
+    const double v = envelope * cos(k * (along + shift)), strain = -envelope * cos(k * along);
+    for (int a = 0; a < 2; a++) run.v()[i][a] = v * d[a];
+    // lambda = mu = 1/3
+    run.points().tau[i][0] = strain * (1.0 + 2.0 * d[0] * d[0]) / 3.0;
+    run.points().tau[i][1] = strain * (1.0 + 2.0 * d[1] * d[1]) / 3.0;
+    run.points().tau[i][2] = strain / 3.0;
+    run.points().tau[i][3] = strain * 2.0 * d[0] * d[1] / 3.0;
+  }
+  // amplitude of waves exp(i (kx x + ky y)) with velocities along the given direction
+  const auto amplitude = [&](double kx, double ex, double ey) {
+    std::complex<double> sum = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double *const x = run.x()[i], *const v = run.v()[i];
+      sum += (v[0] * ex + v[1] * ey) * std::exp(std::complex<double>(0.0, -kx * x[0] - ky * x[1]));
+    }
+    return sum;
+  };
+  const auto in = std::abs(amplitude(k * d[0], d[0], d[1]));
+  run.commands(strprintf("run %d\n", (int) (150.0 / d[0] / 0.3)));
+  // the echo of shear waves is as much shorter as these are slower along x
+  const double p = std::abs(amplitude(-k * d[0], -d[0], d[1])) / in,
+               s = std::abs(amplitude(-ks * cosine, sine, cosine)) / in * d[0] / (CS * cosine);
+  EXPECT_NEAR(measured("pressure wave", p), std::fabs(which->p), 0.02);
+  EXPECT_NEAR(measured("shear wave", s), std::fabs(which->s), 0.02);
+}
+
+// A layer on rock, whose motion comes through the dashpots, against rock without the layer
+PARAMETER_TEST(Rock, ShakesTheLayer, double, Values(1.0, 1.5707963267948966))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const double kH = GetParam(), z = 0.25, omega = kH * CS / 20.0;
+  // the base is 0.3 of a cell above a plane of nodes; waves begin smoothly
+  Scene run(
+      strip("transfer aflip 1.0", 0.3, 20, 4) +
+      strprintf("variable v equal 1e-4*sin(%.17g*time)*(1-exp(-1.0*time*time/2500))\n", omega) +
+      strprintf("fix rock all mpm/absorbing region left 1.0 0.57735026918962576 density %.17g "
+                "incoming 0 v_v 0\ntimestep 0.5\nrun %d\n",
+                1.0 / z, (int) (30.0 * 20.0 / CS / 0.5)));
+  double most = 0.0;
+  for (int k = 0; k < 80; k++) {
+    run.commands(strprintf("run %d post no\n", (int) (2.0 * PI / omega / 0.5 / 40.0)));
+    most = std::max(most,
+                    std::fabs(waves(run, 19.0, 20.3, true)[0] + waves(run, 19.0, 20.3, true)[1]));
+  }
+  const double exact = 1.0 / sqrt(cos(kH) * cos(kH) + z * z * sin(kH) * sin(kH));
+  EXPECT_NEAR(measured("top over rock, over exact", most / 2e-4 / exact), 1.0, 0.02);
+}
+
+// A rigid base whose velocity is given, and the frame that moves with it, in which its acceleration is a weight, are the same
+SERIAL_TEST(RigidBase, IsAWeightInItsFrame)
+{
+  const double T = 30.0, V = 1e-4;
+  std::vector<double> top[2];
+  for (const bool moves : {true, false}) {
+    Scene run(plane("lj", "f p", "0 24 0 4", 1, 0.3) +
+              "fix grid all mpm 1.0 transfer aflip 1.0\nregion strip block 0 20 INF INF INF INF\n"
+              "create_points 1 region strip ppc 2\n" +
+              MATERIAL + strprintf("variable v equal (time<%g)*%g*sin(PI*time/%g)^2\n", T, V, T) +
+              strprintf("variable g equal (time<%g)*%.17g*sin(2*PI*time/%g)\n", T, -V * PI / T, T) +
+              (moves
+                   ? "fix base all mpm/boundary xlo stick velocity 0 v_v 0\n"
+                   : "fix base all mpm/boundary xlo stick\nfix g all gravity v_g vector 0 1 0\n") +
+              "timestep 0.1\n");
+    for (int k = 0; k < 60; k++) {
+      run.commands("run 20 post no\n");
+      const auto w = waves(run, 19.0, 20.1, true);
+      top[moves].push_back(w[0] + w[1] - (moves ? run.variable("v") : 0.0));
+    }
+  }
+  double most = 0.0, off = 0.0;
+  for (int k = 0; k < 60; k++) {
+    most = std::max(most, std::fabs(top[0][k]));
+    off = std::max(off, std::fabs(top[0][k] - top[1][k]));
+  }
+  EXPECT_GT(most, V);
+  EXPECT_LT(measured("difference of the two", off / most), 0.01);
+}
+
+// Ground that has its stress stands on the dashpots, and does not drift; with springs even from no stress at all
+SERIAL_TEST(Static, Stays)
+{
+  for (const char *options :
+       {"", "transfer flip 1.0", "transfer aflip 1.0 stress gradient", "shape cubic"}) {
+    Scene run(plane("si", "p f", "0 4 0 24", 1, 0.3) + "fix grid all mpm 1.0 " + options +
+              "\nregion ground block INF INF 0 20 INF INF\ncreate_points 1 region ground ppc 2\n"
+              "fix m all mpm/material density 2000 linear 1e8 0.25\nfix g all gravity 9.81 vector "
+              "0 -1 0\n"
+              "fix floor all mpm/boundary ylo slip\nmpm_geostatic grid 0.5\ntimestep 1e-3\nrun 10\n"
+              "unfix floor\nregion base plane 0 0 0 0 1 0\n"
+              "fix far all mpm/absorbing region base 245 141\n");
+    run.commands("variable y equal xcm(all,y)\nvariable v equal vcm(all,y)\n");
+    const double before = run.variable("y");
+    run.commands("run 4000\n");
+    const double sag = 2000 * 9.81 * 20.0 * 20.0 / (2.0 * 1.2e8);    // if it had had no stress
+    EXPECT_LT(std::fabs(measured(std::string(options) + ": motion over settlement",
+                                 (run.variable("y") - before) / sag)),
+              0.01);
+    EXPECT_LT(std::fabs(measured("drift in a second over settlement", run.variable("v") / sag)),
+              1e-6);
+    EXPECT_NEAR(run.fix_vector("far", 7)[4] / (2000 * 9.81 * 20 * 4), 1.0, 1e-3);
+  }
+}
+
+// A load that comes later sinks into dashpots with sigma/(rho c) and comes to rest on springs, at sigma tau/(rho c)
+SERIAL_TEST(Spring, BearsALoad)
+{
+  for (const double tau : {0.0, 100.0}) {
+    Scene run(strip("transfer apic", 0.3, 20, 4) +
+              "fix load all mpm/traction region right traction 0 1e-4 0\n" +
+              "fix far all mpm/absorbing region left 1.0 0.57735026918962576" +
+              (tau > 0.0 ? strprintf(" spring %.17g\n", tau) : "\n") +
+              "timestep 0.5\nvariable v equal vcm(all,y)\nvariable y equal xcm(all,y)\nrun 0\n");
+    const double at = run.variable("y");
+    run.commands("run 2400\n");
+    const double speed = 1e-4 / CS;
+    if (tau == 0.0)
+      EXPECT_NEAR(measured("velocity", run.variable("v") / speed), 1.0, 1e-3);
+    else
+      EXPECT_NEAR(measured("rest", (run.variable("y") - at - 1e-4 * 10.0 * 3.0) / (speed * tau)),
+                  1.0, 2e-3);
+    EXPECT_NEAR(run.fix_vector("far", 7)[1] / -4e-4, 1.0, 1e-3);
+  }
+}
+
+// A block of ground that is cut out of more of it: base and sides hold it together, and edges do not count twice
+SERIAL_TEST(Static, CutOnThreeSides)
+{
+  Scene run(
+      plane("si", "f f", "-5 35 0 24", 1, 0.3) + "fix grid all mpm 1.0 transfer aflip 1.0\n" +
+      "region ground block 0 30 0 20 INF INF\ncreate_points 1 region ground ppc 2\n"
+      "fix m all mpm/material density 2000 linear 1e8 0.25\n"
+      "fix g all gravity 9.81 vector 0 -1 0\nfix floor all mpm/boundary ylo slip\n"
+      "region left block -5 0 INF INF INF INF\nregion right block 30 35 INF INF INF INF\n"
+      "fix left all mpm/boundary region left slip\nfix right all mpm/boundary region right slip\n"
+      "mpm_geostatic grid 0.5\ntimestep 1e-3\nfix rest all mpm/relax 1e-6\nrun 5000\n"
+      "unfix rest\nunfix floor\nunfix left\nunfix right\n"
+      "region b plane 0 0 0 0 1 0\nregion l plane 0 0 0 1 0 0\nregion r plane 30 0 0 -1 0 0\n"
+      "fix b all mpm/absorbing region b 245 141\nfix l all mpm/absorbing region l 245 141\n"
+      "fix r all mpm/absorbing region r 245 141\nvariable y equal xcm(all,y)\nrun 0\n");
+  const double before = run.variable("y"), sag = 2000 * 9.81 * 20.0 * 20.0 / (2.0 * 1.2e8);
+  run.commands("run 1500\n");
+  EXPECT_LT(std::fabs(measured("motion over settlement", (run.variable("y") - before) / sag)),
+            0.01);
+  double weight = 0.0;
+  for (const char *id : {"b", "l", "r"}) weight += run.fix_vector(id, 7)[4];
+  EXPECT_NEAR(measured("support over weight", weight / (2000 * 9.81 * 20 * 30)), 1.0, 1e-5);
+  EXPECT_NEAR(run.fix_vector("l", 7)[3] / (0.25 * 2000 * 9.81 * 20 * 20), 1.0, 0.03);
+}
+
+TEST(Absorbing, RanksAndRestart)
+{
+  // a block, through two faces of which waves leave and come in
+  for (const char *options : {"", "frame total"}) {
+    const auto scene = space("si", "f f f", "0 2 0 2 0 1.7", 1, 0.03) + "fix grid all mpm 0.1 " +
+        options +
+        "\nregion block block 0.4 1.33 0.5 1.3 0.35 1.15\ncreate_points 1 region block ppc 2\n"
+        // layers below the face belong to two ranks of four, which see other nodes
+        "displace_atoms all move 0 0 0.025\n"
+        "fix m all mpm/material density 1000 neohookean 1e6 0.3\nregion low plane 0 0 0.375 0 0 1\n"
+        "region side plane 0.4 0 0 1 0 0\ntimestep 2e-4\n"
+        "variable v equal 0.1*sin(100*time)\n";
+    // the far side holds the stress that the body has by then
+    const std::string start =
+        "velocity all set 0.1 0.2 0.3\nvelocity all ramp vx 0 2 x 0.4 1.33 sum yes\nrun 30\n";
+    const std::string fixes =
+        "fix low all mpm/absorbing region low 36 20 spring 0.1 incoming v_v 0.01 0\n"
+        "fix side all mpm/absorbing region side 36 20 density 500\n";
+    OnRanks run(scene + start + fixes, "run 60\n");
+    EXPECT_LT(measured("difference to one rank", run.difference()), 1e-11);
+    const auto layers =
+        strprintf("processors 1 1 %d\n", nranks());    // also between layers of points
+    OnRanks columns(scene + start + fixes, "run 60\n", layers);
+    EXPECT_LT(measured("difference to one rank", columns.difference()), 1e-11);
+    OnRanks even(scene + start + fixes, "run 60\n",
+                 "comm_style tiled\nfix even all balance 10 1.0 rcb\n");
+    EXPECT_LT(measured("difference to one rank, balanced", even.difference()), 1e-11);
+    const auto next = "neighbor 0.03 bin\n" +
+        replaced(replaced(scene.substr(scene.find("fix grid")),
+                          "create_points 1 region block ppc 2\n", ""),
+                 "displace_atoms all move 0 0 0.025\n", "");
+    Continued again(scene + start + fixes, 20, next + fixes, 30);
+    EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+    for (const char *id : {"low", "side"}) {
+      EXPECT_EQ(again.whole.fix(id)->compute_scalar(), again.again.fix(id)->compute_scalar());
+      for (int k = 0; k < 7; k++)
+        EXPECT_EQ(again.whole.fix(id)->compute_vector(k), again.again.fix(id)->compute_vector(k));
+    }
+  }
+}
+
+// numbers of the input are those of the unit style: a body that moves as a whole feels rho c v on the face
+SERIAL_TEST(Units, OfForce)
+{
+  for (const char *units : {"si", "metal", "real", "lj"}) {
+    Scene run(plane(units, "f f", "0 8 0 8", 1, 0.3) + "fix grid all mpm 1.0\n" +
+              "region body block 1 7 1 7 INF INF\ncreate_points 1 region body ppc 2\n" +
+              "fix m all mpm/material density 2.0 linear 100 0.3\nregion top plane 0 7 0 0 -1 0\n"
+              "fix far all mpm/absorbing region top 5 3\nvelocity all set 1 2 0\n"
+              "timestep 1e-6\nrun 1\n");
+    const double unit = run.lmp->force->ftm2v;
+    EXPECT_NEAR(run.fix_vector("far", 7)[0] * unit, -2.0 * 3.0 * 1.0 * 6.0, 1e-3) << units;
+    EXPECT_NEAR(run.fix_vector("far", 7)[1] * unit, -2.0 * 5.0 * 2.0 * 6.0, 1e-3) << units;
+    EXPECT_NEAR(run.fix("far")->compute_scalar() / run.lmp->force->mvv2e,
+                -1e-6 * 6.0 * (2.0 * 3.0 + 2.0 * 5.0 * 4.0), 1e-8)
+        << units;
+  }
+}
+
+// a face at 45 degrees to the lattice, of a body that moves as a whole: rho cp along its normal, rho cs along it
+SERIAL_TEST(Inclined, ForceOnTheFace)
+{
+  Scene run(plane("lj", "f f", "0 24 0 24", 1, 0.3) + "fix grid all mpm 1.0\n" +
+            "region body block 2 22 2 22 INF INF\nregion face plane 12 12 0 -1 -1 0\n"
+            "region half intersect 2 body face\ncreate_points 1 region half ppc 2\n" +
+            MATERIAL +
+            strprintf("fix far all mpm/absorbing region face 1 %.17g spacing %.17g "
+                      "area %.17g\nvelocity all set 1e-3 3e-3 0\ntimestep 1e-4\nrun 1\n",
+                      CS, sqrt(0.125), 20.0 * sqrt(2.0)));
+  const double *const f = run.fix_vector("far", 7), scale = 1e-3 * f[6] / sqrt(2.0);
+  // velocities 4e-3/sqrt(2) along the normal and 2e-3/sqrt(2) in the plane
+  EXPECT_NEAR((f[0] + f[1]) / (-4.0 * scale * sqrt(2.0)), 1.0, 1e-3);
+  EXPECT_NEAR((f[1] - f[0]) / (-2.0 * CS * scale * sqrt(2.0)), 1.0, 1e-3);
+}
+
+SERIAL_TEST(Absorbing, BadInput)
+{
+  const auto plain = strip("", 0.0, 20, 4);
+  const std::string fix = "fix far all mpm/absorbing ";
+  expect_refused(
+      plain,
+      {{fix, "missing argument"},
+       {fix + "xlo 1 0.5", "must be one of region"},
+       {fix + "region right 1", "missing argument"},
+       {fix + "region right 0.5 0.5", "not below that of pressure waves"},
+       {fix + "region right 0 0", "cp"},
+       {fix + "region right 1 -1", "cs"},
+       {fix + "region nowhere 1 0.5", "does not exist"},
+       {fix + "region right 1 0.5 density 0", "density"},
+       {fix + "region right 1 0.5 spring 0", "spring"},
+       {fix + "region right 1 0.5 incoming 1 0", "missing argument"},
+       {fix + "region right 1 0.5 incoming 0 0 1", "along x and y in 2d"},
+       {fix + "region right 1 0.5 incoming v_none 0 0", "does not exist"},
+       {fix + "region right 1 0.5 spacing 0.8", "are not in layers"},
+       {"region away plane 30 0 0 -1 0 0\n" + fix + "region away 1 0.5", "finds no points"},
+       {"unfix m\nunfix grid\n" + fix + "region right 1 0.5", "needs a fix mpm"}},
+      "timestep 0.1\nrun 1\n");
+}
