@@ -437,6 +437,30 @@ run 500
   }
 }
 
+// a column of an incompressible fluid runs out of the box: what is there and what has gone are all of it, on any number of processes
+TEST(Channel, DrainOfAnIncompressibleFluid)
+{
+  const std::string scene = plane("si", "f f", "0 2 0 1", 1, 0.025) + R"(
+fix flow all mpm/incompressible 0.05 1000
+region dam block 0 0.6 0 0.8 INF INF
+create_points 1 region dam spacing 0.025
+region sink block 1.6 INF INF INF INF INF
+fix out all mpm/absorb region sink
+fix g all gravity 9.81 vector 0 -1 0
+fix dt all mpm/dt 0.5 max 0.01
+)";
+  OnRanks runs(scene, "run 90\n");
+  EXPECT_LT(runs.difference(), 1e-5);    // of a pressure that is solved to 1e-9
+  const auto rest = runs.parallel.gather();
+  double mass = 0.0;
+  for (const auto &s : rest) mass += s.mass;
+  auto *out = runs.parallel.fix("out");
+  EXPECT_GT(out->compute_vector(0), 100.0);
+  EXPECT_EQ(out->compute_vector(0) + (double) rest.size(), 768.0);
+  EXPECT_NEAR(out->compute_scalar() + mass, 480.0, 1e-9);
+  EXPECT_EQ((double) runs.parallel.lmp->atom->natoms, (double) rest.size());
+}
+
 // mistakes are told, with the remedy
 TEST(BadInput, IsRefused)
 {
