@@ -233,6 +233,46 @@ run 100
   EXPECT_NEAR(first - last, 0.5 - 0.01, 1e-9);
 }
 
+// a mouth goes through walls, whatever is defined first
+SERIAL_TEST(Plug, ThroughAWall)
+{
+  const std::string wall = "fix wall all mpm/boundary xlo ylo stick\n";
+  for (const bool first : {false, true}) {
+    Scene run(plane("si", "f f", "0 2 0 0.5", 1, 0.01) +
+              "fix grid all mpm 0.02\nfix m all mpm/material density 1000 eos linear 0.1\n"
+              "region mouth block 0 0.1 0 0.1 INF INF\n" +
+              (first ? wall : "") + "fix in all mpm/emit 1 region mouth velocity 2 0 0\n" +
+              (first ? "" : wall) + "timestep 1e-3\nrun 40\n");
+    int n = 0;
+    for (const auto &s : run.gather()) {
+      if (s.x[0] > 0.06) continue;
+      n++;
+      EXPECT_NEAR(s.v[0], 2.0, 1e-9) << first;
+      EXPECT_NEAR(s.vol * RHO / s.mass, 1.0, 1e-9) << first;
+    }
+    EXPECT_EQ(n, 60);
+  }
+}
+
+// the mouth bears the weight of what is in it, in units where forces need a factor
+SERIAL_TEST(Plug, WeightInTheMouth)
+{
+  Scene run(plane("metal", "f f", "0 100 0 100", 1, 2.0) + R"(
+fix grid all mpm 5
+fix m all mpm/material density 2 eos linear 100
+region mouth block 30 60 30 80 INF INF
+fix in all mpm/emit 1 region mouth velocity 0 0 0 normal 0 -1 0
+fix g all gravity 3 vector 0 -1 0
+timestep 0.001
+run 5
+)");
+  // fix gravity has the unit of force over mass; below the end of the mouth there is a node that is free to fall
+  const double weight = 3000.0 * 3.0;
+  EXPECT_NEAR(run.fix("in")->compute_vector(10) / weight, 1.0, 1e-3);
+  EXPECT_NEAR(run.fix("in")->compute_vector(9), 0.0, 1e-9 * weight);
+  EXPECT_EQ(run.fix("in")->compute_vector(12), 0.0);
+}
+
 // new points have the pressure of their equation of state at once
 SERIAL_TEST(Plug, GasUnderPressure)
 {
