@@ -30,13 +30,14 @@ MATERIAL = "fix default all mpm/material density 1000 eos linear 1.0e6 strength 
 GROUPS = ["bar", "rod", "solid", "solids"]
 REGIONS = {"bar": "block 0.01 0.04 0.01 0.04 0.01 0.04", "ball": "sphere 0.06 0.06 0.06 0.02",
            "plate": "block 0.01 0.09 0.01 0.09 0.01 0.02", "soil": "block -0.02 0.12 0 0.1 0 0.03",
-           "shell": "cylinder z 0.05 0.05 0.045 INF INF side out", "lid": "plane 0 0.05 0 0 -1 0"}
+           "shell": "cylinder z 0.05 0.05 0.045 INF INF side out", "lid": "plane 0 0.05 0 0 -1 0",
+           "mouth": "block 0.07 0.09 0.07 0.09 0.07 0.09", "drain": "block INF 0.025 INF INF INF INF"}
 CORNERS = [(0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
 TOOL = "solid tool\n%sendsolid\n" % "".join(    # a tetrahedron
     "facet\nouter loop\n%sendloop\nendfacet\n" % "".join("vertex %d %d %d\n" % CORNERS[k] for k in face)
     for face in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
 VARIABLES = {"down": "equal 1.0e-3", "T": "equal 300+step", "laser": "atom 1.0e6*x", "depth": "equal -0.1*step*dt",
-             "p": "equal 1.0e3*step", "damage": "atom id"}
+             "p": "equal 1.0e3*step", "damage": "atom id", "speed": "equal 0.1"}
 COMPUTES = {"mine": "all property/atom vx vy"}
 FIXES = {"fine": "all mpm 0.01"}
 # a tetrahedron, for lines that read a mesh

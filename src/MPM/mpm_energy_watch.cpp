@@ -170,7 +170,8 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
   }
   Sums all;
   MPI_Allreduce(&mine, &all, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
-  for (const auto *field : fields) all.points += field->guard->deleted.points;
+  for (const auto *field : fields)
+    all.points += field->guard->deleted.points - field->guard->brought;
   return all;
 }
 
@@ -184,7 +185,8 @@ void MPMEnergyWatch::begin(const Sums &now)
 }
 
 /* ----------------------------------------------------------------------
-   points that other commands have added or removed bring or take energy that is in no account
+   points that other commands have added or removed bring or take energy that is in no account; that of points which fixes of this
+   package emit and absorb is in the ledger
 ------------------------------------------------------------------------- */
 
 void MPMEnergyWatch::check()

@@ -8,7 +8,6 @@
 
 #include "mpm_guard.h"
 
-#include "atom_vec.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -24,6 +23,7 @@
 #include "mpm_point_batches.h"
 #include "mpm_point_map.h"
 #include "mpm_points.h"
+#include "mpm_traffic.h"
 #include "neigh_list.h"
 #include "neighbor.h"
 #include "output.h"
@@ -187,7 +187,7 @@ void MPMGuard::check_points() const
   MPI_Allreduce(count, all, NKINDS, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(example, example_all, NKINDS, MPI_LMP_TAGINT, MPI_MAX, world);
 
-  if (all[POINT] == 0)
+  if (all[POINT] == 0 && !emits_points(field))
     error->all(FLERR,
                "Fix mpm {} has no material points: its group {} has no atoms with a volume; "
                "make points with create_points, or give atoms a volume with set ... volume",
@@ -623,37 +623,20 @@ void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
   std::vector<tagint> sorted;
   sorted.swap(list);
   std::sort(sorted.begin(), sorted.end());
-  double lost[5] = {0.0}, all[5];    // points, mass, momentum
-  for (int i = atom->nlocal - 1; i >= 0 && !sorted.empty(); i--) {
-    if (!std::binary_search(sorted.begin(), sorted.end(), atom->tag[i])) continue;
-    const double *v = atom->v[i], m = atom->rmass[i];
-    lost[0]++;
-    lost[1] += m;
-    for (int d = 0; d < 3; d++) lost[2 + d] += m * v[d];
-    double w[BATCH] = {0.0};
-    if (const FixMPMMaterial *material = field.material_of(i)) {
-      load_state(field, *field.batch, &i, 1, material);
-      material->material->stored_energy(*field.batch, w);
-    }
-    field.ledger.remove(0.5 * force->mvv2e * m * dot(v, v), atom->vfrac[i] * w[0] / force->nktv2p);
-    atom->avec->copy(atom->nlocal - 1, i, 1);
-    atom->nlocal--;
-  }
-  MPI_Allreduce(lost, all, 5, MPI_DOUBLE, MPI_SUM, world);
-  if (all[0] == 0.0) return;
-  if (atom->map_style != Atom::MAP_NONE) {    // ghosts do not follow their owners any more
-    atom->nghost = 0;
-    atom->map_init();
-    atom->map_set();
-  }
-  field.map->valid = false;
-  atom->natoms -= (bigint) all[0];
-  deleted.points += all[0];
-  deleted.mass += all[1];
-  for (int d = 0; d < 3; d++) deleted.momentum[d] += all[2 + d];
+  const MPMTraffic gone = remove_points(
+      lmp,
+      [&](int i) {
+        return std::binary_search(sorted.begin(), sorted.end(), atom->tag[i]);
+      },
+      false);
+  if (gone.points == 0.0) return;
+  deleted.points += gone.points;
+  deleted.mass += gone.mass;
+  for (int d = 0; d < 3; d++) deleted.momentum[d] += gone.momentum[d];
   if (warn && comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm {} deleted {:.0f} points of mass {:.6g} and momentum {:.6g} "
                    "{:.6g} {:.6g} at step {}",
-                   field.id(), all[0], all[1], all[2], all[3], all[4], update->ntimestep);
+                   field.id(), gone.points, gone.mass, gone.momentum[0], gone.momentum[1],
+                   gone.momentum[2], update->ntimestep);
 }

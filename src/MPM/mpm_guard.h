@@ -83,6 +83,10 @@ class MPMGuard : protected Pointers {
   }
   bigint nbad() const { return nbad_total; }
 
+  /** Points that fixes have brought into the field less those that they took, in this process: whoever counts points wants to
+   *  know that none came or went for other reasons. */
+  double brought = 0.0;
+
  private:
   MPMField &field;
   std::vector<tagint> bad_points;       // of this step, policies warn and delete

@@ -180,7 +180,7 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
    points that have failed keep it
 ------------------------------------------------------------------------- */
 
-void MPMStages::give_initial_stress(MPMField &field)
+void MPMStages::give_initial_stress(MPMField &field, int first)
 {
   Batch &batch = *field.batch;
   const MPMRows tau = field.points->tau;
@@ -196,7 +196,7 @@ void MPMStages::give_initial_stress(MPMField &field)
     list.clear();
   };
 
-  for (int i = 0; i < field.atom->nlocal; i++) {
+  for (int i = first; i < field.atom->nlocal; i++) {
     if (!field.is_point(i) || std::any_of(tau[i], tau[i] + 6, [](double s) {
           return s != 0.0;
         }))

@@ -57,8 +57,8 @@ namespace MPMStages {
   /** Strain and stress of n <= BATCH consecutive points of a run; L: their velocity gradients. */
   void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run &, int first,
                      int n, const double *L, double dt);
-  /** Start of a run: points without any stress get the pressure of their equation of state. */
-  void give_initial_stress(MPMField &);
+  /** Points without any stress, from this one on, get the pressure of their equation of state. */
+  void give_initial_stress(MPMField &, int first = 0);
 
   // mpm_stage_light.cpp: nodes with next to no mass
 

@@ -15,11 +15,13 @@
 #include "declare/table_testing.h"
 
 #include "create_points.h"
+#include "fix_mpm_absorb.h"
 #include "fix_mpm_absorbing.h"
 #include "fix_mpm_boundary.h"
 #include "fix_mpm_contact.h"
 #include "fix_mpm_dt.h"
 #include "fix_mpm_elements.h"
+#include "fix_mpm_emit.h"
 #include "fix_mpm_handshake.h"
 #include "fix_mpm_heat.h"
 #include "fix_mpm_immersed.h"
@@ -68,6 +70,8 @@ std::map<std::string, std::string> files()
   add("fix_mpm_surface", MPMSurfaceOptions().declare());
   add("fix_mpm_absorbing", MPMAbsorbingOptions().declare(3));
   add("fix_mpm_traction", MPMTractionOptions().declare(3));
+  add("fix_mpm_emit", MPMEmitOptions().declare(3));
+  add("fix_mpm_absorb", MPMAbsorbOptions().declare());
   add("mpm_point", MPMPointOptions().declare());
   add("pair_mpm_penalty", MPMPenaltyOptions().declare());
   add("pair_mpm_penalty_coeff", MPMPenaltyCoeff().declare());

@@ -1,0 +1,66 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_MOUTH_H
+#define LMP_MPM_MOUTH_H
+
+#include "pointers.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Region;
+
+/** The mouth through which material flows in: a region that is a straight piece of a pipe along the flow, with any section.
+ *
+ *  Points enter at its upstream end in layers across the flow, each of them the same columns of points. Columns share the area
+ *  of the section, so that the flow rate is that of the section and not that of a lattice that happens to fit into it. In a
+ *  rectangular section (2d: any) they are evenly spaced from edge to edge, in others they are those of a square lattice that are
+ *  inside.
+ *
+ *  Coordinates are those of the region as it was defined; who moves the mouth shifts positions before asking. */
+class MPMMouth : protected Pointers {
+ public:
+  struct Column {
+    double x[3];    ///< where it crosses the upstream end
+    double area;    ///< its share of the section; around an axis of symmetry, in the half plane
+  };
+  std::vector<Column> columns;
+  double normal[3];    ///< unit vector along the flow
+  double length;       ///< of the mouth along the flow
+  double area;         ///< of the section; around an axis of symmetry, in the half plane
+
+  /** Collective. user: who asks, for messages. direction: of the flow, of any length. spacing: wanted distance of columns.
+   *  known_area: of the section, 0: to be found. axisymmetric: x is the distance from an axis. Ends with an error where the
+   *  region is no such piece. */
+  MPMMouth(class LAMMPS *, const std::string &user, Region *, const double *direction,
+           double spacing, double known_area, bool axisymmetric);
+
+  /** Is a place in the mouth, or less than reach away from it, but not downstream? Periodic images of the mouth count. */
+  bool holds(const double *x, double reach) const;
+  /** Is a place, given from middle(), less than this away from the sphere around the mouth? */
+  bool is_near(const double *from_middle, double distance) const;
+  const double *middle() const { return center; }
+
+ private:
+  Region *region;
+  double center[3];                // of the mouth
+  double across[2][3];             // unit vectors across the flow, in 2d the first one
+  double width[2] = {0.0, 0.0};    // of the section along these
+
+  bool inside(const double *x) const;
+  bool inside(double along, double a, double b) const;
+  double reach_of(const double *direction, double most) const;
+  void choose_axes();
+  bool find_section(const std::string &user, const double *low, const double *high);
+  void check_prism(const std::string &user) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,595 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// Fix mpm/emit and mpm/absorb: inflow and outflow of material points.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+constexpr double U = 2.0, B = 0.1, RHO = 1000.0;
+
+/** A plug of width B that flows along x from a mouth of length 0.1, nearly without stiffness. */
+std::string plug(const std::string &lattice, double offset, const std::string &velocity,
+                 const std::string &more = "")
+{
+  return plane("si", "f f", "0 2 0 0.5", 1, 0.01) + "fix grid all mpm " + lattice +
+      "\nfix m all mpm/material density 1000 eos linear 0.1\n" +
+      strprintf("region mouth block %.17g %.17g %.17g %.17g INF INF\n", 0.1 + offset, 0.2 + offset,
+                0.2 + offset, 0.2 + offset + B) +
+      "fix in all mpm/emit 1 region mouth velocity " + velocity + " " + more + "\n";
+}
+
+/** Water as stiff as its jet needs, in the same mouth, against a wall at x = 0.6. */
+std::string jet(const std::string &mouth, const std::string &velocity, double h)
+{
+  return plane("si", "f f", "0 0.6 -1 1", 1, 0.5 * h) + strprintf("fix grid all mpm %g\n", h) +
+      "fix m all mpm/material density 1000 eos tait 4e5 7\n" + mouth +
+      "fix in all mpm/emit 1 region mouth velocity " + velocity + R"(
+region up block INF INF 0.75 INF INF INF
+region down block INF INF INF -0.75 INF INF
+fix up all mpm/absorb region up
+fix down all mpm/absorb region down
+fix wall all mpm/boundary xhi slip
+fix dt all mpm/dt 0.4
+)";
+}
+
+/** The mean of what a formula gives in each of so many steps, which start at a multiple of their number. */
+double mean_of(Scene &run, const std::string &formula, int steps)
+{
+  run.commands("variable f equal " + formula + "\nfix mean all ave/time 1 " +
+               std::to_string(steps) + " " + std::to_string(steps) + " v_f\nrun " +
+               std::to_string(steps) + "\n");
+  const double mean = run.fix("mean")->compute_scalar();
+  run.commands("unfix mean\nvariable f delete\n");
+  return mean;
+}
+
+/** Largest and smallest distance along x of points of the same height, over their spacing. */
+void spacings(Scene &run, double spacing, double &least, double &most)
+{
+  std::map<long, std::vector<double>> rows;
+  for (const auto &s : run.gather()) rows[std::lround(s.x[1] / spacing * 1000)].push_back(s.x[0]);
+  least = 1e300;
+  most = 0.0;
+  for (auto &[y, row] : rows) {
+    std::sort(row.begin(), row.end());
+    for (std::size_t k = 1; k < row.size(); k++) {
+      least = std::min(least, (row[k] - row[k - 1]) / spacing);
+      most = std::max(most, (row[k] - row[k - 1]) / spacing);
+    }
+  }
+}
+
+}    // namespace
+
+// benchmark S5: the mass is that of the flow, and points are on their lattice, at any velocity and offset of the mouth
+struct Inflow {
+  const char *options;
+  double courant, offset;    // U dt/h, in cells
+  friend void PrintTo(const Inflow &i, std::ostream *out)
+  {
+    *out << i.options << " " << i.courant << " " << i.offset;
+  }
+};
+PARAMETER_TEST(Plug, IsExact, Inflow,
+               Values(Inflow{"", 0.01, 0.0}, Inflow{"", 0.1, 0.25}, Inflow{"", 0.37, 0.613},
+                      Inflow{"", 0.99, 0.0}, Inflow{"", 0.99, 0.3}, Inflow{"", 0.5, 0.5},
+                      Inflow{"shape linear transfer flip 1.0", 0.37, 0.1},
+                      Inflow{"shape linear transfer flip 0.95 scheme musl", 0.2, 0.4},
+                      Inflow{"shape cubic transfer aflip 0.9", 0.3, 0.7},
+                      Inflow{"shape gimp transfer flip 1.0 scheme usf", 0.1, 0.2},
+                      Inflow{"shape cpdi scheme usavg", 0.25, 0.9},
+                      Inflow{"shape cpdi2 transfer flip 0.99", 0.25, 0.6},
+                      Inflow{"transfer polypic", 0.2, 0.1}, Inflow{"locking fbar", 0.2, 0.1},
+                      Inflow{"transfer fmpm 2", 0.2, 0.8}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto &p = GetParam();
+  const double h = 0.02, d = 0.5 * h, dt = p.courant * h / U;
+  const int steps = (int) (0.3 / dt);
+  Scene run(plug(strprintf("%g ", h) + p.options, p.offset * h, "2 0 0") +
+            strprintf("timestep %.17g\ncompute e all mpm/energy\nthermo_style custom step c_e\n"
+                      "run 0\n",
+                      dt));
+  const double start = run.fix("in")->compute_scalar();
+  EXPECT_NEAR(start, RHO * B * 0.1, 1e-9);    // the mouth is full
+  run.commands(strprintf("run %d\n", steps));
+  // what has entered differs from the flow by half a layer at the most
+  const double came = run.fix("in")->compute_scalar() - start, flow = RHO * B * U * steps * dt;
+  EXPECT_LE(std::fabs(came - flow), 0.5 * RHO * B * d * (1.0 + 1e-6));
+  double mass = 0.0, worst_J = 0.0, worst_v = 0.0, last = 0.0;
+  std::set<double> tags;
+  for (const auto &s : run.gather()) {
+    mass += s.mass;
+    tags.insert(s.tag);
+    worst_J = std::max(worst_J, std::fabs(s.vol * RHO / s.mass - 1.0));
+    worst_v = std::max(worst_v, std::fabs(s.v[0] - U) + std::fabs(s.v[1]));
+    last = std::max(last, s.x[0]);
+  }
+  EXPECT_NEAR(mass, start + came, 1e-9);
+  EXPECT_EQ((int) tags.size(), run.n());
+  EXPECT_LT(worst_J, 1e-9);
+  EXPECT_LT(worst_v, 1e-9);
+  // the first layer began half a spacing from the end of the mouth
+  EXPECT_NEAR(last, 0.2 + p.offset * h - 0.5 * d + U * steps * dt, 1e-9);
+  double least, most;
+  spacings(run, d, least, most);
+  EXPECT_NEAR(least, 1.0, 1e-7);
+  EXPECT_NEAR(most, 1.0, 1e-7);
+  const double *e = run.compute_vector();
+  EXPECT_NEAR(e[12], 0.5 * U * U * came, 1e-7 * U * U * came);    // what new points brought
+  EXPECT_LT(std::fabs(e[10]), 1e-9 * e[12]);                      // the residual
+}
+
+// the section, and not the lattice that fits into it, has the mass: a width of 5.3 points, and a speed that varies and stops
+TEST(Plug, PulsesAndOddWidth)
+{
+  const std::string scene = plane("si", "f f", "0 2 0 0.5", 1, 0.01) +
+      R"(fix grid all mpm 0.02
+fix m all mpm/material density 1000 eos linear 0.1
+region mouth block 0.1 0.2 0.2 0.253 INF INF
+variable v equal 1.5*(1+sin(40*time))*(time<0.1||time>0.15)
+fix in all mpm/emit 1 region mouth velocity v_v 0 0 normal 3 0 0
+timestep 0.0004
+run 0
+)";
+  Scene run(scene);
+  const double start = run.fix("in")->compute_scalar();
+  EXPECT_NEAR(start, RHO * 0.053 * 0.1, 1e-9);
+  run.commands("run 750\n");
+  double way = 0.0;
+  for (int k = 1; k <= 750; k++) {
+    const double t = 0.0004 * k;
+    if (t < 0.1 - 1e-9 || t > 0.15 + 1e-9) way += 0.0004 * 1.5 * (1.0 + sin(40.0 * t));
+  }
+  const double d = 0.01, layers = std::floor((way + 0.1) / d + 0.5);
+  EXPECT_NEAR(run.fix("in")->compute_scalar(), RHO * 0.053 * d * layers, 1e-9);
+  // in the mouth points are as far apart as ever
+  std::vector<double> row;
+  for (const auto &s : run.gather())
+    if (s.x[0] < 0.18 && std::fabs(s.x[1] - 0.2 - 0.1 * 0.053) < 1e-6) row.push_back(s.x[0]);
+  std::sort(row.begin(), row.end());
+  ASSERT_GT(row.size(), 6u);
+  for (std::size_t k = 1; k < row.size(); k++) EXPECT_NEAR(row[k] - row[k - 1], d, 1e-9);
+  EXPECT_GE(row[0], 0.1);
+  EXPECT_LE(row[0], 0.1 + d);
+}
+
+// rings: the mass is that of the annulus
+SERIAL_TEST(Plug, AroundAnAxis)
+{
+  for (const double inner : {0.0, 0.043}) {
+    Scene run(plane("si", "f f", "0 0.5 0 1", 1, 0.01) +
+              "fix grid all mpm 0.02 axisymmetric yes\n"
+              "fix m all mpm/material density 1000 eos linear 0.1\n" +
+              strprintf("region mouth block %g 0.1 0.8 0.9 INF INF\n", inner) +
+              "fix in all mpm/emit 1 region mouth velocity 0 -2 0\n"
+              "fix axis all mpm/boundary xlo slip\ntimestep 0.001\nrun 200\n");
+    const double section = PI * (0.01 - inner * inner);
+    EXPECT_NEAR(run.fix("in")->compute_scalar() / (RHO * section * 0.5), 1.0, 1e-9) << inner;
+    EXPECT_NEAR(run.fix("in")->compute_vector(8) / (RHO * section * 2.0), 1.0, 1e-9);
+    for (const auto &s : run.gather()) EXPECT_NEAR(s.v[1], -2.0, 1e-9);
+  }
+}
+
+// 3d: a round mouth, along and across the axes of the box
+SERIAL_TEST(Plug, InSpace)
+{
+  struct Case {
+    const char *region, *velocity;
+    double area, length;
+  };
+  for (const auto &c : {Case{"cylinder z 0.5 0.5 0.13 0.1 0.3", "0 0 1", PI * 0.0169, 0.2},
+                        Case{"cylinder y 0.5 0.52 0.1 0.7 0.9", "0 -1 0", PI * 0.01, 0.2},
+                        Case{"block 0.1 0.3 0.41 0.63 0.3 0.57", "1 0 0", 0.22 * 0.27, 0.2}}) {
+    Scene run(space("si", "f f f", "0 1 0 1 0 1", 1, 0.02) +
+              "fix grid all mpm 0.05\nfix m all mpm/material density 1000 eos linear 0.1\n"
+              "region mouth " +
+              c.region + "\nfix in all mpm/emit 1 region mouth velocity " + c.velocity +
+              "\ntimestep 0.01\nrun 40\n");
+    const double flow = RHO * c.area * (c.length + 0.4);
+    EXPECT_NEAR(run.fix("in")->compute_scalar() / flow, 1.0, 1e-4) << c.region;
+    double worst = 0.0;
+    for (const auto &s : run.gather())
+      worst = std::max(worst, std::fabs(s.vol * RHO / s.mass - 1.0));
+    EXPECT_LT(worst, 1e-9) << c.region;
+  }
+}
+
+// an oblique mouth that moves itself: layers keep their distance, and the velocities add
+SERIAL_TEST(Plug, MovingAndOblique)
+{
+  Scene run(plane("si", "f f", "0 2 0 2", 1, 0.01) + R"(
+fix grid all mpm 0.02
+fix m all mpm/material density 1000 eos linear 0.1
+region a plane 0.3 0.3 0 3 4 0
+region b plane 0.36 0.38 0 -3 -4 0
+region c plane 0.3 0.3 0 4 -3 0
+region d plane 0.332 0.276 0 -4 3 0
+region around block 0.3 0.392 0.276 0.38 INF INF
+region mouth intersect 5 a b c d around
+fix in all mpm/emit 1 region mouth velocity 0.6 0.8 0 move 0.5 -0.25 0
+timestep 0.004
+run 100
+)");
+  // 0.1 long, 0.04 wide
+  EXPECT_NEAR(run.fix("in")->compute_scalar(), RHO * 0.04 * (0.1 + 0.4), 1e-6);
+  double first = -1e300, last = 1e300;
+  for (const auto &s : run.gather()) {
+    EXPECT_NEAR(s.v[0], 1.1, 1e-9);
+    EXPECT_NEAR(s.v[1], 0.55, 1e-9);
+    const double along = 0.6 * (s.x[0] - 0.5 * 0.4) + 0.8 * (s.x[1] + 0.25 * 0.4);
+    first = std::max(first, along);
+    last = std::min(last, along);
+  }
+  EXPECT_NEAR(first, 0.6 * 0.36 + 0.8 * 0.38 + 0.4 - 0.005, 1e-9);
+  EXPECT_NEAR(first - last, 0.5 - 0.01, 1e-9);
+}
+
+// a mouth goes through walls, whatever is defined first
+SERIAL_TEST(Plug, ThroughAWall)
+{
+  const std::string wall = "fix wall all mpm/boundary xlo ylo stick\n";
+  for (const bool first : {false, true}) {
+    Scene run(plane("si", "f f", "0 2 0 0.5", 1, 0.01) +
+              "fix grid all mpm 0.02\nfix m all mpm/material density 1000 eos linear 0.1\n"
+              "region mouth block 0 0.1 0 0.1 INF INF\n" +
+              (first ? wall : "") + "fix in all mpm/emit 1 region mouth velocity 2 0 0\n" +
+              (first ? "" : wall) + "timestep 1e-3\nrun 40\n");
+    int n = 0;
+    for (const auto &s : run.gather()) {
+      if (s.x[0] > 0.06) continue;
+      n++;
+      EXPECT_NEAR(s.v[0], 2.0, 1e-9) << first;
+      EXPECT_NEAR(s.vol * RHO / s.mass, 1.0, 1e-9) << first;
+    }
+    EXPECT_EQ(n, 60);
+  }
+}
+
+// the mouth bears the weight of what is in it, in units where forces need a factor
+SERIAL_TEST(Plug, WeightInTheMouth)
+{
+  Scene run(plane("metal", "f f", "0 100 0 100", 1, 2.0) + R"(
+fix grid all mpm 5
+fix m all mpm/material density 2 eos linear 100
+region mouth block 30 60 30 80 INF INF
+fix in all mpm/emit 1 region mouth velocity 0 0 0 normal 0 -1 0
+fix g all gravity 3 vector 0 -1 0
+timestep 0.001
+run 5
+)");
+  // fix gravity has the unit of force over mass; below the end of the mouth there is a node that is free to fall
+  const double weight = 3000.0 * 3.0;
+  EXPECT_NEAR(run.fix("in")->compute_vector(10) / weight, 1.0, 1e-3);
+  EXPECT_NEAR(run.fix("in")->compute_vector(9), 0.0, 1e-9 * weight);
+  EXPECT_EQ(run.fix("in")->compute_vector(12), 0.0);
+}
+
+// new points have the pressure of their equation of state at once
+SERIAL_TEST(Plug, GasUnderPressure)
+{
+  Scene run(plane("si", "f f", "0 2 0 0.1", 1, 0.01) + R"(
+fix grid all mpm 0.02
+fix m all mpm/material density 1.2 eos ideal/gas 1.4 pressure 1e5
+region mouth block 0.1 0.3 0 0.1 INF INF
+fix in all mpm/emit 1 region mouth velocity 50 0 0
+fix walls all mpm/boundary xlo xhi ylo yhi slip
+timestep 1.3e-5
+run 39
+)");
+  // in this step the third layer has come; all of these are at least a cell and a half from the end of the mouth
+  const double pressure = 1e5;
+  int n = 0;
+  for (const auto &s : run.gather())
+    if (s.x[0] < 0.2) {
+      n++;
+      EXPECT_NEAR(s.pressure(), pressure, 1e-6 * pressure);
+    }
+  EXPECT_EQ(n, 100);
+}
+
+// force on a wall and on a plate that a jet meets at an angle of 60 degrees (benchmark S5), flow rates, and balance of mass
+SERIAL_TEST(Jet, OnAWall)
+{
+  Scene run(jet("region mouth block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.0125));
+  run.commands("run 5200\n");
+  const int steps = 2600;    // 10 B/U
+  const double force = mean_of(run, "f_wall[1]", steps);
+  EXPECT_LT(std::fabs(measured("force over rho b U^2 - 1", force / (RHO * B * U * U) - 1.0)), 0.03);
+  double inside = 0.0, points = 0.0;
+  for (const auto &s : run.gather()) {
+    inside += s.mass;
+    points++;
+  }
+  const double *in = run.fix_vector("in", 2);
+  const double came[2] = {in[0], in[1]};
+  double went[2] = {0.0, 0.0};
+  for (const char *id : {"up", "down"})
+    for (int k = 0; k < 2; k++) went[k] += run.fix(id)->compute_vector(k);
+  EXPECT_GT(went[0], 1000.0);
+  EXPECT_EQ(came[0] - went[0] - points, 0.0);
+  EXPECT_LT(std::fabs(came[1] - went[1] - inside), 1e-12 * came[1]);
+}
+
+SERIAL_TEST(Jet, ObliqueOnAPlate)
+{
+  // direction (sin 60, cos 60), 0.1 long and wide, with the middle of the end at 0.25 -0.2
+  const double s = std::sqrt(0.75), c = 0.5, x = 0.16, y = -0.25, a = 0.05;
+  const auto flat = [&](const char *name, double px, double py, double nx, double ny) {
+    return strprintf("region %s plane %.17g %.17g 0 %.17g %.17g 0\n", name, px, py, nx, ny);
+  };
+  const double rx = a * (s + c), ry = a * (s + c);
+  const std::string mouth = flat("a", x - a * s, y - a * c, s, c) +
+      flat("b", x + a * s, y + a * c, -s, -c) + flat("c", x - a * c, y + a * s, c, -s) +
+      flat("d", x + a * c, y - a * s, -c, s) +
+      strprintf("region around block %.17g %.17g %.17g %.17g INF INF\n"
+                "region mouth intersect 5 a b c d around\n",
+                x - rx, x + rx, y - ry, y + ry);
+  Scene run(jet(mouth, strprintf("%.17g %.17g 0", U * s, U * c), 0.0125));
+  run.commands("run 7200\n");
+  const double up = run.fix("up")->compute_scalar(), down = run.fix("down")->compute_scalar();
+  const double force = mean_of(run, "f_wall[1]", 2400);
+  EXPECT_LT(std::fabs(measured("force over 346.41 - 1", force / 346.410 - 1.0)), 0.03);
+  const double above = run.fix("up")->compute_scalar() - up,
+               below = run.fix("down")->compute_scalar() - down;
+  EXPECT_NEAR(measured("share that goes forward", above / (above + below)), 0.75, 0.02);
+}
+
+// density at the mouth, with the pressure of a wall close behind it
+SERIAL_TEST(Jet, DensityAtTheMouth)
+{
+  Scene run(jet("region mouth block 0.2 0.3 -0.047 0.053 INF INF\n", "2 0 0", 0.0125) +
+            "run 4000\n");
+  double mass = 0.0, worst = 0.0;
+  for (const auto &s : run.gather())
+    if (std::fabs(s.x[1] - 0.003) < 0.05 && s.x[0] > 0.21 && s.x[0] < 0.33) {
+      worst = std::max(worst, std::fabs(s.mass / (RHO * s.vol) - 1.0));
+      mass += s.mass;
+    }
+  EXPECT_LT(measured("density - 1", worst), 0.01);
+  EXPECT_NEAR(measured("mass around the end of the mouth", mass / (RHO * 0.12 * B)), 1.0, 0.06);
+}
+
+// flow through a channel: a steady state with the same points on any number of processes, and after a restart
+TEST(Channel, RanksAndRestart)
+{
+  const std::string fixes = R"(
+fix grid all mpm 0.05 MPM_OPTIONS
+fix m all mpm/material density 1000 eos tait 4e4 7 viscosity newtonian 5
+region mouth block 0.1 0.3 0.8 1.2 INF INF
+variable v equal 1.0+0.5*sin(9*time)
+fix in all mpm/emit 1 region mouth velocity v_v 0 0 normal 1 0 0
+region sink block 0.05 1.41 0.2 1.8 INF INF side out
+fix out all mpm/absorb region sink
+fix plate all mpm/boundary region plate slip
+fix dt all mpm/dt 0.4
+compute e all mpm/energy
+thermo_style custom step c_e
+)";
+  // a jet at a plate; ranks share the mouth
+  const std::string plate = "region plate block 0.8 0.9 1 2 INF INF\n";
+  const std::string head = plane("si", "f f", "0 1.6 0 2", 1, 0.025) + plate;
+  for (const char *options :
+       {"", "shape linear transfer flip 0.99 scheme musl", "shape gimp transfer aflip 0.95"}) {
+    const auto all = replaced(fixes, "MPM_OPTIONS", options);
+    Twins twins(head + all, 500, "neighbor 0.025 bin\n" + plate + all, 150, 1e-9);
+    EXPECT_GT(twins.whole.fix("out")->compute_scalar(), 10.0) << options;
+    // of the mouth also its force and work
+    for (const char *id : {"in", "out"})
+      for (int k = 0; k < (*id == 'i' ? 13 : 7); k++)
+        EXPECT_EQ(twins.whole.fix(id)->compute_vector(k), twins.again.fix(id)->compute_vector(k))
+            << options << " " << id << " " << k;
+    const double *whole = twins.whole.compute_vector();
+    const std::vector<double> first(whole, whole + 13);
+    const double *again = twins.again.compute_vector();
+    for (int k = 0; k < 13; k++) EXPECT_NEAR(first[k], again[k], 1e-9 * first[0]) << options << k;
+    EXPECT_LT(std::fabs(first[10]), 1e-8 * first[0]) << options;
+  }
+}
+
+// numbers, masses, and momenta balance, and the watch of energies knows of points that come and go
+TEST(Channel, Balance)
+{
+  Scene run(plane("si", "f f", "0 1.6 0 0.4", 1, 0.025) + R"(
+fix grid all mpm 0.05 gain error 1e-3
+fix m all mpm/material density 1000 eos linear 4e4
+region mouth block 0.1 0.3 0.08 0.323 INF INF
+fix in all mpm/emit 1 region mouth velocity 1 0 0 ppc 3
+region sink block 1.41 INF INF INF INF INF
+fix out all mpm/absorb region sink every 3
+fix dt all mpm/dt 0.5
+run 3000
+)");
+  const auto all = run.gather();
+  double mass = 0.0;
+  for (const auto &s : all) mass += s.mass;
+  const double *in = run.fix_vector("in", 13);
+  const std::vector<double> came(in, in + 13);
+  const double *out = run.fix_vector("out", 8);
+  EXPECT_GT(out[0], 1000.0);
+  EXPECT_EQ(came[0] - out[0], (double) all.size());
+  EXPECT_LT(std::fabs(came[1] - out[1] - mass), 1e-11 * came[1]);
+  EXPECT_NEAR(out[2], out[1] * 1.0, 1e-9 * out[1]);
+  EXPECT_NEAR(out[5], 0.5 * out[1], 1e-9 * out[1]);
+  EXPECT_EQ(came[7], 1.0);
+  EXPECT_NEAR(came[8], 243.0, 1e-9);
+  EXPECT_LT(std::fabs(came[9]), 1e-6);    // nothing pushes against the mouth
+  // constant: the same number of points, but for the layer that comes next
+  const int n = (int) all.size();
+  run.commands("run 1500\n");
+  EXPECT_NEAR((double) run.gather().size(), n, 30.0);
+}
+
+// points that come and go do not look like others that were added or removed, with which the watch of energies begins anew: what
+// transfers take of a jet at a wall is what the ledger has
+SERIAL_TEST(Channel, WatchKnows)
+{
+  const auto text = lines_that_say(
+      jet("region mouth block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.02) +
+          "compute e all mpm/energy\nthermo_style custom step c_e[9] c_e[10] c_e[11]\n"
+          "variable lost equal -(c_e[9]+c_e[10]+c_e[11])\nrun 2700\n"
+          "print \"the ledger lost ${lost}\"\n",
+      "lost");
+  const auto watch = lines_that_say(
+      jet("region mouth block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.02) + "run 2700\n",
+      "energy at the end: kinetic");
+  ASSERT_EQ(watch.size(), 1u);
+  double ledger = 0.0, kinetic, stored, took;
+  for (const auto &line : text) sscanf(line.c_str(), "the ledger lost %lf", &ledger);
+  ASSERT_EQ(sscanf(watch[0].c_str(),
+                   " energy at the end: kinetic %lf, stored %lf; since the start transfers and "
+                   "friction took %lf",
+                   &kinetic, &stored, &took),
+            3)
+      << watch[0];
+  EXPECT_GT(ledger, 20.0);
+  EXPECT_NEAR(measured("taken by the watch over that of the ledger", took / ledger), 1.0, 0.05);
+}
+
+// hot points in a cold channel; the heat that is in the channel is that of what came and went
+SERIAL_TEST(Channel, Temperature)
+{
+  Scene run(plane("si", "f f", "0 1.6 0 0.4", 1, 0.025) + R"(
+fix grid all mpm 0.05
+fix m all mpm/material density 1000 eos linear 4e4 thermal conducting 900 300 50 melt 350 2e5
+region mouth block 0.1 0.3 0.1 0.3 INF INF
+fix in all mpm/emit 1 region mouth velocity 1 0 0 temperature 400
+fix heat all mpm/heat
+region sink block 1.41 INF INF INF INF INF
+fix out all mpm/absorb region sink
+compute T all mpm/atom temperature molten
+fix dt all mpm/dt 0.5
+run 500
+)");
+  auto *T = run.lmp->modify->get_compute_by_id("T");
+  T->compute_peratom();
+  for (int i = 0; i < run.n(); i++) {
+    EXPECT_NEAR(T->array_atom[i][0], 400.0, 1e-6);
+    EXPECT_EQ(T->array_atom[i][1], 1.0);
+  }
+}
+
+// a column of an incompressible fluid runs out of the box: what is there and what has gone are all of it, on any number of processes
+TEST(Channel, DrainOfAnIncompressibleFluid)
+{
+  const std::string scene = plane("si", "f f", "0 2 0 1", 1, 0.025) + R"(
+fix flow all mpm/incompressible 0.05 1000
+region dam block 0 0.6 0 0.8 INF INF
+create_points 1 region dam spacing 0.025
+region sink block 1.6 INF INF INF INF INF
+fix out all mpm/absorb region sink
+fix g all gravity 9.81 vector 0 -1 0
+fix dt all mpm/dt 0.5 max 0.01
+)";
+  OnRanks runs(scene, "run 90\n");
+  EXPECT_LT(runs.difference(), 1e-5);    // of a pressure that is solved to 1e-9
+  const auto rest = runs.parallel.gather();
+  double mass = 0.0;
+  for (const auto &s : rest) mass += s.mass;
+  auto *out = runs.parallel.fix("out");
+  EXPECT_GT(out->compute_vector(0), 100.0);
+  EXPECT_EQ(out->compute_vector(0) + (double) rest.size(), 768.0);
+  EXPECT_NEAR(out->compute_scalar() + mass, 480.0, 1e-9);
+  EXPECT_EQ((double) runs.parallel.lmp->atom->natoms, (double) rest.size());
+}
+
+// mistakes are told, with the remedy
+TEST(BadInput, IsRefused)
+{
+  const std::string head = plane("si", "f f", "0 1.6 0 0.4", 2, 0.025) + R"(
+region mouth block 0.1 0.3 0.1 0.3 INF INF
+region ball sphere 0.3 0.2 0 0.1
+region all block INF INF INF INF INF INF
+region wide block 0.1 0.3 -0.1 0.3 INF INF
+region short block 0.1 0.12 0.1 0.3 INF INF
+region ring cylinder z 0.3 0.2 0.1 -0.5 0.5 side out
+region slant intersect 2 mouth cut
+variable back equal 0.5-step
+variable turn equal step*0.01
+variable atoms atom x
+)";
+  const std::string scene = replaced(head, "region slant intersect 2 mouth cut\n",
+                                     "region cut plane 0.2 0.2 0 -1 -1 0\n"
+                                     "region slant intersect 2 mouth cut\n") +
+      "fix grid all mpm 0.05\nfix m all mpm/material density 1000 eos linear 4e4\ntimestep 1e-4\n";
+  const std::string emit = "fix in all mpm/emit 1 region mouth velocity 1 0 0 ";
+  expect_refused(
+      scene,
+      {{"fix in all mpm/emit", "Illegal fix mpm/emit"},
+       {"fix in all mpm/emit 3 region mouth velocity 1 0 0", "Invalid atom type 3"},
+       {"fix in all mpm/emit 1 velocity 1 0 0", "needs a mouth: use the keyword region"},
+       {"fix in all mpm/emit 1 region mouth", "needs the velocity"},
+       {"fix in all mpm/emit 1 region none velocity 1 0 0", "Region none"},
+       {"fix in all mpm/emit 1 region mouth velocity 1 0 1", "along z in 2d"},
+       {"fix in all mpm/emit 1 region mouth velocity 0 0 0", "use the keyword normal"},
+       {"fix in all mpm/emit 1 region mouth velocity v_none 0 0", "does not exist"},
+       {"fix in all mpm/emit 1 region mouth velocity v_atoms 0 0", "not equal-style"},
+       {"fix in all mpm/emit 1 region ball velocity 1 0 0", "straight piece of a pipe"},
+       {"fix in all mpm/emit 1 region slant velocity 1 0 0", "straight piece of a pipe"},
+       {"fix in all mpm/emit 1 region mouth velocity 1 1 0", "straight piece of a pipe"},
+       {"fix in all mpm/emit 1 region all velocity 1 0 0", "must be bounded"},
+       {"fix in all mpm/emit 1 region ring velocity 1 0 0", "must be bounded"},
+       {"fix in all mpm/emit 1 region wide velocity 1 0 0", "outside of the box"},
+       {"fix in all mpm/emit 1 region short velocity 1 0 0", "less than a cell"},
+       {emit + "ppc 3 spacing 0.01", "either of them"},
+       {emit + "ppc 0", "ppc"},
+       {emit + "spacing -1", "spacing"},
+       {emit + "normal 0 0 0", "length zero"},
+       {emit + "normal 0 1 0", "not along the direction"},
+       {emit + "temperature 400", "thermal conducting"},
+       {emit + "hot yes", "hot"},
+       {"fix in all mpm/emit 1 region mouth velocity v_back 0 0", "use the keyword normal"},
+       {"fix in all mpm/emit 1 region mouth velocity 1 v_turn 0", "not along the direction"},
+       {"create_points 1 region mouth ppc 2\n" + emit, "is in the mouth at the start"},
+       {emit + "\nfix rest all mpm/relax 1e-3", "does not come to rest"},
+       {"fix out all mpm/absorb", "needs the keyword region"},
+       {"fix out all mpm/absorb region none", "does not exist"},
+       {"fix out all mpm/absorb region mouth every 0", "every"},
+       {emit + "\nfix out all mpm/absorb region mouth\nregion mouth delete", "does not exist"}},
+      "run 3\n");
+  expect_refused(
+      head.substr(0, head.find("region slant")),
+      {{"group w type 1\nfix grid w mpm 0.05\nfix m w mpm/material density 1 eos linear 1\n" + emit,
+        "no fix mpm"},
+       {"fix grid all mpm 0.05\ngroup w type 1\n"
+        "fix m w mpm/material density 1 eos linear 1\n" +
+            emit,
+        "no material"},
+       {"fix grid all mpm 0.05 frame total\n"
+        "fix m all mpm/material density 1 eos linear 1\n" +
+            emit,
+        "frame total"},
+       {"fix grid all mpm 0.05 every 2\n"
+        "fix m all mpm/material density 1 eos linear 1\n" +
+            emit,
+        "every"},
+       {"fix flow all mpm/incompressible 0.05 1000\n" + emit, "knows no mouth"},
+       {"fix grid all mpm 0.05\nfix m all mpm/material density 1 eos linear 1\n"
+        "fix n all mpm/material density 2 eos linear 1\n" +
+            emit,
+        "disjoint groups"}},
+      "run 3\n");
+}
+
+// a mouth that moves out of the box takes its points there
+SERIAL_TEST(BadInput, OutOfTheBox)
+{
+  Scene run(plug("0.02", 0.0, "2 0 0", "move -4 0 0") + "timestep 0.001\n");
+  expect_error(run, "run 200\n", "has left the box through a fixed face");
+}
+
+// IDs end somewhere
+SERIAL_TEST(BadInput, LastID)
+{
+  Scene run(plug("0.02", 0.0, "2 0 0") + "timestep 0.001\nrun 1\n");
+  run.lmp->atom->tag[0] = MAXTAGINT - 40;
+  expect_error(run, "run 100\n", "use reset_atoms id");
+}
