@@ -112,7 +112,7 @@ def bases():
     for folder in sorted(glob.glob(os.path.join(ROOT, "examples", "*"))):
         name = os.path.basename(folder)
         if name not in NOT_USED:
-            files = {os.path.basename(path): read(path) for ending in ("stl", "msh", "pgm", "raw")
+            files = {os.path.basename(path): read(path) for ending in ("stl", "msh", "pgm", "nrrd")
                      for path in sorted(glob.glob(os.path.join(folder, "*." + ending)))}
             found.append(Input(name, read(os.path.join(folder, "in." + name)).decode(), files))
     for path in docs_scenes.pages():
