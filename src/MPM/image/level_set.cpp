@@ -177,22 +177,18 @@ double LevelSet::volume(const double *lo, const double *hi) const
 
 double LevelSet::part(const double *lo, const double *hi) const
 {
-  double x[3] = {0.0, 0.0, 0.0}, gradient[3], size = 1.0, faces = 0.0;
+  double x[3] = {0.0, 0.0, 0.0}, gradient[3], size = 1.0;
   for (int d = 0; d < dim; d++) {
     x[d] = 0.5 * (lo[d] + hi[d]);
     size *= hi[d] - lo[d];
   }
-  const double center = at(x);
   for (int d = 0; d < dim; d++) {
     const double middle = x[d];
     x[d] = hi[d];
-    const double upper = at(x);
+    gradient[d] = at(x);
     x[d] = lo[d];
-    const double lower = at(x);
+    gradient[d] -= at(x);
     x[d] = middle;
-    gradient[d] = upper - lower;
-    faces += 0.5 * (upper + lower) - center;
   }
-  // the plane has the mean value of the part, and so the volume behind a surface that is curved a little
-  return size * share_above(center + faces / 3.0, gradient, dim);
+  return size * share_above(at(x), gradient, dim);
 }
