@@ -542,6 +542,7 @@ double conductivity(const std::string &file, int n)
 
 SERIAL_TEST(Conduction, Laminates)
 {
+  double error[2];
   for (const int n : {16, 32}) {
     const ScratchFile across("across.pgm",
                              pgm(Pixels(n, n, 1,
@@ -551,10 +552,13 @@ SERIAL_TEST(Conduction, Laminates)
         along("along.pgm", pgm(Pixels(n, n, 1, [=](int, int j, int) {
                 return j < n / 2 ? 0 : 255;
               })));
-    EXPECT_NEAR(measured(strprintf("along, %d", n), conductivity(along.name, n)) / 5.5, 1.0, 1e-3);
-    EXPECT_NEAR(measured(strprintf("across, %d", n), conductivity(across.name, n)) * 0.55, 1.0,
-                0.02);
+    EXPECT_NEAR(measured(strprintf("along, %d: error", n), conductivity(along.name, n) / 5.5 - 1.0),
+                0.0, 1e-6);
+    error[n == 32] =
+        measured(strprintf("across, %d: error", n), conductivity(across.name, n) * 0.55 - 1.0);
   }
+  EXPECT_LT(std::fabs(error[0]), 0.01);
+  EXPECT_GT(std::log2(std::fabs(error[0] / error[1])), 0.9);
 }
 
 SERIAL_TEST(Conduction, Checkerboard)

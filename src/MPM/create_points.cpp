@@ -140,8 +140,8 @@ void CreatePoints::command(int narg, char **arg)
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
     if (fix && fix->options.axisymmetric)
       utils::logmesg(lmp,
-                     "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
-                     volume, all_made);
+                     "  area = {:.8g} per {}, volume = {:.8g} in total (all around the axis)\n",
+                     volume, surface ? "site" : "point", all_made);
     else
       utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n",
                      surface ? all_made / npoints : volume,
