@@ -9,7 +9,7 @@ get_filename_component(MPM_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 set(MPM_DIR ${MPM_ROOT}/src/MPM)
 
 # styles and what needs LAMMPS are flat; what does not is in a folder for each idea
-set(MPM_FOLDERS declare lattice law material math mesh solve transfer)
+set(MPM_FOLDERS declare image lattice law material math mesh solve transfer)
 set(MPM_SOURCES)
 set(MPM_CORE_SOURCES)
 set(MPM_ISA_SOURCES)
@@ -102,6 +102,12 @@ find_path(ZLIB_INCLUDE_DIR zlib.h)
 find_library(ZLIB_LIBRARY z)
 if(ZLIB_INCLUDE_DIR AND ZLIB_LIBRARY)
   list(APPEND MPM_LIBRARIES ${ZLIB_LIBRARY})
+endif()
+
+# libpng, for pictures that create_points reads; without it PNG files are refused
+find_package(PNG QUIET)
+if(PNG_FOUND)
+  list(APPEND MPM_LIBRARIES ${PNG_LIBRARIES})
 endif()
 
 # Instruction sets for the hot kernels *_isa.cpp: compiled once per set with
@@ -211,7 +217,7 @@ endfunction()
 set(MPM_CORE_DIR "" CACHE PATH "Build tree of these sources whose core is taken, instead of compiling it again")
 string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
 set(MPM_CORE_FLAGS "${CMAKE_CXX_COMPILER} ${CMAKE_CXX_COMPILER_VERSION} ${config} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}}")
-string(APPEND MPM_CORE_FLAGS " ${MPM_SANITIZERS} ${MPM_FEATURES} ${EIGEN3_INCLUDE_DIR}")
+string(APPEND MPM_CORE_FLAGS " ${MPM_SANITIZERS} ${MPM_FEATURES} ${EIGEN3_INCLUDE_DIR} ${PNG_LIBRARIES}")
 
 # objects of the core in another build tree, which is brought up to date first
 function(mpm_core_elsewhere out)
@@ -248,6 +254,10 @@ function(mpm_core out)
   endif()
   mpm_core_library(mpm_core ${MPM_CORE_SOURCES})
   target_compile_definitions(mpm_core PRIVATE ${MPM_FEATURES})
+  if(PNG_FOUND)
+    set_property(SOURCE ${MPM_DIR}/image/png.cpp APPEND PROPERTY COMPILE_DEFINITIONS MPM_PNG)
+    target_include_directories(mpm_core SYSTEM PRIVATE "$<FILTER:${PNG_INCLUDE_DIRS},EXCLUDE,^/usr/include$>")
+  endif()
   mpm_sanitize(mpm_core)
   # on their own, as the demonstration has other sets
   mpm_core_library(mpm_select ${MPM_SELECT_SOURCES})

@@ -112,7 +112,7 @@ def bases():
     for folder in sorted(glob.glob(os.path.join(ROOT, "examples", "*"))):
         name = os.path.basename(folder)
         if name not in NOT_USED:
-            files = {os.path.basename(path): read(path) for ending in ("stl", "msh")
+            files = {os.path.basename(path): read(path) for ending in ("stl", "msh", "pgm", "nrrd")
                      for path in sorted(glob.glob(os.path.join(folder, "*." + ending)))}
             found.append(Input(name, read(os.path.join(folder, "in." + name)).decode(), files))
     for path in docs_scenes.pages():
@@ -132,8 +132,8 @@ def bases():
 def docs_files(text):
     size = 10.0 if "scale" in text else 0.01
     files = {"ring.msh": (docs_scenes.MESH_FILE % (size, size, size)).encode(),
-             "tool.stl": docs_scenes.TOOL.encode()}
-    return {name: content for name, content in files.items() if name in text}
+             "tool.stl": docs_scenes.TOOL.encode(), **docs_scenes.IMAGES}
+    return {name: content for name, content in files.items() if re.sub("[0-9]+", "%04d", name) in text or name in text}
 
 
 def read(path):

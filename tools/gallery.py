@@ -24,7 +24,7 @@ PAGE = os.path.join(PAGES, "Howto_mpm_gallery.rst")
 # in this order; a scene that is in none of them is an error
 TOPICS = {
     "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall hypervelocity "
-                         "ring-on-block scratch blast-on-plate",
+                         "ring-on-block scratch blast-on-plate microstructure foam",
      "Elastic bodies": "rubber-band beam arch buckling tube cook-membrane two-disks ring-collision spinning-disk incline vortex",
     "Heat": "cooling-plate quench casting friction-weld machining hot-grains",
     "Fluids and gases": "dam-break sloshing extruder elastic-gate elastic-plate poiseuille shock-tube settling",

@@ -56,6 +56,10 @@ $Elements
 1 4 2 1 1 1 2 3 4
 $EndElements
 """
+# pictures, and values without a header, for lines that read an image
+PICTURE = "P2\n4 3\n255\n0 90 200 255\n0 60 120 180\n255 0 0 0\n"
+IMAGES = {"grains.pgm": PICTURE.encode(), "map.ppm": b"P3\n2 1\n255\n255 0 0  0 0 255\n",
+          "scan.raw": bytes(range(0, 240, 10)), **{"scan_%04d.pgm" % k: PICTURE.encode() for k in range(3)}}
 # pages whose inputs test_docs_tasks.py runs and checks
 TASKS = ["Howto_mpm_" + name for name in
          "tutorial tensile two_bodies grains points restart loads loop until pictures scaling".split()]
@@ -263,6 +267,9 @@ def write_files(folder, scene):
         file.write(MESH_FILE % (size, size, size))
     with open(os.path.join(folder, "tool.stl"), "w", encoding="ascii") as file:
         file.write(TOOL)
+    for name, content in IMAGES.items():
+        with open(os.path.join(folder, name), "wb") as file:
+            file.write(content)
 
 
 def example_scenes(path):

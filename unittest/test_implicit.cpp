@@ -496,6 +496,22 @@ TEST(Implicit, RanksWithMovingWallsAndPeriodicFaces)
   }
 }
 
+// the derivative of a plastic law where there is no stress yet, with moduli of metals in Pa
+SERIAL_TEST(Implicit, MetalsBeginWithoutStress)
+{
+  const double K = 68.6e9, G = 26.3e9, strain = 1e-4;
+  for (const char *frame : {"", " frame total"}) {
+    Scene run(plane("si", "f f", "0 1 0 1", 1, 0.03) +
+              body("box", "density 2700 eos linear 68.6e9 strength j2 26.3e9 100e6",
+                   std::string("0.1") + frame) +
+              "fix sides all mpm/boundary xlo xhi ylo slip\n"
+              "fix push all mpm/boundary yhi slip velocity 0 -1e-4 0\n"
+              "fix solve all mpm/implicit static\ntimestep 1.0\nrun 1\n");
+    for (const auto &p : run.gather())
+      EXPECT_NEAR(p.stress[1] / (-(K + 4.0 / 3.0 * G) * strain), 1.0, 1e-3);
+  }
+}
+
 SERIAL_TEST(Implicit, BadInput)
 {
   const auto plain =

@@ -75,7 +75,7 @@ CODE
   }
 
   objects=()
-  for source in "$src"/{declare,lattice,law,material,mesh,transfer}/*.cpp; do
+  for source in "$src"/{declare,image,lattice,law,material,mesh,transfer}/*.cpp; do
     case $source in *_isa.cpp) continue ;; esac
     compile "$source" "$(object_of "$source")"
   done
@@ -109,7 +109,7 @@ CODE
   done
 
   library=("${objects[@]}")
-  for test in declare/test_option transfer/test_shape lattice/test_grid mesh/test_gmsh transfer/test_kernels \
+  for test in declare/test_option transfer/test_shape lattice/test_grid image/test_image mesh/test_gmsh transfer/test_kernels \
     transfer/test_cpdi_kernels material/test_materials material/test_tangent; do
     name=${test##*/test_}
     objects=()
@@ -146,7 +146,7 @@ CODE
   build=$(dirname "$MPM_LMP")
   link=$(<"$build/CMakeFiles/lmp.dir/link.txt")
   for source in "$src"/{fix_,pair_,compute_,region_}*.cpp \
-    "$src"/{create_points,mpm_halo,mpm_nodes,mpm_point_map,mpm_state,mpm_every,mpm_affine,mpm_cpdi}.cpp; do
+    "$src"/{create_points,create_points_image,mpm_halo,mpm_nodes,mpm_point_map,mpm_state,mpm_every,mpm_affine,mpm_cpdi}.cpp; do
     name=$(basename "$source")
     objects=()
     compile "$source" "${name%.cpp}.o" -include lammps.h "${lammps[@]}"

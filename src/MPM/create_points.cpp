@@ -15,6 +15,7 @@
 #include "error.h"
 #include "fix.h"
 #include "group.h"
+#include "image/body.h"
 #include "irregular.h"
 #include "math/random.h"
 #include "math_extra.h"
@@ -50,6 +51,9 @@ static const char axis_name[] = "xyz";
 
 /* ---------------------------------------------------------------------- */
 
+CreatePoints::CreatePoints(LAMMPS *lmp) : Command(lmp) {}
+CreatePoints::~CreatePoints() = default;
+
 void CreatePoints::command(int narg, char **arg)
 {
   if (domain->box_exist == 0)
@@ -78,7 +82,10 @@ void CreatePoints::command(int narg, char **arg)
   if (mesh) {
     parse_mesh(narg, arg);
   } else {
-    parse(narg, arg);
+    if (strcmp(arg[1], "image") == 0)
+      parse_image(narg, arg);
+    else
+      parse(narg, arg);
     find_ranges();
     check_outside();
     check_overlap();
@@ -99,6 +106,7 @@ void CreatePoints::command(int narg, char **arg)
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
   set_domains(nlocal_previous);
+  set_fields(nlocal_previous);
 
   bigint nblocal = atom->nlocal;
   MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -107,8 +115,9 @@ void CreatePoints::command(int narg, char **arg)
   if (npoints == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Create_points made no points: no site of the lattice with spacing {:.8g} is inside "
-               "the region and the box; use a finer spacing or check the region",
-               *std::max_element(spacing, spacing + domain->dimension));
+               "the {} and the box; use a finer spacing or check the {}",
+               *std::max_element(spacing, spacing + domain->dimension),
+               image ? "bodies of the image" : "region", image ? "threshold" : "region");
   if (atom->natoms != natoms_previous + npoints)
     error->all(FLERR, Error::NOLASTLINE, "Create_points made {} points at {} sites",
                atom->natoms - natoms_previous, npoints);
@@ -122,20 +131,22 @@ void CreatePoints::command(int narg, char **arg)
   double made = 0.0, all_made = 0.0;
   for (int i = nlocal_previous; i < atom->nlocal; i++) made += atom->vfrac[i];
   MPI_Reduce(&made, &all_made, 1, MPI_DOUBLE, MPI_SUM, 0, world);
+  const std::string types = types_made(nlocal_previous);
   if (comm->me == 0) {
-    const bool flat = domain->dimension == 2;
-    utils::logmesg(lmp, "Created {} material points of type {}\n", npoints, type);
+    const bool flat = domain->dimension == 2, surface = image && image->surface;
+    utils::logmesg(lmp, "Created {} material points of {}\n", npoints, types);
     if (!mesh)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
     if (fix && fix->options.axisymmetric)
       utils::logmesg(lmp,
-                     "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
-                     volume, all_made);
+                     "  area = {:.8g} per {}, volume = {:.8g} in total (all around the axis)\n",
+                     volume, surface ? "site" : "point", all_made);
     else
-      utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n", volume,
-                     mesh ? "on average" : "per point", npoints * volume,
-                     flat ? " (per unit thickness)" : "");
+      utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n",
+                     surface ? all_made / npoints : volume,
+                     mesh || surface ? "on average" : "per point",
+                     surface ? all_made : npoints * volume, flat ? " (per unit thickness)" : "");
     utils::logmesg(lmp, "  create_points CPU = {:.3f} seconds\n", platform::walltime() - start);
   }
 }
@@ -146,8 +157,17 @@ void CreatePoints::command(int narg, char **arg)
 
 Options CreatePointsOptions::declare(int dim, bool has_radius)
 {
-  using namespace option;
   Options o("create_points");
+  add_to(o, dim);
+  o.refuse([=] {
+    return rules(has_radius);
+  });
+  return o;
+}
+
+void CreatePointsOptions::add_to(Options &o, int dim)
+{
+  using namespace option;
   o.add("ppc",
         {one_or_axes(ppc, dim, "N Nx Ny Nz", {1, MAX_PPC, true}, "",
                      "number of points along each axis of a cell of fix mpm",
@@ -177,18 +197,17 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
                 "share of the volume of their places that the points have")});
   o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
       .standard("all");
-  o.refuse([=] {
-    return OptionRules{
-        {share == 0.0, "share", "must be positive: {share}"},
-        {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
-        {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
-  });
-  return o;
+}
+
+OptionRules CreatePointsOptions::rules(bool has_radius) const
+{
+  return {{share == 0.0, "share", "must be positive: {share}"},
+          {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
+          {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
 }
 
 void CreatePoints::parse(int narg, char **arg)
 {
-  const int dim = domain->dimension;
   int iarg = 2;
   if (strcmp(arg[1], "region") == 0) {
     if (narg < 3) utils::missing_cmd_args(FLERR, "create_points region", error);
@@ -198,12 +217,23 @@ void CreatePoints::parse(int narg, char **arg)
     region->prematch();
     iarg = 3;
   } else if (strcmp(arg[1], "box") != 0) {
-    error->all(FLERR, 1, "Unknown create_points option {}: expected region, box, mesh, or elements",
+    error->all(FLERR, 1,
+               "Unknown create_points option {}: expected region, box, image, mesh, or elements",
                arg[1]);
   }
 
-  Options options = declare(dim, atom->radius_flag);
+  Options options = declare(domain->dimension, atom->radius_flag);
   read_options(lmp, options, narg, arg, iarg);
+  place_sites(options);
+}
+
+/* ----------------------------------------------------------------------
+   the lattice of sites, and what all points have in common
+------------------------------------------------------------------------- */
+
+void CreatePoints::place_sites(const Options &options)
+{
+  const int dim = domain->dimension;
   find_group(options, group_id);
   if (!fix_id.empty()) {
     auto *ifix = modify->get_fix_by_id(fix_id);
@@ -220,7 +250,12 @@ void CreatePoints::parse(int narg, char **arg)
   const bool use_spacing = options.given("spacing");
   find_lattice();
   if (ppc[0] == 0) std::fill(ppc, ppc + 3, 2);
-  if (fix) {
+  if (sites_on_pixels) {
+    for (int d = 0; d < dim; d++) {
+      origin[d] = image->lo[d];
+      spacing[d] = image->pixel[d];
+    }
+  } else if (fix) {
     for (int d = 0; d < dim; d++) {
       origin[d] = fix->lattice.origin[d];
       if (!use_spacing) spacing[d] = fix->lattice.h / ppc[d];
@@ -300,6 +335,12 @@ void CreatePoints::find_ranges()
     lo = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
     hi = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   }
+  for (int d = 0; d < domain->dimension && image; d++) {
+    // a site whose center is beyond a surface has a part of it
+    const double more = image->surface ? 0.5 * spacing[d] : 0.0;
+    lo[d] = std::max(lo[d], image->lo[d] - more);
+    hi[d] = std::min(hi[d], image->hi(d) + more);
+  }
   // half of what is on the axis
   if (fix && fix->options.axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
 
@@ -342,9 +383,13 @@ void CreatePoints::find_ranges()
 
 /* ---------------------------------------------------------------------- */
 
-bool CreatePoints::in_region(const bigint *s) const
+/** Share of the place of a site that a point has of it, 0: none. */
+double CreatePoints::share_of(const bigint *s) const
 {
-  return !region || region->match(position(0, s[0]), position(1, s[1]), position(2, s[2]));
+  double x[3] = {position(0, s[0]), position(1, s[1]), position(2, s[2])};
+  if (region && !region->match(x[0], x[1], x[2])) return 0.0;
+  if (!image) return 1.0;
+  return image->surface ? surface_share(s) : image->type_at(x) > 0;
 }
 
 /* ----------------------------------------------------------------------
@@ -382,6 +427,7 @@ void CreatePoints::check_outside()
   }
   if (!exceeds || nsearch == 0.0) return;
 
+  const std::string what = image ? "image" : fmt::format("region {}", region->id);
   std::string count = "an unknown number of";
   if (nsearch / comm->nprocs < MAX_COUNT) {
     const bigint n = search[0].n * search[1].n * search[2].n;
@@ -397,13 +443,12 @@ void CreatePoints::check_outside()
 
   if (!ignore_outside)
     error->all(FLERR, Error::NOLASTLINE,
-               "Create_points region {} reaches beyond the simulation box: {} points would be "
-               "outside; enlarge the box, cut the region, or use create_points keyword outside "
+               "Create_points {} reaches beyond the simulation box: {} points would be "
+               "outside; enlarge the box, cut the {}, or use create_points keyword outside "
                "ignore",
-               region->id, count);
+               what, count, image ? "image" : "region");
   if (comm->me == 0)
-    utils::logmesg(lmp, "Create_points leaves out {} points of region {} outside the box\n", count,
-                   region->id);
+    utils::logmesg(lmp, "Create_points leaves out {} points of {} outside the box\n", count, what);
 }
 
 /* ----------------------------------------------------------------------
@@ -528,8 +573,10 @@ bigint CreatePoints::make_points()
     made.clear();
     const bigint first = std::min(base + share * comm->me, n);
     for_sites(range, first, std::min(first + share, n), [&](const bigint *s) {
-      if (!in_region(s)) return;
-      made.push_back({{}, volume, 0});
+      const double part = share_of(s);
+      if (!(part > 0.0)) return;
+      made.push_back({{}, part * volume, 0});
+      if (image) look_at_image(s, made.back());
       point_position(s, made.back().x);
     });
 
@@ -604,7 +651,8 @@ int CreatePoints::owner(double *x) const
 
 void CreatePoints::make_point(Site site)
 {
-  atom->avec->create_atom(type, site.x);
+  atom->avec->create_atom(site.type ? site.type : type, site.x);
+  if (!fields.empty()) grays.push_back(site.gray);
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;

@@ -19,12 +19,14 @@ CommandStyle(create_points,CreatePoints);
 #include "declare/option.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace MPM_NS {
+struct ImageBody;
 struct Mesh;
-}
+}    // namespace MPM_NS
 
 namespace LAMMPS_NS {
 
@@ -42,6 +44,8 @@ struct CreatePointsOptions {
   double share = 1.0;       ///< of the volume of its site that a point has
   std::string group_id;     ///< that the points join, empty: none
 
+  void add_to(MPM_NS::Options &, int dimension);
+  MPM_NS::OptionRules rules(bool has_radius) const;
   MPM_NS::Options declare(int dimension, bool has_radius);
 };
 
@@ -55,8 +59,8 @@ struct CreatePointsMeshOptions {
   MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius);
 };
 
-/** Fills a region with material points on a regular lattice of sites, or puts them at the nodes of a
- *  mesh, or makes one for each of its elements.
+/** Fills a region or the bodies of an image with material points on a regular lattice of sites, or puts them at the
+ *  nodes of a mesh, or makes one for each of its elements.
  *
  *  Sites are at origin + (s + 1/2) spacing for integer s. Their numbering, the test against the
  *  region, the jitter and the IDs are functions of the site alone; ranks take equal shares of the
@@ -65,7 +69,8 @@ struct CreatePointsMeshOptions {
  */
 class CreatePoints : public Command, private CreatePointsOptions {
  public:
-  using Command::Command;
+  explicit CreatePoints(class LAMMPS *);
+  ~CreatePoints() override;
   void command(int, char **) override;
 
  private:
@@ -73,6 +78,8 @@ class CreatePoints : public Command, private CreatePointsOptions {
     double x[3];
     double volume;
     tagint tag;
+    int type = 0;         // 0: that of all
+    double gray = 0.0;    // value of the image
   };
   using Corners = std::array<double, 24>;    // of an element from its center, see transfer/cpdi.h
   struct Range {                             // consecutive sites along an axis
@@ -95,11 +102,24 @@ class CreatePoints : public Command, private CreatePointsOptions {
   Range box[3];          // sites in the simulation box
   Range search[3];       // sites that can be in the region, also outside the box
 
+  // of an image
+
+  struct Field {    // vector of fix property/atom that gets scale * gray value + offset
+    int index;
+    double scale, offset;
+  };
+  std::unique_ptr<MPM_NS::ImageBody> image;    // null: none
+  bool sites_on_pixels = false;
+  std::vector<Field> fields;
+  std::vector<double> grays;    // of the points made here, for fields
+
   std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
   std::vector<Corners> corners;    // and the domains of these; at last those of the points here
 
   void parse(int, char **);
   void parse_mesh(int, char **);
+  void parse_image(int, char **);
+  void place_sites(const MPM_NS::Options &);
   void find_group(const MPM_NS::Options &, const std::string &name);
   void find_nodes(const MPM_NS::Mesh &, const char *file);
   void find_elements(const MPM_NS::Mesh &, const char *file);
@@ -117,6 +137,9 @@ class CreatePoints : public Command, private CreatePointsOptions {
   bigint make_mesh_points();
   void send_and_make(std::vector<Site> &);
   void set_domains(int first);
+  void set_fields(int first);
+  void look_at_image(const bigint *s, Site &) const;
+  std::string types_made(int first) const;
   void make_point(Site);
 
   double position(int d, bigint s) const { return origin[d] + (s + 0.5) * spacing[d]; }
@@ -124,7 +147,9 @@ class CreatePoints : public Command, private CreatePointsOptions {
   {
     return box[0].contains(s[0]) && box[1].contains(s[1]) && box[2].contains(s[2]);
   }
-  bool in_region(const bigint *s) const;
+  double share_of(const bigint *s) const;
+  double surface_share(const bigint *s) const;
+  bool in_region(const bigint *s) const { return share_of(s) > 0.0; }
   void point_position(const bigint *s, double *x) const;
   template <class F> void for_sites(const Range *range, bigint first, bigint last, F &&visit) const;
 };

@@ -14,6 +14,7 @@
 #include "domain.h"
 #include "error.h"
 #include "lammps.h"
+#include "mpm_broadcast.h"
 #include "platform.h"
 #include "update.h"
 #include "utils.h"
@@ -32,18 +33,6 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/** Sends plain data of rank 0, in a vector or string, to all ranks. */
-template <class Data> static void broadcast(Data &data, MPI_Comm world)
-{
-  constexpr std::size_t SIZE = sizeof(typename Data::value_type);
-  constexpr bigint PIECE = (1 << 30) / SIZE;
-  bigint n = data.size();
-  MPI_Bcast(&n, 1, MPI_LMP_BIGINT, 0, world);
-  data.resize(n);
-  for (bigint k = 0; k < n; k += PIECE)
-    MPI_Bcast(data.data() + k, (int) (std::min(PIECE, n - k) * SIZE), MPI_BYTE, 0, world);
-}
 
 /** Folders of the package's material files: share/lammps-mpm/potentials in a folder above the plugin, library, or
  *  executable that has this code in it. A build tree has this folder as an installation has. */

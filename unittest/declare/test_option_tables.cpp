@@ -15,6 +15,7 @@
 #include "declare/table_testing.h"
 
 #include "create_points.h"
+#include "create_points_image.h"
 #include "fix_mpm_absorb.h"
 #include "fix_mpm_absorbing.h"
 #include "fix_mpm_boundary.h"
@@ -52,6 +53,7 @@ std::map<std::string, std::string> files()
     all[page + "_default.inc"] = from + MPM_TEST::defaults(o);
   };
   add("create_points", CreatePointsOptions().declare(3, true));
+  add("create_points_image", CreatePointsImageOptions().declare(3));
   add("create_points_mesh", CreatePointsMeshOptions().declare("create_points mesh", 3, true));
   add("fix_mpm", MPMFieldOptions().declare(3));
   add("fix_mpm_boundary", MPMBoundaryOptions().declare(3));
@@ -90,7 +92,7 @@ TEST(OptionTables, AreInTheirPages)
   const std::string folder = MPM_SOURCE_DIR "/doc/src/";
   for (const auto &[file, text] : files()) {
     std::string page = file.substr(0, file.size() - 4);
-    for (const std::string end : {"_default", "_coeff", "_mesh"})
+    for (const std::string end : {"_default", "_coeff", "_image", "_mesh"})
       if (page.size() > end.size() && page.compare(page.size() - end.size(), end.size(), end) == 0)
         page.resize(page.size() - end.size());
     EXPECT_NE(

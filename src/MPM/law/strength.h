@@ -450,7 +450,7 @@ namespace {
       for (int i = 0; i < b.n; i++) {
         const double D = b.plastic[i], w = kept(D);
         const Sym x = KINEMATIC ? step.trial(i) + (-w) * load_rows(X, i) : step.trial(i);
-        const double inv = 1.0 / max(equivalent(x), 1e-300);
+        const double inv = 1.0 / max(equivalent(x), 1e-30 * G);
         // of q by D at a given motion
         const double fading = KINEMATIC ? 1.5 * inv * gamma * w * contract(x, load_rows(X, i))
                                         : 0.0;

@@ -1,0 +1,76 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_IMAGE_IMAGE_H
+#define MPM_IMAGE_IMAGE_H
+
+// Pictures and stacks of them: gray values or colors of pixels. Nothing here knows about LAMMPS. (mpm_image.h
+// is about periodic images.)
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+
+/** Numbers that image files have. */
+enum class ImageKind : int { UINT8, INT8, UINT16, INT16, UINT32, INT32, FLOAT, DOUBLE };
+
+/** Bytes of a number. */
+std::size_t image_bytes(ImageKind);
+
+/** What an image is, without its values; plain data, so that it can be sent as bytes. */
+struct ImageLayout {
+  int64_t n[3] = {0, 0, 0};    ///< columns, rows, slices, in the order of the file, columns fastest
+  int channels = 1;            ///< 1: gray, 3: red, green, blue
+  ImageKind kind = ImageKind::UINT8;
+  double largest = 0.0;    ///< value of white; 0: the format has none
+  double spacing[3] = {0.0, 0.0,
+                       0.0};    ///< of columns, rows, slices as the file has it, 0: it does not
+  bool picture = true;          ///< rows are counted from the top, as in pictures
+
+  int64_t pixels() const { return n[0] * n[1] * n[2]; }
+  std::size_t bytes() const { return pixels() * channels * image_bytes(kind); }
+};
+
+struct Image : ImageLayout {
+  std::vector<unsigned char> data;    ///< the numbers in the order of bytes of this machine
+
+  /** A number of a pixel, which is column + n[0]*(row + n[1]*slice). */
+  double number(int64_t pixel, int channel) const;
+  /** Its gray value: the number, or the brightness 0.299 R + 0.587 G + 0.114 B of a color (ITU-R BT.601). */
+  double gray(int64_t pixel) const;
+
+  /** Keeps columns, rows, slices first[d] to first[d] + count[d] - 1. */
+  void crop(const int64_t *first, const int64_t *count);
+};
+
+/** What the input says of files that do not say it themselves. */
+struct RawLayout {
+  int64_t n[3] = {0, 0, 0};    ///< 0: the file has a header
+  ImageKind kind = ImageKind::UINT8;
+  bool big_endian = false;
+  int64_t skip = 0;    ///< bytes in front of the values
+};
+
+/** Numbered files, whose name has %d, or %04d for four digits at least, in the place of the number. */
+struct SliceRange {
+  int64_t first = 0, last = -1;    ///< last < first: one file
+};
+
+/** Reads an image or a stack of images: PBM, PGM, PPM (P1 to P6), PNG, NRRD, as the first bytes of a file tell, or
+ *  values without a header. Throws std::runtime_error that begins with the name of the file, also for values that
+ *  are no finite numbers. */
+Image read_image(const std::string &file, const RawLayout &raw = {}, const SliceRange &slices = {});
+
+/** Was libpng there when this was compiled? */
+bool png_available();
+
+}    // namespace MPM_NS
+#endif
