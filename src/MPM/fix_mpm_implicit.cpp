@@ -150,12 +150,12 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
        {options.heats(), "heat", "the time step is not in its balance: remove it"},
        {options.every > 1, "every", "implicit steps are long already: use every 1"}});
   for (auto *other : plan.physics)
-    if (other != this)
+    if (other != this && !other->only_loads())
       error->all(
           FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit cannot be used with fix {}, which acts on explicit steps: remove one "
-          "of them",
-          dynamic_cast<Fix *>(other)->style);
+          "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
+          "computes in explicit steps would not be in its balance: remove one of them",
+          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
   for (auto *action : plan.actions)
     if (!action->is_projection())
       error->all(
@@ -206,6 +206,12 @@ void FixMPMImplicit::step()
   total[NEWTON] += now.iterations;
   total[LINEAR] += now.linear;
   total[CUTS] += now.cuts;
+  last[LAST_NEWTON] = now.iterations;
+  last[LAST_LINEAR] = now.linear;
+  last[LAST_CUTS] = now.cuts;
+  last[UNBALANCED] = now.unbalanced / force->ftm2v;
+  last[ASYMMETRY] = now.asymmetry;
+  last[RATIO] = now.ratio;
   std::string list;
   if ((report || !now.converged) && comm->me == 0)
     for (const double r : now.residuals) list += fmt::format(" {:.9g}", r / force->ftm2v);
@@ -252,22 +258,18 @@ void FixMPMImplicit::post_run()
                  id, (total[NEWTON] - at_start[NEWTON]) / steps,
                  (total[LINEAR] - at_start[LINEAR]) /
                      std::max(1.0, total[NEWTON] - at_start[NEWTON]),
-                 solver->report().ratio, 1000.0 * seconds / steps);
+                 last[RATIO], 1000.0 * seconds / steps);
 }
 
 double FixMPMImplicit::compute_scalar()
 {
-  return solver ? solver->report().ratio : 0.0;
+  return last[RATIO];
 }
 
 double FixMPMImplicit::compute_vector(int k)
 {
-  const MPMImplicit::Report none, &now = solver ? solver->report() : none;
-  const double values[8] = {(double) now.iterations, (double) now.linear,
-                            (double) now.cuts,       now.unbalanced / force->ftm2v,
-                            now.asymmetry,           total[NEWTON],
-                            total[LINEAR],           total[CUTS]};
-  return values[k];
+  static constexpr int SINCE_START[3] = {NEWTON, LINEAR, CUTS};
+  return k < 5 ? last[k] : total[SINCE_START[k - 5]];
 }
 
 double FixMPMImplicit::memory_usage()
@@ -281,9 +283,10 @@ void FixMPMImplicit::write_restart(FILE *fp)
 {
   keep_totals(world, taken, 2);
   if (comm->me) return;
-  double list[NTOTAL + 2];
+  double list[NTOTAL + 2 + NLAST];
   std::copy_n(total, (int) NTOTAL, list);
   std::copy_n(taken, 2, list + NTOTAL);
+  std::copy_n(last, (int) NLAST, list + NTOTAL + 2);
   const int size = sizeof(list);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(list, size, 1, fp);
@@ -294,4 +297,5 @@ void FixMPMImplicit::restart(char *buf)
   const auto *const list = (const double *) buf;
   std::copy_n(list, (int) NTOTAL, total);
   if (comm->me == 0) std::copy_n(list + NTOTAL, 2, taken);
+  std::copy_n(list + NTOTAL + 2, (int) NLAST, last);
 }

@@ -429,6 +429,7 @@ void MPMImplicit::newton(std::vector<double> &u)
     now.iterations++;
     if (!solved.converged() && solved.outcome != SolveReport::INDEFINITE) {
       now.failure = "the linear system " + solved.describe();
+      if (!multigrid) now.failure += " (use solver multigrid)";
       return;
     }
     // the energy has no minimum along some way, such as next to a state that is not stable: the solution goes as far as it had
@@ -491,6 +492,7 @@ double MPMImplicit::step(double step_dt)
     }
   }
   newton(u);
+  if (now.converged) find_loads(u);
   return give_back(u);
 }
 
@@ -545,9 +547,23 @@ void MPMImplicit::finish()
     for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
 }
 
+/** Ledger: forces of loads that follow points are external ones. */
+void MPMImplicit::find_loads(const std::vector<double> &u)
+{
+  if (!field.ledger.on) return;
+  loads.assign(nreals(), 0.0);
+  more_loads = loads;
+  if (!tangent.has_loads()) return;
+  tangent.loads(loads.data(), more_loads.data());    // without any motion
+  loads.swap(more_loads);
+  tangent.loads(u.data(), more_loads.data());
+  for (int64_t k = 0; k < nreals(); k++) more_loads[k] -= loads[k];
+}
+
 void MPMImplicit::account()
 {
   const bool newmark = options.time == MPMImplicitOptions::NEWMARK;
+  const double share = newmark ? options.gamma : 1.0;    // of the forces of the end of the step
   double internal = 0.0, external = 0.0, transfer = 0.0;
   const double *record = field.grid.nodes();
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
@@ -555,10 +571,13 @@ void MPMImplicit::account()
     for (int d = 0; d < width; d++) {
       const int64_t k = width * n + d;
       const double v = velocity[k], old = record[4 + d];
-      internal -= push[k] * 0.5 * (v + old);
+      const double of_loads = share * dt * more_loads[k] * 0.5 * (v + old);
+      external += of_loads;
+      internal -= push[k] * 0.5 * (v + old) - of_loads;
       if (!newmark) continue;
       // points move with v, which is the mean velocity of the step already
-      const double half = 0.5 * (v - old), of_forces = dt * outer[k],
+      const double half = 0.5 * (v - old),
+                   of_forces = dt * (outer[k] + loads[k] + share * more_loads[k]),
                    of_stress = mass[n] * (explicit_velocity[k] - before[k]) - of_forces + push[k];
       external += of_forces * half;
       internal -= of_stress * half;
@@ -575,9 +594,13 @@ double MPMImplicit::memory_usage() const
 {
   double bytes = tangent.memory_usage() + solver.memory_usage() + general.memory_usage() +
       (multigrid ? multigrid->memory_usage() : 0.0);
-  for (const auto *list : {&mass, &before, &explicit_velocity, &outer, &inner, &from, &wall, &held,
-                           &start, &acceleration, &push, &velocity, &residual, &free, &change,
-                           &trial, &blocks, &room, &allowed})
+  for (const auto *list : {&mass,         &before,     &explicit_velocity,
+                           &outer,        &inner,      &from,
+                           &wall,         &held,       &start,
+                           &acceleration, &push,       &velocity,
+                           &loads,        &more_loads, &residual,
+                           &free,         &change,     &trial,
+                           &blocks,       &room,       &allowed})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -99,6 +99,8 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> start, acceleration;    // with walls, for dynamics
   std::vector<double> velocity;               // that points move with
   std::vector<double> push;    // impulses that are not of the forces of the start of the step
+  std::vector<double> loads,
+      more_loads;    // that follow points: at the start, and what is new at the end
   std::vector<double> residual, free, change, trial, blocks, room, allowed;
 
   int64_t nreals() const { return (int64_t) mass.size() * width; }
@@ -114,6 +116,7 @@ class MPMImplicit : private MPMNodeSystem {
   void prepare_levels();
   MPM_NS::SolveReport solve(const MPM_NS::SolveGoal &);
   void newton(std::vector<double> &u);
+  void find_loads(const std::vector<double> &u);
   void account();
   double give_back(const std::vector<double> &u);
 

@@ -33,9 +33,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// of a gradient: with it, the third derivatives of a law and the round-off of its stress are both some 1e-10 of its tangent
-static constexpr double DIFFERENCE = 6.0e-6;
-
 /* ---------------------------------------------------------------------- */
 
 MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
@@ -139,6 +136,38 @@ void MPMTangent::lattice_F(int first, int n, const double *H, double *F) const
   }
 }
 
+/** Kinematics of n points from first on after H [n][nH], in the batch. */
+void MPMTangent::deform(int first, int n, const double *H)
+{
+  const auto &batches = *field.batch_kernels;
+  const auto &frame = *field.frame;
+  double L[9 * BATCH], hoop[BATCH];
+  for (int p = 0; p < n; p++) {
+    std::copy_n(H + nH * p, nL, L + nL * p);
+    if (nH > nL) hoop[p] = H[nH * p + nL];
+  }
+  frame.refer_gradients(first, n, L);
+  const bigint i = first;
+  (frame.is_total() ? batches.load_total : batches.load)(
+      *batch, n, 1.0, L, field.points->F[0] + 9 * i, field.points->tau[0] + 6 * i, atom->vfrac + i,
+      nH > nL ? hoop : nullptr);
+}
+
+/** P [n][nH] of the Kirchhoff stress tau [n][6] after H. */
+void MPMTangent::find_piola(int first, int n, const double *H, const double *tau,
+                            double *stress) const
+{
+  // with entries of a step before that may not be finite, where this one has not set them
+  double F[9 * BATCH + 8], plane[9 * BATCH + 8];
+  lattice_F(first, n, H, F);
+  field.batch_kernels->first_piola(n, F, tau, nH > nL ? plane : stress);
+  if (nH > nL)
+    for (int p = 0; p < n; p++) {
+      std::copy_n(plane + nL * p, nL, stress + nH * p);
+      stress[nH * p + nL] = tau[6 * p + 2] / (1.0 + H[nH * p + nL]);
+    }
+}
+
 /* ----------------------------------------------------------------------
    stress of n points from first on after H [n][nH]: P [n][nH], and J
 ------------------------------------------------------------------------- */
@@ -148,24 +177,14 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
 {
   Batch &b = *batch;
   const FixMPMMaterial *const material = run.material;
-  const auto &batches = *field.batch_kernels;
-  const auto &frame = *field.frame;
-  double L[9 * BATCH], hoop[BATCH], F[9 * BATCH + 8], tau[6 * BATCH + 8], plane[9 * BATCH + 8];
-  for (int p = 0; p < n; p++) {
-    std::copy_n(H + nH * p, nL, L + nL * p);
-    if (nH > nL) hoop[p] = H[nH * p + nL];
-  }
-  frame.refer_gradients(first, n, L);
-  // entries of a step before that may not be finite, where this one has not set them
-  const bigint i = first;
-  (frame.is_total() ? batches.load_total : batches.load)(b, n, 1.0, L, field.points->F[0] + 9 * i,
-                                                         field.points->tau[0] + 6 * i,
-                                                         atom->vfrac + i, nH > nL ? hoop : nullptr);
+  double tau[6 * BATCH + 8];
+  deform(first, n, H);
   b.dt = dt;
   b.time = elapsed_time(*update);
   b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
   if (material->nhistory)
-    batches.load_history(b, material->nhistory, &material->history[0][0] + material->nhistory * i);
+    field.batch_kernels->load_history(
+        b, material->nhistory, &material->history[0][0] + material->nhistory * (bigint) first);
   std::fill_n(b.heat, n, 0.0);
   if (tangent)
     material->material->update_with_tangent(b, *tangent);
@@ -177,13 +196,7 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
     good = good && b.J[p] > 0.0;
     for (int c = 0; c < 6; c++) tau[6 * p + c] = b.J[p] * b.stress[c][p];
   }
-  lattice_F(first, n, H, F);
-  batches.first_piola(n, F, tau, nH > nL ? plane : stress);
-  if (nH > nL)
-    for (int p = 0; p < n; p++) {
-      std::copy_n(plane + nL * p, nL, stress + nH * p);
-      stress[nH * p + nL] = tau[6 * p + 2] / (1.0 + hoop[p]);
-    }
+  find_piola(first, n, H, tau, stress);
   for (int k = 0; k < nH * n; k++) good = good && std::isfinite(stress[k]);
   return good;
 }
@@ -196,6 +209,7 @@ void MPMTangent::external_forces(double *force)
   P.assign(nmax * nL, 0.0);
   no_force.assign(3 * nmax, 0.0);
   if (nH > nL) hoop_stress.assign(nmax, 0.0);
+  find_loads();
   const double *const f = field.rows().f;
   scatter(f, force);
 }
@@ -211,6 +225,14 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
       double square = 0.0;
       for (int k = 0; k < nH; k++) square += s[k] * s[k];
       sum += atom->vfrac[first + p] * std::sqrt(square);
+    }
+    if (follows(first, n)) {
+      double more[10 * BATCH + 8];
+      load_points(first, n, H, more);
+      for (int k = 0; k < nH * n; k++) stresses[k] += more[k];
+    }
+    for (int p = 0; p < n; p++) {
+      const double *const s = stresses + nH * p;
       std::copy_n(s, nL, &P[(bigint) nL * (first + p)]);
       if (nH > nL) hoop_stress[first + p] = s[nL];
     }
@@ -218,8 +240,25 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
   carried = sum * field.step_data().stress_scale / field.lattice.h;
   MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) return false;
-  scatter(no_force.data(), force);
+  scatter(loaded ? load_forces.data() : no_force.data(), force);
   return true;
+}
+
+void MPMTangent::loads(const double *u, double *force)
+{
+  std::fill(P.begin(), P.end(), 0.0);
+  std::fill(hoop_stress.begin(), hoop_stress.end(), 0.0);
+  std::fill(load_forces.begin(), load_forces.end(), 0.0);
+  gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
+    if (!follows(first, n)) return;
+    double stresses[10 * BATCH + 8];
+    load_points(first, n, H, stresses);
+    for (int p = 0; p < n; p++) {
+      std::copy_n(stresses + nH * p, nL, &P[(bigint) nL * (first + p)]);
+      if (nH > nL) hoop_stress[first + p] = stresses[nH * p + nL];
+    }
+  });
+  scatter(load_forces.data(), force);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -302,6 +341,7 @@ double MPMTangent::linearize(const double *u, double dt)
       for (int k = 0; k < nH * nH; k++) most = std::max(most, std::fabs(K[k]));
       sum += atom->vfrac[first + p] * most;
     }
+    if (follows(first, n)) differentiate_loads(first, n, H);
   });
   sum *= field.step_data().stress_scale / field.lattice.h;
   MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, world);
@@ -318,9 +358,15 @@ void MPMTangent::change_of_forces(const double *du, double *dforce)
         for (int l = 0; l < nH; l++) sum[l] += K[nH * k + l] * h[k];
       std::copy_n(sum, nL, &P[(bigint) nL * (first + p)]);
       if (nH > nL) hoop_stress[first + p] = sum[nL];
+      for (int d = 0; d < 3 && loaded; d++) {
+        const double *const G = &load_tangents[3 * nH * ((bigint) first + p)];
+        double change = 0.0;
+        for (int k = 0; k < nH; k++) change += G[3 * k + d] * h[k];
+        load_forces[3 * ((bigint) first + p) + d] = change;
+      }
     }
   });
-  scatter(no_force.data(), dforce);
+  scatter(loaded ? load_forces.data() : no_force.data(), dforce);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -405,14 +451,15 @@ double MPMTangent::asymmetry() const
         }
     }
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
-  return all[1] > 0.0 ? all[0] / all[1] : 0.0;
+  const double of_stress = all[1] > 0.0 ? all[0] / all[1] : 0.0;
+  return loaded ? std::max(of_stress, asymmetry_of_loads()) : of_stress;
 }
 
 double MPMTangent::memory_usage() const
 {
   double bytes = sizeof(Batch);
-  for (const auto *list :
-       {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points})
+  for (const auto *list : {&nodes, &history, &P, &hoop_stress, &tangents, &no_force,
+                           &forces_on_points, &load_forces, &load_tangents})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }
