@@ -59,6 +59,10 @@ Options MPMImplicitOptions::declare()
   options.add(
       "iterations",
       {integer(most_iterations, "N", POSITIVE, "largest number of Newton iterations in a step")});
+  options.add(
+      "parts",
+      {integer(most_parts, "N", POSITIVE,
+               "where a step does not converge at once, it is gone in parts, down to 1/N")});
   options.add("linear",
               {integer(most_linear, "N", POSITIVE,
                        "largest number of iterations of the linear solver in one of these")});
@@ -86,7 +90,7 @@ FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
   scalar_flag = vector_flag = 1;
-  size_vector = 8;
+  size_vector = 10;
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -212,6 +216,9 @@ void FixMPMImplicit::step()
   last[UNBALANCED] = now.unbalanced / force->ftm2v;
   last[ASYMMETRY] = now.asymmetry;
   last[RATIO] = now.ratio;
+  last[PARTS] = now.parts;
+  last[LAST_INDEFINITE] = now.indefinite;
+  total[INDEFINITE] += now.indefinite;
   std::string list;
   if ((report || !now.converged) && comm->me == 0)
     for (const double r : now.residuals) list += fmt::format(" {:.9g}", r / force->ftm2v);
@@ -219,13 +226,17 @@ void FixMPMImplicit::step()
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/implicit {}: no equilibrium in step {} after {} Newton iterations, {}; sums of "
-        "forces:{}; ratio {:.3g}; {} tangents were not positive definite. Use smaller steps of "
-        "load or "
-        "time, hold bodies that can move freely, or let it be less accurate (keyword tolerance)",
-        id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite);
+        "forces:{}; ratio {:.3g}; {} tangents were not positive definite. Of the changes of loads "
+        "and walls in this step {:.5g} % were reached, in {} parts. Use smaller steps of load or "
+        "time, hold bodies that can move freely, or let it be less accurate (keyword tolerance); "
+        "above the largest load that bodies can bear, move a wall instead, or use euler",
+        id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite,
+        100.0 * now.reached, now.parts);
   if (report && comm->me == 0)
-    utils::logmesg(lmp, "  implicit step {}: {} linear iterations, {} not definite, forces{}\n",
-                   update->ntimestep, now.linear, now.indefinite, list);
+    utils::logmesg(lmp, "  implicit step {}:{} {} linear iterations, {} not definite, forces{}\n",
+                   update->ntimestep,
+                   now.parts > 1 ? fmt::format(" {} parts,", now.parts) : std::string(), now.linear,
+                   now.indefinite, list);
 }
 
 /** Statics: points have moved, and are at rest again. What they had, nodes got in step(), less what transfers lose. */
@@ -251,14 +262,18 @@ void FixMPMImplicit::post_run()
 {
   const double steps = total[STEPS] - at_start[STEPS];
   if (comm->me || steps == 0.0 || update->nsteps == 0) return;
+  const double indefinite = total[INDEFINITE] - at_start[INDEFINITE];
+  const std::string unstable = indefinite > 0.0
+      ? fmt::format("; {} tangents were not positive definite", (int64_t) indefinite)
+      : "";
   utils::logmesg(lmp,
                  "Fix mpm/implicit {}: {:.2f} Newton iterations in a step, {:.1f} of the linear "
                  "solver in each; "
-                 "last ratio of forces {:.3g}; {:.3g} ms a step\n",
+                 "last ratio of forces {:.3g}; {:.3g} ms a step{}\n",
                  id, (total[NEWTON] - at_start[NEWTON]) / steps,
                  (total[LINEAR] - at_start[LINEAR]) /
                      std::max(1.0, total[NEWTON] - at_start[NEWTON]),
-                 last[RATIO], 1000.0 * seconds / steps);
+                 last[RATIO], 1000.0 * seconds / steps, unstable);
 }
 
 double FixMPMImplicit::compute_scalar()
@@ -269,6 +284,7 @@ double FixMPMImplicit::compute_scalar()
 double FixMPMImplicit::compute_vector(int k)
 {
   static constexpr int SINCE_START[3] = {NEWTON, LINEAR, CUTS};
+  if (k >= 8) return last[k == 8 ? PARTS : LAST_INDEFINITE];
   return k < 5 ? last[k] : total[SINCE_START[k - 5]];
 }
 
