@@ -144,9 +144,8 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
         "or euler instead of newmark"},
        {has_domain(options.shape), "shape cpdi and cpdi2",
         "their nodes are not reached by trial motions: use B-splines or gimp"},
-       {options.locking != MPMFieldOptions::NO_CURE, "locking",
-        "averages over points are not in the tangent: use shape quadratic or cubic without "
-        "locking"},
+       {options.averages_strain(), "locking fbar and both",
+        "their motions of points are not those that forces belong to: use locking pressure"},
        {options.modified_edges, "edges modified", "use edges plain, the default"},
        {options.smooths_volumes(), "smooth", "it is for fluids in explicit steps"},
        {options.has_light_nodes(), "light",

@@ -21,6 +21,7 @@
 #include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_locking.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -42,6 +43,11 @@ MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
 }
 
 MPMTangent::~MPMTangent() noexcept = default;
+
+bool MPMTangent::averages() const
+{
+  return field.options.averages_stress();
+}
 
 void MPMTangent::init()
 {
@@ -198,6 +204,9 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
   }
   find_piola(first, n, H, tau, stress);
   for (int k = 0; k < nH * n; k++) good = good && std::isfinite(stress[k]);
+  if (averages())
+    for (int p = 0; p < n; p++)
+      mean_stress[first + p] = (b.stress[0][p] + b.stress[1][p] + b.stress[2][p]) / 3.0;
   return good;
 }
 
@@ -210,6 +219,10 @@ void MPMTangent::external_forces(double *force)
   no_force.assign(3 * nmax, 0.0);
   if (nH > nL) hoop_stress.assign(nmax, 0.0);
   find_loads();
+  if (averages()) {
+    mean_stress.assign(nmax, 0.0);
+    added.assign(nmax, 0.0);
+  }
   const double *const f = field.rows().f;
   scatter(f, force);
 }
@@ -240,9 +253,87 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
   carried = sum * field.step_data().stress_scale / field.lattice.h;
   MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) return false;
+  if (averages()) add_averages(u);
   scatter(loaded ? load_forces.data() : no_force.data(), force);
   return true;
 }
+
+/* ----------------------------------------------------------------------
+   locking pressure: averages S p of the mean stress p in place of that of the points, P <- P + c J G with c = S p - p and
+   G = F^-T. Their derivative is that with c as it is, which is in the tangents, and J G (S dp - dp), which points around have a part in
+------------------------------------------------------------------------- */
+
+/** J G of F [9] of the places. */
+void MPMTangent::find_volume_gradient(const double *F, double *g) const
+{
+  const double f[9] = {F[0], F[1], F[2], F[3], F[4], F[5], F[6], F[7], F[8]};
+  const double cofactors[9] = MPM_COFACTORS(f);
+  for (int k = 0; k < nL; k++) g[k] = cofactors[3 * (k % dim) + k / dim];
+  if (nH > nL) g[nL] = cofactors[8];
+}
+
+void MPMTangent::add_averages(const double *u)
+{
+  added = mean_stress;
+  field.locking->average(added);
+  for (std::size_t i = 0; i < added.size(); i++) added[i] -= mean_stress[i];
+  gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
+    double F[9 * BATCH], g[10];
+    deform(first, n, H);
+    lattice_F(first, n, H, F);
+    for (int p = 0; p < n; p++) {
+      const bigint i = first + p;
+      if (nH > nL) F[9 * p + 8] = 1.0 + H[nH * p + nL];
+      find_volume_gradient(F + 9 * p, g);
+      const double scale = added[i] * batch->J[p] / determinant(F + 9 * p);
+      for (int k = 0; k < nL; k++) P[nL * i + k] += scale * g[k];
+      if (nH > nL) hoop_stress[i] += scale * g[nL];
+    }
+  });
+}
+
+void MPMTangent::differentiate_averages(int first, int n, const double *H)
+{
+  double F[9 * BATCH], low[10], high[10];
+  deform(first, n, H);
+  lattice_F(first, n, H, F);
+  for (int p = 0; p < n; p++) {
+    const bigint i = first + p;
+    double *const f = F + 9 * p, *const g = &volume_gradients[nH * i];
+    if (nH > nL) f[8] = 1.0 + H[nH * p + nL];
+    // J over that of the places does not change with H
+    const double ratio = batch->J[p] / determinant(f);
+    find_volume_gradient(f, g);
+    for (int k = 0; k < nH; k++) g[k] *= ratio;
+    for (int k = 0; k < nH; k++) {    // cofactors are linear in each entry
+      double &entry = f[k < nL ? 3 * (k % dim) + k / dim : 8];
+      const double value = entry;
+      entry = value - 0.5;
+      find_volume_gradient(f, low);
+      entry = value + 0.5;
+      find_volume_gradient(f, high);
+      entry = value;
+      for (int l = 0; l < nH; l++)
+        tangents[i * nH * nH + nH * k + l] += added[i] * ratio * (high[l] - low[l]);
+    }
+  }
+}
+
+/** Of a change of motion whose changes of the mean stress are known. */
+void MPMTangent::average_changes()
+{
+  std::vector<double> &mean = added_changes;
+  mean = mean_stress;
+  field.locking->average(mean);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double change = mean[i] - mean_stress[i], *const g = &volume_gradients[nH * i];
+      for (int k = 0; k < nL; k++) P[nL * i + k] += change * g[k];
+      if (nH > nL) hoop_stress[i] += change * g[nL];
+    }
+}
+
+/* ---------------------------------------------------------------------- */
 
 void MPMTangent::loads(const double *u, double *force)
 {
@@ -271,6 +362,8 @@ void MPMTangent::take_differences(const MPMPointMap::Run &run, int first, int n,
   for (int k = 0; k < nH; k++) {
     for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] - DIFFERENCE;
     stress(run, first, n, other, dt, low);
+    double mean[BATCH];
+    if (averages()) std::copy_n(&mean_stress[first], n, mean);
     for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] + DIFFERENCE;
     stress(run, first, n, other, dt, high);
     for (int p = 0; p < n; p++) {
@@ -278,6 +371,8 @@ void MPMTangent::take_differences(const MPMPointMap::Run &run, int first, int n,
       const double step = (H[nH * p + k] + DIFFERENCE) - (H[nH * p + k] - DIFFERENCE);
       double *const column = &tangents[((bigint) first + p) * nH * nH + nH * k];
       for (int l = 0; l < nH; l++) column[l] = (high[nH * p + l] - low[nH * p + l]) / step;
+      if (averages())
+        mean_tangents[nH * ((bigint) first + p) + k] = (mean_stress[first + p] - mean[p]) / step;
       other[nH * p + k] = H[nH * p + k];
     }
   }
@@ -305,7 +400,7 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
     double *const K = &tangents[((bigint) first + p) * nH * nH];
     for (int k = 0; k < nH; k++) {
       const int r = k < nL ? k % dim : 2, c = k < nL ? k / dim : 2;
-      double l[3], d[3][3];
+      double l[3], d[3][3], trace = 0.0;
       for (int s = 0; s < 3; s++) l[s] = cofactors[3 * s + c] / det;
       for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
@@ -313,9 +408,13 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
           for (int s = 0; s < 3; s++) {
             if (tangent->skips(3 * r + s)) continue;
             d[i][j] += tangent->stress[COMPONENT[i][j]][3 * r + s][p] * l[s];
+            if (i == j) trace += tangent->stress[i][3 * r + s][p] * l[s];
             if (j == r) d[i][j] -= b.J[p] * b.stress[COMPONENT[i][s]][p] * l[s];
           }
         }
+      if (averages())
+        mean_tangents[nH * ((bigint) first + p) + k] =
+            trace / (3.0 * b.J[p]) - mean_stress[first + p] * l[r];
       for (int m = 0; m < nH; m++) {
         const int row = m < nL ? m % dim : 2, column = m < nL ? m / dim : 2;
         double sum = 0.0;
@@ -329,6 +428,10 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
 double MPMTangent::linearize(const double *u, double dt)
 {
   tangents.resize((std::size_t) atom->nmax * nH * nH);
+  if (averages()) {
+    mean_tangents.resize((std::size_t) atom->nmax * nH);
+    volume_gradients.resize((std::size_t) atom->nmax * nH);
+  }
   double sum = 0.0, all;
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
     if (run.material->material->has_tangent())
@@ -341,6 +444,7 @@ double MPMTangent::linearize(const double *u, double dt)
       for (int k = 0; k < nH * nH; k++) most = std::max(most, std::fabs(K[k]));
       sum += atom->vfrac[first + p] * most;
     }
+    if (averages()) differentiate_averages(first, n, H);
     if (follows(first, n)) differentiate_loads(first, n, H);
   });
   sum *= field.step_data().stress_scale / field.lattice.h;
@@ -358,6 +462,11 @@ void MPMTangent::change_of_forces(const double *du, double *dforce)
         for (int l = 0; l < nH; l++) sum[l] += K[nH * k + l] * h[k];
       std::copy_n(sum, nL, &P[(bigint) nL * (first + p)]);
       if (nH > nL) hoop_stress[first + p] = sum[nL];
+      if (averages()) {
+        double change = 0.0;
+        for (int k = 0; k < nH; k++) change += mean_tangents[nH * ((bigint) first + p) + k] * h[k];
+        mean_stress[first + p] = change;
+      }
       for (int d = 0; d < 3 && loaded; d++) {
         const double *const G = &load_tangents[3 * nH * ((bigint) first + p)];
         double change = 0.0;
@@ -366,6 +475,7 @@ void MPMTangent::change_of_forces(const double *du, double *dforce)
       }
     }
   });
+  if (averages()) average_changes();
   scatter(loaded ? load_forces.data() : no_force.data(), dforce);
 }
 
@@ -458,8 +568,9 @@ double MPMTangent::asymmetry() const
 double MPMTangent::memory_usage() const
 {
   double bytes = sizeof(Batch);
-  for (const auto *list : {&nodes, &history, &P, &hoop_stress, &tangents, &no_force,
-                           &forces_on_points, &load_forces, &load_tangents})
+  for (const auto *list :
+       {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points, &load_forces,
+        &load_tangents, &mean_stress, &mean_tangents, &added, &added_changes, &volume_gradients})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -92,6 +92,15 @@ class MPMTangent : protected Pointers {
   void scatter(const double *forces_of_points, double *force);
   bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
               MPM_NS::Tangent *tangent = nullptr);
+  // with averages of the pressure: mean stress of points and, after linearize(), its derivatives by H [point][nH]; what averages
+  // add to the mean stress; J G [point][nH] with G = F^-T of the places
+  std::vector<double> mean_stress, mean_tangents, added, added_changes, volume_gradients;
+  bool averages() const;
+  void find_volume_gradient(const double *F, double *g) const;
+  void add_averages(const double *u);
+  void differentiate_averages(int first, int n, const double *H);
+  void average_changes();
+
   void deform(int first, int n, const double *H);
   void find_piola(int first, int n, const double *H, const double *tau, double *P) const;
   void find_loads();
