@@ -528,6 +528,7 @@ SERIAL_TEST(Implicit, BadInput)
        {"fix s all mpm/implicit static absolute -1", "absolute"},
        {"fix s all mpm/implicit static iterations 0", "iterations"},
        {"fix s all mpm/implicit static linear 0", "linear"},
+       {"fix s all mpm/implicit static parts 0", "parts"},
        {"fix s all mpm/implicit static accuracy 2", "accuracy"},
        {"fix s all mpm/implicit static report perhaps", "perhaps"},
        {"fix s all mpm/implicit static damping 0.1", "damping"},
@@ -672,4 +673,93 @@ SERIAL_TEST(Elastica, BendsAsFarAsTheory)
   run.commands("run 4\n");
   EXPECT_NEAR(measured("w/L", -run.compute_scalar("w")) / 0.71582, 1.0, 0.01);
   EXPECT_NEAR(measured("u/L", -run.compute_scalar("along")) / 0.38796, 1.0, 0.01);
+}
+
+// a step that does not converge at once, as iterations are few, is gone in parts, and ends in the same state: loads, and a wall that
+// moves; the ledger and reactions know nothing of parts
+SERIAL_TEST(Parts, LeadToTheSameEnd)
+{
+  const auto load = beam(2, "frame total", 300.0, "static tolerance 1e-11 SHORT",
+                         "neohookean 1e8 0.3"),
+             wall = replaced(replaced(load, "gravity 300", "gravity 0.001"), "fix solve",
+                             "region end block 0.95 INF INF INF INF INF\n"
+                             "fix push all mpm/boundary region end stick velocity -0.1 -0.35 NULL\n"
+                             "fix solve");
+  for (const auto &scene : {load, wall}) {
+    Scene whole(replaced(scene, "SHORT", "") + "run 1\n"),
+        parts(replaced(scene, "SHORT", "iterations 6") + "run 1\n");
+    EXPECT_EQ(whole.fix("solve")->compute_vector(8), 1.0);
+    EXPECT_GT(measured("parts", parts.fix("solve")->compute_vector(8)), 2.0);
+    EXPECT_LT(parts.fix("solve")->compute_scalar(), 1e-11);
+    EXPECT_LT(measured("difference", difference(whole.gather(), parts.gather())), 1e-8);
+    EXPECT_NEAR(whole.fix("clamp")->compute_vector(1), parts.fix("clamp")->compute_vector(1),
+                1e-6 * std::fabs(whole.fix("clamp")->compute_vector(1)));
+    const double *const e = whole.compute_vector(), *const f = parts.compute_vector();
+    for (const int k : {5, 6, 10})
+      EXPECT_NEAR(e[k], f[k], 1e-7 * (std::fabs(e[5]) + std::fabs(e[6])));
+    expect_error(replaced(scene, "SHORT", "iterations 6 parts 1") + "run 1\n",
+                 "0 % were reached, in 0 parts");
+  }
+}
+
+// a bar of Hencky's law in uniaxial strain bears M/e and no more: the message tells where loads had come to
+SERIAL_TEST(Limit, IsReported)
+{
+  const double M = 1e6 * 0.7 / (1.3 * 0.4);
+  const auto scene =
+      replaced(replaced(cell("shape linear frame total transfer pic"), "neohookean", "hencky"),
+               "fix load all addforce 2e6 0 0",
+               strprintf("variable f equal %.17g*(step+1)\nfix load all addforce v_f 0 0",
+                         0.2 * M));    // half of it comes to the free nodes
+  Scene run;
+  const auto said = run.error(scene + "run 10\n");
+  ASSERT_NE(said.find("no equilibrium in step 4"), std::string::npos) << said;
+  const auto at = said.find("in this step ");
+  ASSERT_NE(at, std::string::npos);
+  const double share = std::stod(said.substr(at + 13)) / 100.0;
+  EXPECT_NEAR(measured("load over M", 0.1 * (3.0 + share)) * std::exp(1.0), 1.0, 5e-3);
+}
+
+// a shallow arch of two bars snaps through where it bears no more: pushed down by a wall its force has a maximum, and under a load
+// that grows it jumps from next to this to the other side, which the number of tangents that are not positive definite tells
+SERIAL_TEST(Arch, SnapsThrough)
+{
+  const std::string arch = plane("si", "f f", "-0.5 0.4 0 1", 1, 0.004) +
+      "fix grid all mpm 0.02 frame total\nregion bar prism 0 0.08 0 1 -1 1 0.15 0 0\n"
+      "create_points 1 region bar ppc 2\n"
+      "fix m all mpm/material density 1000 neohookean 1e8 0.0\n"
+      "fix clamp all mpm/boundary ylo stick\nfix middle all mpm/boundary yhi slip\n"
+      "region tip block INF INF 0.98 INF INF INF\ngroup tip region tip\n"
+      "variable n equal count(tip)\ncompute u tip displace/atom\n"
+      "compute w tip reduce ave c_u[1]\nthermo_style custom step c_w\n"
+      "fix solve all mpm/implicit static solver multigrid\ntimestep 1.0\n";
+  Scene pushed(arch +
+               "region hold block INF INF 0.98001 INF INF INF\n"
+               "fix push all mpm/boundary region hold stick velocity -0.004 NULL NULL\n");
+  double limit = 0.0, at = 0.0, force = 0.0, before = 0.0;
+  for (int step = 0; step < 30; step++) {
+    pushed.commands("run 1\n");
+    before = force;
+    force = pushed.fix("push")->compute_vector(0);
+    if (force > limit) {
+      limit = force;
+      at = pushed.compute_scalar("w");
+    }
+  }
+  EXPECT_LT(force, before);
+  measured("largest force", limit);
+  measured("there, displacement", at);
+
+  Scene loaded(arch + strprintf("variable f equal -%.17g*(0.9+0.005*(step+1))/v_n\n", limit) +
+               "fix load tip addforce v_f 0 0\n");
+  double w = 0.0, jump = 0.0;
+  int step = 0;
+  for (; step < 40 && jump > -0.1; step++) {
+    loaded.commands("run 1\n");
+    jump = step == 0 ? 0.0 : loaded.compute_scalar("w") - w;
+    w = loaded.compute_scalar("w");
+  }
+  EXPECT_NEAR(measured("load of the jump over the largest force", 0.9 + 0.005 * step), 1.0, 0.01);
+  EXPECT_GT(loaded.fix("solve")->compute_vector(9), 0.0);
+  EXPECT_LT(measured("displacement after the jump", w), -0.15) << "below its supports";
 }

@@ -59,6 +59,10 @@ Options MPMImplicitOptions::declare()
   options.add(
       "iterations",
       {integer(most_iterations, "N", POSITIVE, "largest number of Newton iterations in a step")});
+  options.add(
+      "parts",
+      {integer(most_parts, "N", POSITIVE,
+               "where a step does not converge at once, it is gone in parts, down to 1/N")});
   options.add("linear",
               {integer(most_linear, "N", POSITIVE,
                        "largest number of iterations of the linear solver in one of these")});
@@ -86,7 +90,7 @@ FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
   scalar_flag = vector_flag = 1;
-  size_vector = 8;
+  size_vector = 10;
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -138,9 +142,8 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
         "or euler instead of newmark"},
        {has_domain(options.shape), "shape cpdi and cpdi2",
         "their nodes are not reached by trial motions: use B-splines or gimp"},
-       {options.locking != MPMFieldOptions::NO_CURE, "locking",
-        "averages over points are not in the tangent: use shape quadratic or cubic without "
-        "locking"},
+       {options.averages_strain(), "locking fbar and both",
+        "their motions of points are not those that forces belong to: use locking pressure"},
        {options.modified_edges, "edges modified", "use edges plain, the default"},
        {options.smooths_volumes(), "smooth", "it is for fluids in explicit steps"},
        {options.has_light_nodes(), "light",
@@ -148,12 +151,12 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
        {options.heats(), "heat", "the time step is not in its balance: remove it"},
        {options.every > 1, "every", "implicit steps are long already: use every 1"}});
   for (auto *other : plan.physics)
-    if (other != this)
+    if (other != this && !other->only_loads())
       error->all(
           FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit cannot be used with fix {}, which acts on explicit steps: remove one "
-          "of them",
-          dynamic_cast<Fix *>(other)->style);
+          "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
+          "computes in explicit steps would not be in its balance: remove one of them",
+          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
   for (auto *action : plan.actions)
     if (!action->is_projection())
       error->all(
@@ -204,6 +207,15 @@ void FixMPMImplicit::step()
   total[NEWTON] += now.iterations;
   total[LINEAR] += now.linear;
   total[CUTS] += now.cuts;
+  last[LAST_NEWTON] = now.iterations;
+  last[LAST_LINEAR] = now.linear;
+  last[LAST_CUTS] = now.cuts;
+  last[UNBALANCED] = now.unbalanced / force->ftm2v;
+  last[ASYMMETRY] = now.asymmetry;
+  last[RATIO] = now.ratio;
+  last[PARTS] = now.parts;
+  last[LAST_INDEFINITE] = now.indefinite;
+  total[INDEFINITE] += now.indefinite;
   std::string list;
   if ((report || !now.converged) && comm->me == 0)
     for (const double r : now.residuals) list += fmt::format(" {:.9g}", r / force->ftm2v);
@@ -211,13 +223,17 @@ void FixMPMImplicit::step()
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/implicit {}: no equilibrium in step {} after {} Newton iterations, {}; sums of "
-        "forces:{}; ratio {:.3g}; {} tangents were not positive definite. Use smaller steps of "
-        "load or "
-        "time, hold bodies that can move freely, or let it be less accurate (keyword tolerance)",
-        id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite);
+        "forces:{}; ratio {:.3g}; {} tangents were not positive definite. Of the changes of loads "
+        "and walls in this step {:.5g} % were reached, in {} parts. Use smaller steps of load or "
+        "time, hold bodies that can move freely, or let it be less accurate (keyword tolerance); "
+        "above the largest load that bodies can bear, move a wall instead, or use euler",
+        id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite,
+        100.0 * now.reached, now.parts);
   if (report && comm->me == 0)
-    utils::logmesg(lmp, "  implicit step {}: {} linear iterations, {} not definite, forces{}\n",
-                   update->ntimestep, now.linear, now.indefinite, list);
+    utils::logmesg(lmp, "  implicit step {}:{} {} linear iterations, {} not definite, forces{}\n",
+                   update->ntimestep,
+                   now.parts > 1 ? fmt::format(" {} parts,", now.parts) : std::string(), now.linear,
+                   now.indefinite, list);
 }
 
 /** Statics: points have moved, and are at rest again. What they had, nodes got in step(), less what transfers lose. */
@@ -243,29 +259,30 @@ void FixMPMImplicit::post_run()
 {
   const double steps = total[STEPS] - at_start[STEPS];
   if (comm->me || steps == 0.0 || update->nsteps == 0) return;
+  const double indefinite = total[INDEFINITE] - at_start[INDEFINITE];
+  const std::string unstable = indefinite > 0.0
+      ? fmt::format("; {} tangents were not positive definite", (int64_t) indefinite)
+      : "";
   utils::logmesg(lmp,
                  "Fix mpm/implicit {}: {:.2f} Newton iterations in a step, {:.1f} of the linear "
                  "solver in each; "
-                 "last ratio of forces {:.3g}; {:.3g} ms a step\n",
+                 "last ratio of forces {:.3g}; {:.3g} ms a step{}\n",
                  id, (total[NEWTON] - at_start[NEWTON]) / steps,
                  (total[LINEAR] - at_start[LINEAR]) /
                      std::max(1.0, total[NEWTON] - at_start[NEWTON]),
-                 solver->report().ratio, 1000.0 * seconds / steps);
+                 last[RATIO], 1000.0 * seconds / steps, unstable);
 }
 
 double FixMPMImplicit::compute_scalar()
 {
-  return solver ? solver->report().ratio : 0.0;
+  return last[RATIO];
 }
 
 double FixMPMImplicit::compute_vector(int k)
 {
-  const MPMImplicit::Report none, &now = solver ? solver->report() : none;
-  const double values[8] = {(double) now.iterations, (double) now.linear,
-                            (double) now.cuts,       now.unbalanced / force->ftm2v,
-                            now.asymmetry,           total[NEWTON],
-                            total[LINEAR],           total[CUTS]};
-  return values[k];
+  static constexpr int SINCE_START[3] = {NEWTON, LINEAR, CUTS};
+  if (k >= 8) return last[k == 8 ? PARTS : LAST_INDEFINITE];
+  return k < 5 ? last[k] : total[SINCE_START[k - 5]];
 }
 
 double FixMPMImplicit::memory_usage()
@@ -279,9 +296,10 @@ void FixMPMImplicit::write_restart(FILE *fp)
 {
   keep_totals(world, taken, 2);
   if (comm->me) return;
-  double list[NTOTAL + 2];
+  double list[NTOTAL + 2 + NLAST];
   std::copy_n(total, (int) NTOTAL, list);
   std::copy_n(taken, 2, list + NTOTAL);
+  std::copy_n(last, (int) NLAST, list + NTOTAL + 2);
   const int size = sizeof(list);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(list, size, 1, fp);
@@ -292,4 +310,5 @@ void FixMPMImplicit::restart(char *buf)
   const auto *const list = (const double *) buf;
   std::copy_n(list, (int) NTOTAL, total);
   if (comm->me == 0) std::copy_n(list + NTOTAL, 2, taken);
+  std::copy_n(list + NTOTAL + 2, (int) NLAST, last);
 }

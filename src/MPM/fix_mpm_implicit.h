@@ -47,8 +47,20 @@ class FixMPMImplicit : public Fix, public MPMPhysics, private MPMImplicitOptions
  private:
   MPMField *field = nullptr;
   std::unique_ptr<MPMImplicit> solver;
-  enum { STEPS, NEWTON, LINEAR, CUTS, NTOTAL };
+  enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, NTOTAL };
   double total[NTOTAL] = {};    // so far
+  enum {
+    LAST_NEWTON,
+    LAST_LINEAR,
+    LAST_CUTS,
+    UNBALANCED,
+    ASYMMETRY,
+    RATIO,
+    PARTS,
+    LAST_INDEFINITE,
+    NLAST
+  };
+  double last[NLAST] = {};    // of the last step, also of a run before
   double taken[2] =
       {};    // static: kinetic energy that points had, and work in a step; this rank's share [energy]
   double at_start[NTOTAL] = {};    // of this run

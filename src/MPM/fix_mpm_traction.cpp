@@ -322,6 +322,7 @@ void FixMPMTraction::add_forces()
     }
     sums[3] += row[AREA] * size;
     row[HEIGHT] = height;
+    row[PRESSED] = has_pressure ? now[3].at(i) : 0.0;
     domain->unmap(x, atom->image[i], place);
     cross(place, load, torque);
     for (int d = 0; d < 3; d++) sums[4 + d] += row[AREA] * torque[d];
@@ -401,6 +402,18 @@ bool FixMPMTraction::adds_stress(const MPMField &field, int first, int last) con
   return false;
 }
 
+/** Adds the Kirchhoff stress of a load T = load [3] at point i with the deformation gradient F. */
+void FixMPMTraction::add_stress_of_load(int i, const double *F, const double *T, double *tau) const
+{
+  const double *const row = rows[i];
+  if (row[STRESS] == 0.0) return;
+  double n[3];
+  present_area(F, row + NORMAL, n);
+  const double size = std::sqrt(dot(n, n));
+  for (double &component : n) component /= size;
+  MPMFace::add_stress(T, n, force->nktv2p * row[STRESS] * determinant(F) / size, tau);
+}
+
 void FixMPMTraction::add_stress(const MPMField &field, int first, int n, double *tau) const
 {
   const double unit = force->nktv2p;
@@ -412,13 +425,47 @@ void FixMPMTraction::add_stress(const MPMField &field, int first, int n, double 
       for (int c = 0; c < 3; c++) tau[c] += p;
       continue;
     }
-    const double *const row = rows[i], *const T = row + LOAD;
-    if (row[STRESS] == 0.0) continue;
-    double n[3];
-    present_area(field.points->F[i], row + NORMAL, n);
-    const double size = std::sqrt(dot(n, n));
-    for (double &component : n) component /= size;
-    MPMFace::add_stress(T, n, unit * row[STRESS] * field.points->jacobian(i) / size, tau);
+    add_stress_of_load(i, field.points->F[i], rows[i] + LOAD, tau);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the loads of this step at other deformations: dead ones are those in the rows, which pressure changes by its area
+------------------------------------------------------------------------- */
+
+bool FixMPMTraction::follows(const MPMField &field, int first, int last) const
+{
+  if (surface == FREE) return adds_stress(field, first, last);
+  for (int i = first; i < last; i++)
+    if (rows[i][STRESS] != 0.0 || (has_pressure && rows[i][AREA] != 0.0)) return true;
+  return false;
+}
+
+void FixMPMTraction::follow(const MPMField &field, int first, int n, const double *F, double *push,
+                            double *tau) const
+{
+  for (int k = 0; k < n; k++, F += 9, push += 3, tau += 6) {
+    const int i = first + k;
+    if (surface == FREE) {
+      if (!belongs(field, i)) continue;
+      const double J = determinant(F), grown = J / field.points->jacobian(i) - 1.0;
+      for (int d = 0; d < 3; d++) {
+        tau[d] += force->nktv2p * inside[i][PRESSURE] * J;
+        push[d] += grown * inside[i][PUSH + d];
+      }
+      continue;
+    }
+    const double *const row = rows[i];
+    if (row[STRESS] == 0.0 && row[AREA] == 0.0) continue;
+    double before[3], after[3], load[3];
+    present_area(field.points->F[i], row + NORMAL, before);
+    present_area(F, row + NORMAL, after);
+    for (int d = 0; d < 3; d++) {
+      const double change = -row[PRESSED] * (after[d] - before[d]);
+      load[d] = row[LOAD + d] + change;
+      push[d] += row[AREA] * change;
+    }
+    add_stress_of_load(i, F, load, tau);
   }
 }
 

@@ -60,6 +60,10 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   bool looks_beyond_points() const override { return false; }
   bool adds_stress(const MPMField &, int first, int last) const override;
   void add_stress(const MPMField &, int first, int n, double *tau) const override;
+  bool only_loads() const override { return true; }
+  bool follows(const MPMField &, int first, int last) const override;
+  void follow(const MPMField &, int first, int n, const double *F, double *force,
+              double *tau) const override;
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
@@ -70,9 +74,18 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
  private:
   // Of a point, before deformation: area, share of the stress (MPMFace), normal [3], so that area times cof(F) times normal is
   // that on the present surface; in the last step force over this
-  // area and place [3], and J over the size of cof(F) times normal
+  // area and place [3], J over the size of cof(F) times normal, and pressure
   MPMRows rows;
-  enum { AREA, STRESS, NORMAL, LOAD = NORMAL + 3, PLACE = LOAD + 3, HEIGHT = PLACE + 3, WIDTH };
+  enum {
+    AREA,
+    STRESS,
+    NORMAL,
+    LOAD = NORMAL + 3,
+    PLACE = LOAD + 3,
+    HEIGHT = PLACE + 3,
+    PRESSED,
+    WIDTH
+  };
   // of a point with pressure on all of the surface, in the last step: pressure, volume, force of its gradient [3], place [3]
   MPMRows inside;
   enum { PRESSURE, VOLUME, PUSH, AT = PUSH + 3, INSIDE_WIDTH = AT + 3 };
@@ -94,6 +107,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   Load now[4];
 
   bool belongs(const MPMField &, int i) const;
+  void add_stress_of_load(int i, const double *F, const double *load, double *tau) const;
   MPM_NS::NumberOrVariable &load(int k) { return k < 3 ? traction[k] : pressure; }
   void find_load(int k);
   void evaluate_loads();

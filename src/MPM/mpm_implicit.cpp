@@ -28,6 +28,8 @@ static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
 static constexpr double SYMMETRIC = 1.0e-3;         // of tangents, for conjugate gradients
 static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are not known better
+static constexpr int TURN = 1000;                   // iterations in which GMRES must gain something
+static constexpr int IN_A_PART = 15;                // Newton iterations, of a step that has failed
 static constexpr int DO_WELL = 15;                  // iterations with levels of other tangents
 static constexpr double LOST = 1.0e12;              // times the first residual
 
@@ -333,6 +335,21 @@ void MPMImplicit::prepare_levels()
   multigrid->finish(*this, inertia > 0.0 ? stiff.data() : nullptr);
 }
 
+/** The same for tangents that are not symmetric. GMRES with restarts can come to where it gains nothing any more. */
+SolveReport MPMImplicit::solve_general(const SolveGoal &goal)
+{
+  SolveReport solved;
+  for (int done = 0; done < goal.most_iterations;) {
+    SolveGoal turn = goal;
+    turn.most_iterations = std::min(TURN, goal.most_iterations - done);
+    solved = general.solve(*this, free.data(), change.data(), turn);
+    solved.iterations = done += solved.iterations;
+    if (solved.outcome != SolveReport::TOO_MANY) break;
+    if (solved.residuals.back() > ENOUGH * solved.residuals[0]) break;
+  }
+  return solved;
+}
+
 /** The correction in change by the forces in free. Levels take longer to make than to use: those of the first tangents of a step
  *  serve all of its iterations as long as they do well. Nothing outlives the step, as a run that goes on from a restart file
  *  must take the same way. */
@@ -341,7 +358,7 @@ SolveReport MPMImplicit::solve(const SolveGoal &goal)
   const auto attempt = [&]() {
     std::fill(change.begin(), change.end(), 0.0);
     return now.asymmetry <= SYMMETRIC ? solver.solve(*this, free.data(), change.data(), goal)
-                                      : general.solve(*this, free.data(), change.data(), goal);
+                                      : solve_general(goal);
   };
   const auto find_blocks = [&]() {
     tangent.diagonal(blocks);
@@ -372,35 +389,34 @@ SolveReport MPMImplicit::solve(const SolveGoal &goal)
   return attempt();
 }
 
-void MPMImplicit::newton(std::vector<double> &u)
+MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterations)
 {
   double size = 0.0, accuracy = options.least_accuracy, last = 0.0, stiffness = 0.0;
+  const int before = now.iterations;
+  now.residuals.clear();
   if (!find_residual(u, size)) {
     now.failure = "points are inside out or have no finite stress at the start of the step";
-    return;
+    return HOPELESS;
   }
   bool wall_moves = options.time == MPMImplicitOptions::STATIC && wall_speed > 0.0;
   while (true) {
     now.residuals.push_back(now.unbalanced);
     const double enough = std::max(
         {options.tolerance * size, options.absolute * lmp->force->ftm2v, ROUND_OFF * stiffness});
-    if (now.unbalanced <= enough && !wall_moves) {
-      now.converged = true;
-      return;
-    }
-    if (now.iterations == options.most_iterations) {
+    if (now.unbalanced <= enough && !wall_moves) { return CONVERGED; }
+    if (now.iterations - before == most_iterations) {
       now.failure = "it did not converge";
-      return;
+      return FAILED;
     }
     if (now.unbalanced > LOST * now.residuals[0] && !wall_moves && now.residuals[0] > 0.0) {
       now.failure = "it diverges";
-      return;
+      return FAILED;
     }
 
     // forcing of S.C. Eisenstat, H.F. Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2: quadratic convergence without
     // solutions that are more accurate than the tangent is worth
 
-    if (now.iterations > 0 && last > 0.0) {
+    if (last > 0.0) {
       const double share = now.unbalanced / last, next = 0.9 * share * share,
                    safe = 0.9 * accuracy * accuracy;
       accuracy = std::min(options.least_accuracy, safe > 0.1 ? std::max(next, safe) : next);
@@ -431,7 +447,8 @@ void MPMImplicit::newton(std::vector<double> &u)
     now.iterations++;
     if (!solved.converged() && solved.outcome != SolveReport::INDEFINITE) {
       now.failure = "the linear system " + solved.describe();
-      return;
+      if (!multigrid) now.failure += " (use solver multigrid)";
+      return now.iterations == before + 1 ? HOPELESS : FAILED;
     }
     // the energy has no minimum along some way, such as next to a state that is not stable: the solution goes as far as it had
     // one, and down the slope at least (T. Steihaug, SIAM J. Numer. Anal. 20 (1983) 626)
@@ -447,10 +464,51 @@ void MPMImplicit::newton(std::vector<double> &u)
       for (int64_t k = 0; k < nreals(); k++) u[k] += held[k] + du[k];
       if (!find_residual(u, size)) {
         now.failure = "points are inside out when walls have moved";
-        return;
+        return FAILED;
       }
     } else if (!search(u, slope, size)) {
-      return;
+      return FAILED;
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Where Newton's method does not find the end of the step at once, it goes there in parts: for shares s of it that grow to one,
+   r(u) = (1 - s) r0 is solved for, where r0 are the forces that are not in balance at the start, and walls go a share of
+   their way. What loads, gravity, ramps, and walls change comes in small portions, and the laws see one step from its start
+   to u as always: where there is no need for parts, they lead to the same end
+------------------------------------------------------------------------- */
+
+void MPMImplicit::approach(std::vector<double> &u)
+{
+  const std::vector<double> whole_outer = outer, whole_way = held;
+  std::vector<double> from_here = u, first;
+  double part = 1.0, size;
+  while (true) {
+    const double aim = std::min(1.0, now.reached + part);
+    outer = whole_outer;
+    if (aim < 1.0)
+      for (int64_t k = 0; k < nreals(); k++) outer[k] -= (1.0 - aim) * first[k];
+    for (int64_t k = 0; k < nreals(); k++) held[k] = (aim - now.reached) * whole_way[k];
+    const int most = (int) options.most_iterations;
+    const Outcome outcome = newton(u, first.empty() ? most : std::min(most, IN_A_PART));
+    by_levels = by_levels && outcome == CONVERGED;
+    if (outcome == CONVERGED) {
+      now.parts++;
+      now.reached = aim;
+      now.converged = aim == 1.0;
+      if (now.converged) return;
+      from_here = u;
+      part *= 2.0;
+      continue;
+    }
+    part = 0.5 * (aim - now.reached);
+    if (outcome == HOPELESS || part * options.most_parts < 1.0) return;
+    u = from_here;
+    if (first.empty()) {
+      outer = whole_outer;
+      find_residual(u, size);
+      first = residual;
     }
   }
 }
@@ -492,7 +550,8 @@ double MPMImplicit::step(double step_dt)
       inertia /= beta;
     }
   }
-  newton(u);
+  approach(u);
+  if (now.converged) find_loads(u);
   return give_back(u);
 }
 
@@ -547,9 +606,23 @@ void MPMImplicit::finish()
     for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
 }
 
+/** Ledger: forces of loads that follow points are external ones. */
+void MPMImplicit::find_loads(const std::vector<double> &u)
+{
+  if (!field.ledger.on) return;
+  loads.assign(nreals(), 0.0);
+  more_loads = loads;
+  if (!tangent.has_loads()) return;
+  tangent.loads(loads.data(), more_loads.data());    // without any motion
+  loads.swap(more_loads);
+  tangent.loads(u.data(), more_loads.data());
+  for (int64_t k = 0; k < nreals(); k++) more_loads[k] -= loads[k];
+}
+
 void MPMImplicit::account()
 {
   const bool newmark = options.time == MPMImplicitOptions::NEWMARK;
+  const double share = newmark ? options.gamma : 1.0;    // of the forces of the end of the step
   double internal = 0.0, external = 0.0, transfer = 0.0;
   const double *record = field.grid.nodes();
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
@@ -557,10 +630,13 @@ void MPMImplicit::account()
     for (int d = 0; d < width; d++) {
       const int64_t k = width * n + d;
       const double v = velocity[k], old = record[4 + d];
-      internal -= push[k] * 0.5 * (v + old);
+      const double of_loads = share * dt * more_loads[k] * 0.5 * (v + old);
+      external += of_loads;
+      internal -= push[k] * 0.5 * (v + old) - of_loads;
       if (!newmark) continue;
       // points move with v, which is the mean velocity of the step already
-      const double half = 0.5 * (v - old), of_forces = dt * outer[k],
+      const double half = 0.5 * (v - old),
+                   of_forces = dt * (outer[k] + loads[k] + share * more_loads[k]),
                    of_stress = mass[n] * (explicit_velocity[k] - before[k]) - of_forces + push[k];
       external += of_forces * half;
       internal -= of_stress * half;
@@ -577,9 +653,13 @@ double MPMImplicit::memory_usage() const
 {
   double bytes = tangent.memory_usage() + solver.memory_usage() + general.memory_usage() +
       (multigrid ? multigrid->memory_usage() : 0.0);
-  for (const auto *list : {&mass, &before, &explicit_velocity, &outer, &inner, &from, &wall, &held,
-                           &start, &acceleration, &push, &velocity, &residual, &free, &change,
-                           &trial, &blocks, &room, &allowed})
+  for (const auto *list : {&mass,         &before,     &explicit_velocity,
+                           &outer,        &inner,      &from,
+                           &wall,         &held,       &start,
+                           &acceleration, &push,       &velocity,
+                           &loads,        &more_loads, &residual,
+                           &free,         &change,     &trial,
+                           &blocks,       &room,       &allowed})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

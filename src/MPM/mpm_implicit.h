@@ -32,6 +32,7 @@ struct MPMImplicitOptions {
   double tolerance = 1.0e-8;         ///< of the ratio of forces
   double absolute = 0.0;             ///< sum of unbalanced forces that is as good [force]
   int64_t most_iterations = 50;      ///< of Newton's method in a step
+  int64_t most_parts = 64;           ///< of a step, where it does not converge at once
   int64_t most_linear = 10000;       ///< of the linear solver in each of these
   double least_accuracy = 1.0e-3;    ///< of linear solutions
   enum Preconditioner { BLOCKS, MULTIGRID };
@@ -57,10 +58,12 @@ class MPMImplicit : private MPMNodeSystem {
     bool converged = false;
     int iterations = 0, linear = 0, cuts = 0;
     int indefinite = 0;         ///< iterations in which the energy had no minimum along some way
+    int parts = 0;              ///< of the step, that converged
+    double reached = 0.0;       ///< share of the step
     double unbalanced = 0.0;    ///< sum of forces that are left [mass acceleration]
     double ratio = 0.0;         ///< to all forces
     double asymmetry = 0.0;     ///< of the tangents
-    std::vector<double> residuals;    ///< sums of forces before each iteration
+    std::vector<double> residuals;    ///< sums of forces before each iteration of the last part
     std::string failure;
   };
 
@@ -99,6 +102,8 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> start, acceleration;    // with walls, for dynamics
   std::vector<double> velocity;               // that points move with
   std::vector<double> push;    // impulses that are not of the forces of the start of the step
+  std::vector<double> loads,
+      more_loads;    // that follow points: at the start, and what is new at the end
   std::vector<double> residual, free, change, trial, blocks, room, allowed;
 
   int64_t nreals() const { return (int64_t) mass.size() * width; }
@@ -112,8 +117,12 @@ class MPMImplicit : private MPMNodeSystem {
   bool search(std::vector<double> &u, double slope, double &size);
   void prepare_blocks();
   void prepare_levels();
+  MPM_NS::SolveReport solve_general(const MPM_NS::SolveGoal &);
   MPM_NS::SolveReport solve(const MPM_NS::SolveGoal &);
-  void newton(std::vector<double> &u);
+  enum Outcome { CONVERGED, FAILED, HOPELESS };    // the latter: parts of the step would fail, too
+  Outcome newton(std::vector<double> &u, int most_iterations);
+  void approach(std::vector<double> &u);
+  void find_loads(const std::vector<double> &u);
   void account();
   double give_back(const std::vector<double> &u);
 

@@ -62,6 +62,19 @@ class MPMPhysics {
   virtual bool adds_stress(const MPMField &, int /*first*/, int /*last*/) const { return false; }
   virtual void add_stress(const MPMField &, int /*first*/, int /*n*/, double * /*tau*/) const {}
 
+  /** Does it nothing but load points with forces (atom->f), add_stress(), and, where these depend on the deformation, follow()? It
+   *  goes with steps of any kind then. */
+  virtual bool only_loads() const { return false; }
+
+  /** Loads that depend on the deformation of a point, for a solver that looks for the state of the end of a step. Has any of the
+   *  points [first,last) one? If so, for n points from first on with the deformation gradients F [n][9], row-major: add what
+   *  changes of the forces on them in atom->f, force: [n][3], and add_stress() with these, tau: [n][6]. */
+  virtual bool follows(const MPMField &, int /*first*/, int /*last*/) const { return false; }
+  virtual void follow(const MPMField &, int /*first*/, int /*n*/, const double * /*F*/,
+                      double * /*force*/, double * /*tau*/) const
+  {
+  }
+
   /** The part of forces on walls that the contact of points does not bear, such as that of water in pores: at nodes of blocks
    *  that are marked in near (and others), force[node][3] is the integral of N p n over the surface of the body [mass
    *  acceleration], n outward; it is of the pressure_in_forces(). Returns false, and leaves force alone, where there is none.

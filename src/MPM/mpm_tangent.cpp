@@ -21,6 +21,7 @@
 #include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_locking.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -33,9 +34,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// of a gradient: with it, the third derivatives of a law and the round-off of its stress are both some 1e-10 of its tangent
-static constexpr double DIFFERENCE = 6.0e-6;
-
 /* ---------------------------------------------------------------------- */
 
 MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
@@ -45,6 +43,11 @@ MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
 }
 
 MPMTangent::~MPMTangent() noexcept = default;
+
+bool MPMTangent::averages() const
+{
+  return field.options.averages_stress();
+}
 
 void MPMTangent::init()
 {
@@ -139,6 +142,38 @@ void MPMTangent::lattice_F(int first, int n, const double *H, double *F) const
   }
 }
 
+/** Kinematics of n points from first on after H [n][nH], in the batch. */
+void MPMTangent::deform(int first, int n, const double *H)
+{
+  const auto &batches = *field.batch_kernels;
+  const auto &frame = *field.frame;
+  double L[9 * BATCH], hoop[BATCH];
+  for (int p = 0; p < n; p++) {
+    std::copy_n(H + nH * p, nL, L + nL * p);
+    if (nH > nL) hoop[p] = H[nH * p + nL];
+  }
+  frame.refer_gradients(first, n, L);
+  const bigint i = first;
+  (frame.is_total() ? batches.load_total : batches.load)(
+      *batch, n, 1.0, L, field.points->F[0] + 9 * i, field.points->tau[0] + 6 * i, atom->vfrac + i,
+      nH > nL ? hoop : nullptr);
+}
+
+/** P [n][nH] of the Kirchhoff stress tau [n][6] after H. */
+void MPMTangent::find_piola(int first, int n, const double *H, const double *tau,
+                            double *stress) const
+{
+  // with entries of a step before that may not be finite, where this one has not set them
+  double F[9 * BATCH + 8], plane[9 * BATCH + 8];
+  lattice_F(first, n, H, F);
+  field.batch_kernels->first_piola(n, F, tau, nH > nL ? plane : stress);
+  if (nH > nL)
+    for (int p = 0; p < n; p++) {
+      std::copy_n(plane + nL * p, nL, stress + nH * p);
+      stress[nH * p + nL] = tau[6 * p + 2] / (1.0 + H[nH * p + nL]);
+    }
+}
+
 /* ----------------------------------------------------------------------
    stress of n points from first on after H [n][nH]: P [n][nH], and J
 ------------------------------------------------------------------------- */
@@ -148,24 +183,14 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
 {
   Batch &b = *batch;
   const FixMPMMaterial *const material = run.material;
-  const auto &batches = *field.batch_kernels;
-  const auto &frame = *field.frame;
-  double L[9 * BATCH], hoop[BATCH], F[9 * BATCH + 8], tau[6 * BATCH + 8], plane[9 * BATCH + 8];
-  for (int p = 0; p < n; p++) {
-    std::copy_n(H + nH * p, nL, L + nL * p);
-    if (nH > nL) hoop[p] = H[nH * p + nL];
-  }
-  frame.refer_gradients(first, n, L);
-  // entries of a step before that may not be finite, where this one has not set them
-  const bigint i = first;
-  (frame.is_total() ? batches.load_total : batches.load)(b, n, 1.0, L, field.points->F[0] + 9 * i,
-                                                         field.points->tau[0] + 6 * i,
-                                                         atom->vfrac + i, nH > nL ? hoop : nullptr);
+  double tau[6 * BATCH + 8];
+  deform(first, n, H);
   b.dt = dt;
   b.time = elapsed_time(*update);
   b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
   if (material->nhistory)
-    batches.load_history(b, material->nhistory, &material->history[0][0] + material->nhistory * i);
+    field.batch_kernels->load_history(
+        b, material->nhistory, &material->history[0][0] + material->nhistory * (bigint) first);
   std::fill_n(b.heat, n, 0.0);
   if (tangent)
     material->material->update_with_tangent(b, *tangent);
@@ -177,14 +202,11 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
     good = good && b.J[p] > 0.0;
     for (int c = 0; c < 6; c++) tau[6 * p + c] = b.J[p] * b.stress[c][p];
   }
-  lattice_F(first, n, H, F);
-  batches.first_piola(n, F, tau, nH > nL ? plane : stress);
-  if (nH > nL)
-    for (int p = 0; p < n; p++) {
-      std::copy_n(plane + nL * p, nL, stress + nH * p);
-      stress[nH * p + nL] = tau[6 * p + 2] / (1.0 + hoop[p]);
-    }
+  find_piola(first, n, H, tau, stress);
   for (int k = 0; k < nH * n; k++) good = good && std::isfinite(stress[k]);
+  if (averages())
+    for (int p = 0; p < n; p++)
+      mean_stress[first + p] = (b.stress[0][p] + b.stress[1][p] + b.stress[2][p]) / 3.0;
   return good;
 }
 
@@ -196,6 +218,11 @@ void MPMTangent::external_forces(double *force)
   P.assign(nmax * nL, 0.0);
   no_force.assign(3 * nmax, 0.0);
   if (nH > nL) hoop_stress.assign(nmax, 0.0);
+  find_loads();
+  if (averages()) {
+    mean_stress.assign(nmax, 0.0);
+    added.assign(nmax, 0.0);
+  }
   const double *const f = field.rows().f;
   scatter(f, force);
 }
@@ -211,6 +238,14 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
       double square = 0.0;
       for (int k = 0; k < nH; k++) square += s[k] * s[k];
       sum += atom->vfrac[first + p] * std::sqrt(square);
+    }
+    if (follows(first, n)) {
+      double more[10 * BATCH + 8];
+      load_points(first, n, H, more);
+      for (int k = 0; k < nH * n; k++) stresses[k] += more[k];
+    }
+    for (int p = 0; p < n; p++) {
+      const double *const s = stresses + nH * p;
       std::copy_n(s, nL, &P[(bigint) nL * (first + p)]);
       if (nH > nL) hoop_stress[first + p] = s[nL];
     }
@@ -218,8 +253,103 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
   carried = sum * field.step_data().stress_scale / field.lattice.h;
   MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) return false;
-  scatter(no_force.data(), force);
+  if (averages()) add_averages(u);
+  scatter(loaded ? load_forces.data() : no_force.data(), force);
   return true;
+}
+
+/* ----------------------------------------------------------------------
+   locking pressure: averages S p of the mean stress p in place of that of the points, P <- P + c J G with c = S p - p and
+   G = F^-T. Their derivative is that with c as it is, which is in the tangents, and J G (S dp - dp), which points around have a part in
+------------------------------------------------------------------------- */
+
+/** J G of F [9] of the places. */
+void MPMTangent::find_volume_gradient(const double *F, double *g) const
+{
+  const double f[9] = {F[0], F[1], F[2], F[3], F[4], F[5], F[6], F[7], F[8]};
+  const double cofactors[9] = MPM_COFACTORS(f);
+  for (int k = 0; k < nL; k++) g[k] = cofactors[3 * (k % dim) + k / dim];
+  if (nH > nL) g[nL] = cofactors[8];
+}
+
+void MPMTangent::add_averages(const double *u)
+{
+  added = mean_stress;
+  field.locking->average(added);
+  for (std::size_t i = 0; i < added.size(); i++) added[i] -= mean_stress[i];
+  gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
+    double F[9 * BATCH], g[10];
+    deform(first, n, H);
+    lattice_F(first, n, H, F);
+    for (int p = 0; p < n; p++) {
+      const bigint i = first + p;
+      if (nH > nL) F[9 * p + 8] = 1.0 + H[nH * p + nL];
+      find_volume_gradient(F + 9 * p, g);
+      const double scale = added[i] * batch->J[p] / determinant(F + 9 * p);
+      for (int k = 0; k < nL; k++) P[nL * i + k] += scale * g[k];
+      if (nH > nL) hoop_stress[i] += scale * g[nL];
+    }
+  });
+}
+
+void MPMTangent::differentiate_averages(int first, int n, const double *H)
+{
+  double F[9 * BATCH], low[10], high[10];
+  deform(first, n, H);
+  lattice_F(first, n, H, F);
+  for (int p = 0; p < n; p++) {
+    const bigint i = first + p;
+    double *const f = F + 9 * p, *const g = &volume_gradients[nH * i];
+    if (nH > nL) f[8] = 1.0 + H[nH * p + nL];
+    // J over that of the places does not change with H
+    const double ratio = batch->J[p] / determinant(f);
+    find_volume_gradient(f, g);
+    for (int k = 0; k < nH; k++) g[k] *= ratio;
+    for (int k = 0; k < nH; k++) {    // cofactors are linear in each entry
+      double &entry = f[k < nL ? 3 * (k % dim) + k / dim : 8];
+      const double value = entry;
+      entry = value - 0.5;
+      find_volume_gradient(f, low);
+      entry = value + 0.5;
+      find_volume_gradient(f, high);
+      entry = value;
+      for (int l = 0; l < nH; l++)
+        tangents[i * nH * nH + nH * k + l] += added[i] * ratio * (high[l] - low[l]);
+    }
+  }
+}
+
+/** Of a change of motion whose changes of the mean stress are known. */
+void MPMTangent::average_changes()
+{
+  std::vector<double> &mean = added_changes;
+  mean = mean_stress;
+  field.locking->average(mean);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double change = mean[i] - mean_stress[i], *const g = &volume_gradients[nH * i];
+      for (int k = 0; k < nL; k++) P[nL * i + k] += change * g[k];
+      if (nH > nL) hoop_stress[i] += change * g[nL];
+    }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMTangent::loads(const double *u, double *force)
+{
+  std::fill(P.begin(), P.end(), 0.0);
+  std::fill(hoop_stress.begin(), hoop_stress.end(), 0.0);
+  std::fill(load_forces.begin(), load_forces.end(), 0.0);
+  gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
+    if (!follows(first, n)) return;
+    double stresses[10 * BATCH + 8];
+    load_points(first, n, H, stresses);
+    for (int p = 0; p < n; p++) {
+      std::copy_n(stresses + nH * p, nL, &P[(bigint) nL * (first + p)]);
+      if (nH > nL) hoop_stress[first + p] = stresses[nH * p + nL];
+    }
+  });
+  scatter(load_forces.data(), force);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -232,6 +362,8 @@ void MPMTangent::take_differences(const MPMPointMap::Run &run, int first, int n,
   for (int k = 0; k < nH; k++) {
     for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] - DIFFERENCE;
     stress(run, first, n, other, dt, low);
+    double mean[BATCH];
+    if (averages()) std::copy_n(&mean_stress[first], n, mean);
     for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] + DIFFERENCE;
     stress(run, first, n, other, dt, high);
     for (int p = 0; p < n; p++) {
@@ -239,6 +371,8 @@ void MPMTangent::take_differences(const MPMPointMap::Run &run, int first, int n,
       const double step = (H[nH * p + k] + DIFFERENCE) - (H[nH * p + k] - DIFFERENCE);
       double *const column = &tangents[((bigint) first + p) * nH * nH + nH * k];
       for (int l = 0; l < nH; l++) column[l] = (high[nH * p + l] - low[nH * p + l]) / step;
+      if (averages())
+        mean_tangents[nH * ((bigint) first + p) + k] = (mean_stress[first + p] - mean[p]) / step;
       other[nH * p + k] = H[nH * p + k];
     }
   }
@@ -266,7 +400,7 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
     double *const K = &tangents[((bigint) first + p) * nH * nH];
     for (int k = 0; k < nH; k++) {
       const int r = k < nL ? k % dim : 2, c = k < nL ? k / dim : 2;
-      double l[3], d[3][3];
+      double l[3], d[3][3], trace = 0.0;
       for (int s = 0; s < 3; s++) l[s] = cofactors[3 * s + c] / det;
       for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
@@ -274,9 +408,13 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
           for (int s = 0; s < 3; s++) {
             if (tangent->skips(3 * r + s)) continue;
             d[i][j] += tangent->stress[COMPONENT[i][j]][3 * r + s][p] * l[s];
+            if (i == j) trace += tangent->stress[i][3 * r + s][p] * l[s];
             if (j == r) d[i][j] -= b.J[p] * b.stress[COMPONENT[i][s]][p] * l[s];
           }
         }
+      if (averages())
+        mean_tangents[nH * ((bigint) first + p) + k] =
+            trace / (3.0 * b.J[p]) - mean_stress[first + p] * l[r];
       for (int m = 0; m < nH; m++) {
         const int row = m < nL ? m % dim : 2, column = m < nL ? m / dim : 2;
         double sum = 0.0;
@@ -290,6 +428,10 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
 double MPMTangent::linearize(const double *u, double dt)
 {
   tangents.resize((std::size_t) atom->nmax * nH * nH);
+  if (averages()) {
+    mean_tangents.resize((std::size_t) atom->nmax * nH);
+    volume_gradients.resize((std::size_t) atom->nmax * nH);
+  }
   double sum = 0.0, all;
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
     if (run.material->material->has_tangent())
@@ -302,6 +444,8 @@ double MPMTangent::linearize(const double *u, double dt)
       for (int k = 0; k < nH * nH; k++) most = std::max(most, std::fabs(K[k]));
       sum += atom->vfrac[first + p] * most;
     }
+    if (averages()) differentiate_averages(first, n, H);
+    if (follows(first, n)) differentiate_loads(first, n, H);
   });
   sum *= field.step_data().stress_scale / field.lattice.h;
   MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, world);
@@ -318,9 +462,21 @@ void MPMTangent::change_of_forces(const double *du, double *dforce)
         for (int l = 0; l < nH; l++) sum[l] += K[nH * k + l] * h[k];
       std::copy_n(sum, nL, &P[(bigint) nL * (first + p)]);
       if (nH > nL) hoop_stress[first + p] = sum[nL];
+      if (averages()) {
+        double change = 0.0;
+        for (int k = 0; k < nH; k++) change += mean_tangents[nH * ((bigint) first + p) + k] * h[k];
+        mean_stress[first + p] = change;
+      }
+      for (int d = 0; d < 3 && loaded; d++) {
+        const double *const G = &load_tangents[3 * nH * ((bigint) first + p)];
+        double change = 0.0;
+        for (int k = 0; k < nH; k++) change += G[3 * k + d] * h[k];
+        load_forces[3 * ((bigint) first + p) + d] = change;
+      }
     }
   });
-  scatter(no_force.data(), dforce);
+  if (averages()) average_changes();
+  scatter(loaded ? load_forces.data() : no_force.data(), dforce);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -405,14 +561,16 @@ double MPMTangent::asymmetry() const
         }
     }
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
-  return all[1] > 0.0 ? all[0] / all[1] : 0.0;
+  const double of_stress = all[1] > 0.0 ? all[0] / all[1] : 0.0;
+  return loaded ? std::max(of_stress, asymmetry_of_loads()) : of_stress;
 }
 
 double MPMTangent::memory_usage() const
 {
   double bytes = sizeof(Batch);
   for (const auto *list :
-       {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points})
+       {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points, &load_forces,
+        &load_tangents, &mean_stress, &mean_tangents, &added, &added_changes, &volume_gradients})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -55,6 +55,10 @@ class MPMTangent : protected Pointers {
   void change_of_forces(const double *du, double *dforce);
   /** Minus the same, of each node by its own motion alone: [node][dim][dim]. Collective. */
   void diagonal(std::vector<double> &blocks);
+  /** Forces of loads that follow the deformation after the motion u, less those that atom->f has. Collective. */
+  void loads(const double *u, double *force);
+  /** Are there any such loads on any rank? Known after external_forces(). */
+  bool has_loads() const { return loaded; }
   /** What one point does to the system: the n nodes that it reaches, [n][ngrad] gradients of their functions, and [dim ngrad][dim
    *  ngrad] minus the change of its force on H, for row and column l*dim + a of H_al, in the units of forces. */
   using UsePoint = std::function<void(int n, const int64_t *nodes, int ngrad,
@@ -62,7 +66,8 @@ class MPMTangent : protected Pointers {
   /** All points of this rank, those of a block one after the other. Around an axis ngrad is dim + 1, where the last entry is
    *  that of H_zz, of the first component alone. */
   void each_point(const UsePoint &) const;
-  /** Largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry. Collective. */
+  /** Largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry, or, of forces on points that change with H, of
+   *  this change over a node spacing. Collective. */
   double asymmetry() const;
 
   double memory_usage() const;
@@ -76,11 +81,33 @@ class MPMTangent : protected Pointers {
   int nH;                                      // those of H
   bool mls = false;                            // gradients are those of moving least squares
   std::vector<double> nodes, history, P, hoop_stress, tangents, no_force, forces_on_points;
+  bool loaded = false;    // some points have loads that follow them
+  // [point][3] forces of these loads besides atom->f, and [point][nH][3] derivatives by H, if there are any
+  std::vector<double> load_forces, load_tangents;
+
+  // of a gradient: with it, the third derivatives of a law and the round-off of its stress are both some 1e-10 of its tangent
+  static constexpr double DIFFERENCE = 6.0e-6;
 
   template <class Use> void gather(const double *u, const Use &use);
   void scatter(const double *forces_of_points, double *force);
   bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
               MPM_NS::Tangent *tangent = nullptr);
+  // with averages of the pressure: mean stress of points and, after linearize(), its derivatives by H [point][nH]; what averages
+  // add to the mean stress; J G [point][nH] with G = F^-T of the places
+  std::vector<double> mean_stress, mean_tangents, added, added_changes, volume_gradients;
+  bool averages() const;
+  void find_volume_gradient(const double *F, double *g) const;
+  void add_averages(const double *u);
+  void differentiate_averages(int first, int n, const double *H);
+  void average_changes();
+
+  void deform(int first, int n, const double *H);
+  void find_piola(int first, int n, const double *H, const double *tau, double *P) const;
+  void find_loads();
+  bool follows(int first, int n) const;
+  void load_points(int first, int n, const double *H, double *P);
+  void differentiate_loads(int first, int n, const double *H);
+  double asymmetry_of_loads() const;
   double mls_moment() const;
   void lattice_F(int first, int n, const double *H, double *F) const;
   void differentiate(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
