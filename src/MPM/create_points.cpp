@@ -25,6 +25,7 @@
 #include "mpm_frame.h"
 #include "mpm_input.h"
 #include "mpm_options.h"
+#include "mpm_region_cut.h"
 #include "region.h"
 #include "transfer/cpdi.h"
 
@@ -47,6 +48,12 @@ static constexpr bigint PART = 64;          // ... 1/PART of those it has looked
 static constexpr bigint GROWTH = 16;        // room for points grows by 1/GROWTH at least
 
 static const char axis_name[] = "xyz";
+
+/* ---------------------------------------------------------------------- */
+
+CreatePoints::CreatePoints(LAMMPS *lmp) : Command(lmp) {}
+
+CreatePoints::~CreatePoints() = default;
 
 /* ---------------------------------------------------------------------- */
 
@@ -122,6 +129,7 @@ void CreatePoints::command(int narg, char **arg)
   double made = 0.0, all_made = 0.0;
   for (int i = nlocal_previous; i < atom->nlocal; i++) made += atom->vfrac[i];
   MPI_Reduce(&made, &all_made, 1, MPI_DOUBLE, MPI_SUM, 0, world);
+  const bool differ = mesh || cut;
   if (comm->me == 0) {
     const bool flat = domain->dimension == 2;
     utils::logmesg(lmp, "Created {} material points of type {}\n", npoints, type);
@@ -129,13 +137,12 @@ void CreatePoints::command(int narg, char **arg)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
     if (fix && fix->options.axisymmetric)
-      utils::logmesg(lmp,
-                     "  area = {:.8g} per point, volume = {:.8g} in total (all around the axis)\n",
-                     volume, all_made);
+      utils::logmesg(lmp, "  area = {:.8g} {}, volume = {:.8g} in total (all around the axis)\n",
+                     volume, cut ? "per whole cell of a point" : "per point", all_made);
     else
-      utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n", volume,
-                     mesh ? "on average" : "per point", npoints * volume,
-                     flat ? " (per unit thickness)" : "");
+      utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n",
+                     cut ? all_made / npoints : volume, differ ? "on average" : "per point",
+                     cut ? all_made : npoints * volume, flat ? " (per unit thickness)" : "");
     utils::logmesg(lmp, "  create_points CPU = {:.3f} seconds\n", platform::walltime() - start);
   }
 }
@@ -175,11 +182,16 @@ Options CreatePointsOptions::declare(int dim, bool has_radius)
   o.add("share",
         {number(share, "share", {0.0, 1.0, true}, "",
                 "share of the volume of their places that the points have")});
+  o.add("cut", {yes_no(cut)},
+        "give points at the surface of the region the part of their cell that is inside");
   o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
       .standard("all");
   o.refuse([=] {
     return OptionRules{
         {share == 0.0, "share", "must be positive: {share}"},
+        {cut && jitter > 0.0, "cut",
+         "puts points at the center of what is inside of the region, from where jitter would move "
+         "them: use one of the two"},
         {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
         {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
   });
@@ -205,6 +217,9 @@ void CreatePoints::parse(int narg, char **arg)
   Options options = declare(dim, atom->radius_flag);
   read_options(lmp, options, narg, arg, iarg);
   find_group(options, group_id);
+  if (cut && !region)
+    error->all(FLERR, options.where("cut"),
+               "Create_points keyword cut is about the surface of a region: use style region");
   if (!fix_id.empty()) {
     auto *ifix = modify->get_fix_by_id(fix_id);
     const int where = options.where("fix") + 1;
@@ -250,6 +265,9 @@ void CreatePoints::parse(int narg, char **arg)
                      "{} ({:.8g}): there will be cells without points inside the body",
                      spacing[d], axis_name[d], fix->id(), fix->lattice.h);
   }
+  if (cut)
+    region_cut = std::make_unique<MPMRegionCut>(lmp, region, origin, spacing,
+                                                fix && fix->options.axisymmetric);
 }
 
 void CreatePoints::find_group(const Options &options, const std::string &name)
@@ -305,6 +323,8 @@ void CreatePoints::find_ranges()
 
   for (int d = 0; d < domain->dimension; d++) {
     const double boxlo = domain->boxlo[d], boxhi = domain->boxhi[d];
+    const double beyond = cut ? 0.5 * spacing[d]
+                              : 0.0;    // cells whose center is not in the region
     const bool periodic = domain->periodicity[d];
 
     // site number, rounded up; a site within the tolerance below counts as being there
@@ -334,8 +354,8 @@ void CreatePoints::find_ranges()
     }
     box[d] = {first, std::max(end - first, (bigint) 0)};
 
-    if (lo[d] > -INFINITE) first = first_from(lo[d]);
-    if (hi[d] < INFINITE) end = first_from(hi[d] + 2.0 * TOLERANCE * spacing[d]);
+    if (lo[d] > -INFINITE) first = first_from(lo[d] - beyond);
+    if (hi[d] < INFINITE) end = first_from(hi[d] + beyond + 2.0 * TOLERANCE * spacing[d]);
     search[d] = {first, std::max(end - first, (bigint) 0)};
   }
 }
@@ -344,7 +364,28 @@ void CreatePoints::find_ranges()
 
 bool CreatePoints::in_region(const bigint *s) const
 {
+  if (region_cut) return region_cut->inside(s).share > 0.0;
   return !region || region->match(position(0, s[0]), position(1, s[1]), position(2, s[2]));
+}
+
+/* ----------------------------------------------------------------------
+   the point of a cell that the surface of the region may cut, if there is one
+   where cells reach across the face of a box that is not periodic, the center may be beyond it
+------------------------------------------------------------------------- */
+
+bool CreatePoints::cut_site(const bigint *s, Site &site) const
+{
+  const auto part = region_cut->point(s, [this](const bigint *other) {
+    return in_box(other) && search[0].contains(other[0]) && search[1].contains(other[1]) &&
+        search[2].contains(other[2]);
+  });
+  if (part.share == 0.0) return false;
+  site = {{part.x[0], part.x[1], part.x[2]}, part.share * volume, 0};
+  for (int d = 0; d < domain->dimension; d++)
+    if (!domain->periodicity[d] && !(site.x[d] >= domain->boxlo[d] && site.x[d] < domain->boxhi[d]))
+      site.x[d] = position(d, s[d]);
+  domain->remap(site.x);
+  return true;
 }
 
 /* ----------------------------------------------------------------------
@@ -445,7 +486,9 @@ void CreatePoints::check_overlap()
         if (s[d] >= box[d].end()) s[d] -= box[d].n;
       }
     }
+    // of a cell that is cut the rest may belong to another body
     if (!in_box(s) || !in_region(s)) continue;
+    if (cut && !region->match(x[i][0], x[i][1], x[i][2])) continue;
     mine[0]++;
     apart += !same;
     mine[1] = std::max(mine[1], -(bigint) atom->tag[i]);
@@ -528,7 +571,9 @@ bigint CreatePoints::make_points()
     made.clear();
     const bigint first = std::min(base + share * comm->me, n);
     for_sites(range, first, std::min(first + share, n), [&](const bigint *s) {
-      if (!in_region(s)) return;
+      Site site;
+      if (cut && cut_site(s, site)) made.push_back(site);
+      if (cut || !in_region(s)) return;
       made.push_back({{}, volume, 0});
       point_position(s, made.back().x);
     });

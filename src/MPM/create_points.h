@@ -19,6 +19,7 @@ CommandStyle(create_points,CreatePoints);
 #include "declare/option.h"
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct CreatePointsOptions {
   bool allow_overlap = false, ignore_outside = false;
   double diameter = 0.0;    ///< 0: that of the volume
   double share = 1.0;       ///< of the volume of its site that a point has
+  bool cut = false;         ///< points have the part of their cell that is in the region
   std::string group_id;     ///< that the points join, empty: none
 
   MPM_NS::Options declare(int dimension, bool has_radius);
@@ -65,7 +67,8 @@ struct CreatePointsMeshOptions {
  */
 class CreatePoints : public Command, private CreatePointsOptions {
  public:
-  using Command::Command;
+  CreatePoints(class LAMMPS *);
+  ~CreatePoints() override;
   void command(int, char **) override;
 
  private:
@@ -94,6 +97,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   double volume;         // of a point, or the mean of all
   Range box[3];          // sites in the simulation box
   Range search[3];       // sites that can be in the region, also outside the box
+  std::unique_ptr<class MPMRegionCut> region_cut;    // with keyword cut, else null
 
   std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
   std::vector<Corners> corners;    // and the domains of these; at last those of the points here
@@ -125,6 +129,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
     return box[0].contains(s[0]) && box[1].contains(s[1]) && box[2].contains(s[2]);
   }
   bool in_region(const bigint *s) const;
+  bool cut_site(const bigint *s, Site &) const;
   void point_position(const bigint *s, double *x) const;
   template <class F> void for_sites(const Range *range, bigint first, bigint last, F &&visit) const;
 };

@@ -177,6 +177,44 @@ inline Soup cylinder(int n, double height)
   return prism(p, height, cut);
 }
 
+/** Bodies whose volume, moments, and sites inside are known. */
+struct Solid {
+  const char *name;
+  Soup soup;
+  double volume, moment[3];
+  double size;
+  int sites;
+};
+
+inline std::vector<Solid> solids()
+{
+  return {
+      {"tetrahedron",
+       {{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}},
+        {{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
+        {{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}}},
+        {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}},
+       1.0 / 6.0,
+       {1.0 / 96.0, 1.0 / 96.0, 1.0 / 60.0},
+       0.0,
+       0},
+      {"L", l_prism(), 5.0, {2.23333333, 5.83333333, 7.23333333}, 0.1, 5000},
+      {"cylinder", cylinder(64, 2.0), 6.2730969811, {3.13151404, 3.65678935, 3.65678935}, 0.0, 0},
+      {"ball", ball(1.0, 3), 4.1527408171, {1.65155743, 1.65155743, 1.65155743}, 0.05, 33208},
+      {"hollow cube",
+       both(box({0, 0, 0}, {1, 1, 1}), inverted(box({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}))),
+       0.875,
+       {0.16145833, 0.16145833, 0.16145833},
+       0.0,
+       0},
+      {"hollow ball",
+       both(ball(1.0, 3), inverted(ball(0.6, 3))),
+       3.2557488006,
+       {1.52313232, 1.52313232, 1.52313232},
+       0.05,
+       26000}};
+}
+
 /** A file with the corners of each triangle by numbers, backward from the last one for every other triangle. */
 inline std::string obj_of(const Soup &soup)
 {

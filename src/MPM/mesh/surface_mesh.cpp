@@ -110,6 +110,15 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
 
 SurfaceMesh::~SurfaceMesh() = default;
 
+std::vector<std::array<Point, 3>> SurfaceMesh::soup() const
+{
+  std::vector<std::array<Point, 3>> all;
+  all.reserve(triangles.size());
+  for (const auto &t : triangles)
+    all.push_back({corners[t.corner[0]], corners[t.corner[1]], corners[t.corner[2]]});
+  return all;
+}
+
 /** As a surface without boundary, with which volume and winding numbers are those of a body. */
 void SurfaceMesh::patch()
 {

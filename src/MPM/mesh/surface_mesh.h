@@ -91,6 +91,8 @@ class SurfaceMesh {
   double inertia[6];    ///< about the center, of unit density: xx yy zz xy xz yz
   int nparts;           ///< parts between sharp edges: with normals more than 45 degrees apart
   std::size_t size() const { return triangles.size(); }
+  std::vector<std::array<Point, 3>>
+  soup() const;          ///< corners of all triangles, patches among them
   SurfaceHoles holes;    ///< of a leaky surface
   bool overlaps =
       false;    ///< winds twice around some places, or backward: its volume counts them so
