@@ -24,6 +24,7 @@
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_input.h"
+#include "mpm_mesh_fields.h"
 #include "mpm_options.h"
 #include "mpm_region_cut.h"
 #include "region.h"
@@ -106,6 +107,7 @@ void CreatePoints::command(int narg, char **arg)
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
   set_domains(nlocal_previous);
+  if (fields) fields->set(nlocal_previous);
 
   bigint nblocal = atom->nlocal;
   MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -132,7 +134,8 @@ void CreatePoints::command(int narg, char **arg)
   const bool differ = mesh || cut;
   if (comm->me == 0) {
     const bool flat = domain->dimension == 2;
-    utils::logmesg(lmp, "Created {} material points of type {}\n", npoints, type);
+    utils::logmesg(lmp, "Created {} material points of type{}\n", npoints,
+                   fields ? fields->types() : fmt::format(" {}", type));
     if (!mesh)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
@@ -675,6 +678,17 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
         {axes(move, dim, "x y z", ANY_NUMBER, "distance", "added to the scaled coordinates")});
   o.add("part", {text(part, "name", "name or tag of a physical group of the mesh")})
       .standard("all elements of the dimension of the simulation");
+  o.add("types", {word(by_type, {{"one", false}, {"physical", true}})},
+        "type of all points, or that of the tag or number of the physical group");
+  o.add("groups", {word(by_group, {{"none", false}, {"physical", true}})},
+        "groups that points join in addition, by the names of physical groups");
+  o.add("data",
+        {text(data_name, "name", "data of the file for nodes (mesh) or elements"),
+         text(data_to, "quantity", "velocity, or d_name or i_name of fix property/atom")})
+      .standard("none")
+      .then([this] {
+        data.push_back({data_name, data_to});
+      });
   o.add("diameter",
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
@@ -711,6 +725,8 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   for (auto &x : mesh.nodes)
     for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
 
+  fields = std::make_unique<MPMMeshFields>(lmp, mesh, !in_elements, type, given.by_type,
+                                           given.by_group, given.data);
   volume = 0.0;
   if (in_elements)
     find_elements(mesh, arg[2]);
@@ -851,6 +867,7 @@ bigint CreatePoints::make_mesh_points()
     auto &site = mesh_sites[k];
     if (owner(site.x) != comm->me) continue;
     site.tag = atom->tag_enable ? maxtag + k + 1 : 0;
+    fields->add((int) k);
     make_point(site);
     if (!corners.empty()) mine.push_back(corners[k]);
   }

@@ -51,6 +51,11 @@ struct CreatePointsOptions {
 struct CreatePointsMeshOptions {
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
   std::string part;    ///< a physical group of the mesh, empty: all of it
+  bool by_type = false,
+       by_group = false;    ///< the group of a point is its type; joins a group of this name
+  std::string data_name, data_to;    ///< as read last
+  std::vector<std::array<std::string, 2>>
+      data;    ///< names in the file, and what they are for points
   double diameter = 0.0;
   std::string group_id;
 
@@ -101,6 +106,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
 
   std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
   std::vector<Corners> corners;    // and the domains of these; at last those of the points here
+  std::unique_ptr<class MPMMeshFields> fields;    // of the points of a mesh, else null
 
   void parse(int, char **);
   void parse_mesh(int, char **);
