@@ -25,7 +25,9 @@
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_input.h"
+#include "mpm_mesh_fields.h"
 #include "mpm_options.h"
+#include "mpm_region_cut.h"
 #include "region.h"
 #include "transfer/cpdi.h"
 
@@ -107,6 +109,7 @@ void CreatePoints::command(int narg, char **arg)
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
   set_domains(nlocal_previous);
   set_fields(nlocal_previous);
+  if (mesh_fields) mesh_fields->set(nlocal_previous);
 
   bigint nblocal = atom->nlocal;
   MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -131,17 +134,22 @@ void CreatePoints::command(int narg, char **arg)
   double made = 0.0, all_made = 0.0;
   for (int i = nlocal_previous; i < atom->nlocal; i++) made += atom->vfrac[i];
   MPI_Reduce(&made, &all_made, 1, MPI_DOUBLE, MPI_SUM, 0, world);
-  const std::string types = types_made(nlocal_previous);
+  const std::string types = mesh_fields ? "type" + mesh_fields->types()
+                                        : types_made(nlocal_previous);
+  const bool surface = cut || (image && image->surface);
   if (comm->me == 0) {
-    const bool flat = domain->dimension == 2, surface = image && image->surface;
+    const bool flat = domain->dimension == 2;
     utils::logmesg(lmp, "Created {} material points of {}\n", npoints, types);
     if (!mesh)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
     if (fix && fix->options.axisymmetric)
-      utils::logmesg(lmp,
-                     "  area = {:.8g} per {}, volume = {:.8g} in total (all around the axis)\n",
-                     volume, surface ? "site" : "point", all_made);
+      utils::logmesg(
+          lmp, "  area = {:.8g} per {}, volume = {:.8g} in total (all around the axis)\n", volume,
+          cut           ? "whole cell of a point"
+              : surface ? "site"
+                        : "point",
+          all_made);
     else
       utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n",
                      surface ? all_made / npoints : volume,
@@ -195,15 +203,21 @@ void CreatePointsOptions::add_to(Options &o, int dim)
   o.add("share",
         {number(share, "share", {0.0, 1.0, true}, "",
                 "share of the volume of their places that the points have")});
+  o.add("cut", {yes_no(cut)},
+        "give points at the surface of the region the part of their cell that is inside");
   o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
       .standard("all");
 }
 
 OptionRules CreatePointsOptions::rules(bool has_radius) const
 {
-  return {{share == 0.0, "share", "must be positive: {share}"},
-          {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
-          {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
+  return {
+      {share == 0.0, "share", "must be positive: {share}"},
+      {cut && jitter > 0.0, "cut",
+       "puts points at the center of what is inside of the region, from where jitter would move "
+       "them: use one of the two"},
+      {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
+      {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
 }
 
 void CreatePoints::parse(int narg, char **arg)
@@ -235,6 +249,9 @@ void CreatePoints::place_sites(const Options &options)
 {
   const int dim = domain->dimension;
   find_group(options, group_id);
+  if (cut && (image || !region))
+    error->all(FLERR, options.where("cut"),
+               "Create_points keyword cut is about the surface of a region: use style region");
   if (!fix_id.empty()) {
     auto *ifix = modify->get_fix_by_id(fix_id);
     const int where = options.where("fix") + 1;
@@ -285,6 +302,9 @@ void CreatePoints::place_sites(const Options &options)
                      "{} ({:.8g}): there will be cells without points inside the body",
                      spacing[d], axis_name[d], fix->id(), fix->lattice.h);
   }
+  if (cut)
+    region_cut = std::make_unique<MPMRegionCut>(lmp, region, origin, spacing,
+                                                fix && fix->options.axisymmetric);
 }
 
 void CreatePoints::find_group(const Options &options, const std::string &name)
@@ -346,6 +366,8 @@ void CreatePoints::find_ranges()
 
   for (int d = 0; d < domain->dimension; d++) {
     const double boxlo = domain->boxlo[d], boxhi = domain->boxhi[d];
+    const double beyond = cut ? 0.5 * spacing[d]
+                              : 0.0;    // cells whose center is not in the region
     const bool periodic = domain->periodicity[d];
 
     // site number, rounded up; a site within the tolerance below counts as being there
@@ -375,8 +397,8 @@ void CreatePoints::find_ranges()
     }
     box[d] = {first, std::max(end - first, (bigint) 0)};
 
-    if (lo[d] > -INFINITE) first = first_from(lo[d]);
-    if (hi[d] < INFINITE) end = first_from(hi[d] + 2.0 * TOLERANCE * spacing[d]);
+    if (lo[d] > -INFINITE) first = first_from(lo[d] - beyond);
+    if (hi[d] < INFINITE) end = first_from(hi[d] + beyond + 2.0 * TOLERANCE * spacing[d]);
     search[d] = {first, std::max(end - first, (bigint) 0)};
   }
 }
@@ -386,10 +408,31 @@ void CreatePoints::find_ranges()
 /** Share of the place of a site that a point has of it, 0: none. */
 double CreatePoints::share_of(const bigint *s) const
 {
+  if (region_cut) return region_cut->inside(s).share;
   double x[3] = {position(0, s[0]), position(1, s[1]), position(2, s[2])};
   if (region && !region->match(x[0], x[1], x[2])) return 0.0;
   if (!image) return 1.0;
   return image->surface ? surface_share(s) : image->type_at(x) > 0;
+}
+
+/* ----------------------------------------------------------------------
+   the point of a cell that the surface of the region may cut, if there is one
+   where cells reach across the face of a box that is not periodic, the center may be beyond it
+------------------------------------------------------------------------- */
+
+bool CreatePoints::cut_site(const bigint *s, Site &site) const
+{
+  const auto part = region_cut->point(s, [this](const bigint *other) {
+    return in_box(other) && search[0].contains(other[0]) && search[1].contains(other[1]) &&
+        search[2].contains(other[2]);
+  });
+  if (part.share == 0.0) return false;
+  site = {{part.x[0], part.x[1], part.x[2]}, part.share * volume, 0};
+  for (int d = 0; d < domain->dimension; d++)
+    if (!domain->periodicity[d] && !(site.x[d] >= domain->boxlo[d] && site.x[d] < domain->boxhi[d]))
+      site.x[d] = position(d, s[d]);
+  domain->remap(site.x);
+  return true;
 }
 
 /* ----------------------------------------------------------------------
@@ -490,7 +533,9 @@ void CreatePoints::check_overlap()
         if (s[d] >= box[d].end()) s[d] -= box[d].n;
       }
     }
+    // of a cell that is cut the rest may belong to another body
     if (!in_box(s) || !in_region(s)) continue;
+    if (cut && !region->match(x[i][0], x[i][1], x[i][2])) continue;
     mine[0]++;
     apart += !same;
     mine[1] = std::max(mine[1], -(bigint) atom->tag[i]);
@@ -573,7 +618,9 @@ bigint CreatePoints::make_points()
     made.clear();
     const bigint first = std::min(base + share * comm->me, n);
     for_sites(range, first, std::min(first + share, n), [&](const bigint *s) {
-      const double part = share_of(s);
+      Site site;
+      if (cut && cut_site(s, site)) made.push_back(site);
+      const double part = cut ? 0.0 : share_of(s);
       if (!(part > 0.0)) return;
       made.push_back({{}, part * volume, 0});
       if (image) look_at_image(s, made.back());
@@ -678,6 +725,17 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
         {axes(move, dim, "x y z", ANY_NUMBER, "distance", "added to the scaled coordinates")});
   o.add("part", {text(part, "name", "name or tag of a physical group of the mesh")})
       .standard("all elements of the dimension of the simulation");
+  o.add("types", {word(by_type, {{"one", false}, {"physical", true}})},
+        "type of all points, or that of the tag or number of the physical group");
+  o.add("groups", {word(by_group, {{"none", false}, {"physical", true}})},
+        "groups that points join in addition, by the names of physical groups");
+  o.add("data",
+        {text(data_name, "name", "data of the file for nodes (mesh) or elements"),
+         text(data_to, "quantity", "velocity, or d_name or i_name of fix property/atom")})
+      .standard("none")
+      .then([this] {
+        data.push_back({data_name, data_to});
+      });
   o.add("diameter",
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
@@ -714,6 +772,8 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   for (auto &x : mesh.nodes)
     for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
 
+  mesh_fields = std::make_unique<MPMMeshFields>(lmp, mesh, !in_elements, type, given.by_type,
+                                                given.by_group, given.data);
   volume = 0.0;
   if (in_elements)
     find_elements(mesh, arg[2]);
@@ -854,6 +914,7 @@ bigint CreatePoints::make_mesh_points()
     auto &site = mesh_sites[k];
     if (owner(site.x) != comm->me) continue;
     site.tag = atom->tag_enable ? maxtag + k + 1 : 0;
+    mesh_fields->add((int) k);
     make_point(site);
     if (!corners.empty()) mine.push_back(corners[k]);
   }

@@ -42,6 +42,7 @@ struct CreatePointsOptions {
   bool allow_overlap = false, ignore_outside = false;
   double diameter = 0.0;    ///< 0: that of the volume
   double share = 1.0;       ///< of the volume of its site that a point has
+  bool cut = false;         ///< points have the part of their cell that is in the region
   std::string group_id;     ///< that the points join, empty: none
 
   void add_to(MPM_NS::Options &, int dimension);
@@ -53,6 +54,11 @@ struct CreatePointsOptions {
 struct CreatePointsMeshOptions {
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
   std::string part;    ///< a physical group of the mesh, empty: all of it
+  bool by_type = false,
+       by_group = false;    ///< the group of a point is its type; joins a group of this name
+  std::string data_name, data_to;    ///< as read last
+  std::vector<std::array<std::string, 2>>
+      data;    ///< names in the file, and what they are for points
   double diameter = 0.0;
   std::string group_id;
 
@@ -101,6 +107,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   double volume;         // of a point, or the mean of all
   Range box[3];          // sites in the simulation box
   Range search[3];       // sites that can be in the region, also outside the box
+  std::unique_ptr<class MPMRegionCut> region_cut;    // with keyword cut, else null
 
   // of an image
 
@@ -115,6 +122,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
 
   std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
   std::vector<Corners> corners;    // and the domains of these; at last those of the points here
+  std::unique_ptr<class MPMMeshFields> mesh_fields;    // of the points of a mesh, else null
 
   void parse(int, char **);
   void parse_mesh(int, char **);
@@ -150,6 +158,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   double share_of(const bigint *s) const;
   double surface_share(const bigint *s) const;
   bool in_region(const bigint *s) const { return share_of(s) > 0.0; }
+  bool cut_site(const bigint *s, Site &) const;
   void point_position(const bigint *s, double *x) const;
   template <class F> void for_sites(const Range *range, bigint first, bigint last, F &&visit) const;
 };

@@ -108,6 +108,7 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
     error->all(FLERR,
                "Fix mpm/rigid requires 3d, as surfaces are of triangles: in 2d, move a region with "
                "fix mpm/boundary, or use a thin 3d box that is periodic");
+  region->need_distance();
   mesh = &region->surface_mesh();
   const double density = by_mass ? amount / mesh->volume : amount;
   mass = density * mesh->volume;
@@ -143,6 +144,7 @@ void FixMPMRigid::init()
                "Fix mpm/rigid {} needs its region {} at rest and with side in: the fix moves a "
                "copy of it",
                id, region_id);
+  region->need_distance();
   mesh = &region->surface_mesh();
   for (const auto *other : modify->get_fix_by_style("^mpm/rigid$"))
     if (other != this && dynamic_cast<const FixMPMRigid *>(other)->region_id == region_id)

@@ -163,6 +163,30 @@ std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::strin
   }
 }
 
+/* ----------------------------------------------------------------------
+   sets and data of a mesh, with their names
+------------------------------------------------------------------------- */
+
+static void broadcast_named(Mesh &mesh, MPI_Comm world)
+{
+  std::vector<int> counts = {(int) mesh.sets.size(), (int) mesh.data.size()};
+  broadcast(counts, world);
+  mesh.sets.resize(counts[0]);
+  for (auto &set : mesh.sets) {
+    broadcast(set.name, world);
+    broadcast(set.elements, world);
+  }
+  mesh.data.resize(counts[1]);
+  for (auto &data : mesh.data) {
+    std::vector<int> about = {data.at_nodes, data.width};
+    broadcast(about, world);
+    data.at_nodes = about[0];
+    data.width = about[1];
+    broadcast(data.name, world);
+    broadcast(data.values, world);
+  }
+}
+
 /* ---------------------------------------------------------------------- */
 
 Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::string &part,
@@ -172,7 +196,7 @@ Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::strin
   std::string message;
   if (lmp->comm->me == 0) {
     try {
-      mesh = read_gmsh(file);
+      mesh = read_mesh(file);
       mesh.keep(lmp->domain->dimension, part);
       mesh.orient();
     } catch (const std::runtime_error &e) {
@@ -183,6 +207,7 @@ Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::strin
   if (!message.empty()) lmp->error->all(FLERR, iarg, "{}: {}", user, message);
   broadcast(mesh.nodes, lmp->world);
   broadcast(mesh.elements, lmp->world);
+  broadcast_named(mesh, lmp->world);
   return mesh;
 }
 

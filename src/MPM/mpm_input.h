@@ -12,7 +12,7 @@
 // Materials and meshes that the input defines, also by files, which rank 0 reads for all.
 
 #include "material/material.h"
-#include "mesh/gmsh.h"
+#include "mesh/mesh_file.h"
 
 namespace LAMMPS_NS {
 class LAMMPS;
@@ -23,7 +23,7 @@ class LAMMPS;
 std::unique_ptr<MPM_NS::Material> read_material(LAMMPS *, const std::string &caller, int first,
                                                 int narg, char **arg);
 
-/** The elements of a body in a Gmsh file on all ranks: those of the dimension of the simulation
+/** The elements of a body in a file (see read_mesh()) on all ranks: those of the dimension of the simulation
  *  and, when not empty, of a physical group, numbered in the positive sense. Stops with an error
  *  of this user, which points to its argument. */
 MPM_NS::Mesh read_body(LAMMPS *, const std::string &file, const std::string &part,

@@ -37,6 +37,7 @@ MPMRegionSurface::MPMRegionSurface(Region *region, int dim) :
     region(region), mesh(dynamic_cast<RegMPMMesh *>(region)), dim(dim),
     is_cone(strcmp(region->style, "cone") == 0), is_union(strcmp(region->style, "union") == 0)
 {
+  if (mesh) mesh->need_distance();
   if (is_union || strcmp(region->style, "intersect") == 0)
     for (int k = 0; k < region->nregion; k++) parts.emplace_back(region->reglist[k], dim);
   left_out = {-1};

@@ -11,11 +11,15 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "math_const.h"
+#include "math_extra.h"
 #include "mesh/surface_mesh.h"
+#include "mpm_options.h"
 #include "utils.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <string>
 #include <utility>
@@ -23,16 +27,79 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+static constexpr int MAX_TOUCHES = 6;
+
+Options MPMRegionMeshOptions::declare()
+{
+  using namespace option;
+  Options o("region mpm/mesh");
+  o.add("surface",
+        {word(leaky,
+              {{"closed", false, "each edge belongs to two triangles that look to the same side"},
+               {"leaky", true, "fill holes, and what the surface winds around"}})});
+  o.add("turn",
+        {number(angle, "angle", ANY_NUMBER, "", "rotation of the file about its origin (degrees)"),
+         numbers(axis, 3, "Rx Ry Rz", ANY_NUMBER, "", "axis of this rotation")})
+      .standard("none");
+  o.refuse([=] {
+    return OptionRules{{axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0, "turn",
+                        "needs an axis that is not zero"}};
+  });
+  return o;
+}
+
 /* ----------------------------------------------------------------------
-   region ID mpm/mesh file scale x y z keyword value ...
+   The bytes of a file, which one rank reads, in pieces that a count of MPI can have
 ------------------------------------------------------------------------- */
 
-static constexpr int MAX_TOUCHES = 6;
+static std::string read_bytes(LAMMPS *lmp, const char *file)
+{
+  constexpr std::size_t PIECE = 1 << 28;
+  std::string bytes, problem;
+  bigint size = 0;
+  if (lmp->comm->me == 0) {
+    FILE *fp = fopen(file, "rb");
+    if (fp) {
+      char buffer[65536];
+      for (std::size_t n; (n = fread(buffer, 1, sizeof(buffer), fp)) > 0;) bytes.append(buffer, n);
+      if (ferror(fp)) problem = utils::getsyserror();
+      fclose(fp);
+    } else
+      problem = utils::getsyserror();
+    size = problem.empty() ? (bigint) bytes.size() : -1;
+  }
+  MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, lmp->world);
+  if (size < 0)
+    lmp->error->all(FLERR, 2, "Cannot open file {} of region mpm/mesh: {}", file, problem);
+  bytes.resize(size);
+  for (std::size_t at = 0; at < bytes.size(); at += PIECE)
+    MPI_Bcast(&bytes[at], (int) std::min(PIECE, bytes.size() - at), MPI_CHAR, 0, lmp->world);
+  return bytes;
+}
+
+/* ----------------------------------------------------------------------
+   region ID mpm/mesh file scale x y z keyword value ...
+   keywords of this style come before those of all regions
+------------------------------------------------------------------------- */
 
 RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
 {
   if (narg < 7) utils::missing_cmd_args(FLERR, "region mpm/mesh", error);
-  options(narg - 7, &arg[7]);
+  int own = 7;
+  const auto is_of_all = [](const char *word) {
+    for (const char *keyword : {"side", "units", "move", "rotate", "open"})
+      if (strcmp(word, keyword) == 0) return true;
+    return false;
+  };
+  while (own < narg && !is_of_all(arg[own])) own++;
+  MPMRegionMeshOptions given;
+  Options keywords = given.declare();
+  read_options(lmp, keywords, own, arg, 7);
+  for (int i = own; i < narg; i++)
+    if (keywords.has(arg[i]))
+      error->all(FLERR, i, "Region mpm/mesh keyword {} must come before the keyword {}", arg[i],
+                 arg[own]);
+  options(narg - own, &arg[own]);
   const double scale = utils::numeric(FLERR, arg[3], false, lmp);
   if (!(scale > 0.0) || !std::isfinite(scale))
     error->all(FLERR, 3, "Region mpm/mesh scale must be positive: {}", arg[3]);
@@ -40,26 +107,17 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   SurfaceMesh::Point shift;
   for (int d = 0; d < 3; d++) shift[d] = unit[d] * utils::numeric(FLERR, arg[4 + d], false, lmp);
 
-  // one rank reads
-
-  std::string bytes;
-  bigint size = -1;
-  if (comm->me == 0) {
-    if (FILE *fp = fopen(arg[2], "rb")) {
-      char buffer[65536];
-      for (std::size_t n; (n = fread(buffer, 1, sizeof(buffer), fp)) > 0;) bytes.append(buffer, n);
-      fclose(fp);
-      size = (bigint) bytes.size();
-    }
+  SurfaceOptions how;
+  how.leaky = leaky = given.leaky;
+  if (keywords.given("turn")) {
+    double axis[3] = {given.axis[0], given.axis[1], given.axis[2]}, quat[4];
+    MathExtra::norm3(axis);
+    MathExtra::axisangle_to_quat(axis, given.angle * MathConst::DEG2RAD, quat);
+    MathExtra::quat_to_mat(quat, how.turn);
   }
-  MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, world);
-  if (size < 0)
-    error->all(FLERR, 2, "Cannot open file {} of region mpm/mesh: {}", arg[2],
-               utils::getsyserror());
-  bytes.resize(size);
-  MPI_Bcast(&bytes[0], (int) size, MPI_CHAR, 0, world);
+  const std::string bytes = read_bytes(lmp, arg[2]);
   try {
-    mesh = std::make_unique<SurfaceMesh>(bytes, arg[2], scale, shift);
+    mesh = std::make_unique<SurfaceMesh>(bytes, arg[2], scale, shift, how);
   } catch (const std::exception &problem) {
     error->all(FLERR, 2, std::string(problem.what()));
   }
@@ -80,6 +138,48 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   if (comm->me == 0)
     utils::logmesg(lmp, "Region {}: {} triangles, volume {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id,
                    mesh->size(), mesh->volume, mesh->center[0], mesh->center[1], mesh->center[2]);
+  if (leaky && comm->me == 0) report(arg[2]);
+}
+
+/* ----------------------------------------------------------------------
+   What is wrong with a leaky surface
+------------------------------------------------------------------------- */
+
+void RegMPMMesh::report(const char *file) const
+{
+  const SurfaceHoles &found = mesh->holes;
+  if (found.none() && !mesh->overlaps) {
+    utils::logmesg(lmp, "  its surface is closed\n");
+    return;
+  }
+  if (found.turned + found.repeated)
+    utils::logmesg(lmp, "  {} triangles turned, {} left out that were there twice\n", found.turned,
+                   found.repeated);
+  if (found.edges) {
+    const double size = std::sqrt(MathExtra::distsq3(mesh->lo.data(), mesh->hi.data()));
+    utils::logmesg(
+        lmp,
+        "  {} open edges around {} hole{}, the widest with {:.4g} ({:.3g} % of the body) "
+        "at {:.6g} {:.6g} {:.6g}, patches with {:.3g} % of the area of the surface\n",
+        found.edges, found.holes, found.holes > 1 ? "s" : "", found.widest,
+        100.0 * found.widest / size, found.at[0], found.at[1], found.at[2], 100.0 * found.area);
+  }
+  if (mesh->overlaps)
+    utils::logmesg(lmp, "  parts overlap: the volume above has what they share several times\n");
+  error->warning(FLERR,
+                 "The surface of file {} is leaky: look at the region that it fills before you "
+                 "trust it",
+                 file);
+}
+
+void RegMPMMesh::need_distance() const
+{
+  if (leaky)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Region {} has surface leaky, so that only what is inside of it is known and it cannot "
+        "be a wall or a rigid body: repair its mesh and use surface closed",
+        id);
 }
 
 RegMPMMesh::~RegMPMMesh()
@@ -170,6 +270,12 @@ bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact,
 
 int RegMPMMesh::touch(const double *x, double cutoff, double side)
 {
+  if (leaky)
+    error->one(
+        FLERR, Error::NOLASTLINE,
+        "Region {} has surface leaky, so that only what is inside of it is known and it cannot "
+        "be a wall: repair its mesh and use surface closed",
+        id);
   const SurfaceMesh::Point here = {x[0], x[1], x[2]};
   const double known = mesh->bound(here);
   if (known * side < 0.0 || std::fabs(known) >= cutoff) return 0;

@@ -15,6 +15,7 @@ RegionStyle(mpm/mesh,RegMPMMesh);
 #ifndef LMP_REGION_MPM_MESH_H
 #define LMP_REGION_MPM_MESH_H
 
+#include "declare/option.h"
 #include "region.h"
 
 #include <cstdint>
@@ -28,7 +29,15 @@ class SurfaceMesh;
 
 namespace LAMMPS_NS {
 
-/** The body inside of a closed surface of triangles from an STL file. */
+/** Keywords of region mpm/mesh, besides those of all regions. */
+struct MPMRegionMeshOptions {
+  bool leaky = false;
+  double angle = 0.0, axis[3] = {0.0, 0.0, 0.0};
+
+  MPM_NS::Options declare();
+};
+
+/** The body inside of a surface of triangles from an STL or OBJ file. */
 class RegMPMMesh : public Region {
  public:
   RegMPMMesh(class LAMMPS *, int, char **);
@@ -38,6 +47,9 @@ class RegMPMMesh : public Region {
   int surface_exterior(double *x, double cutoff) override { return touch(x, cutoff, 1.0); }
 
   const MPM_NS::SurfaceMesh &surface_mesh() const { return *mesh; }
+
+  /** Stops with an error if the surface is leaky: only inside() is known then. */
+  void need_distance() const;
 
   /** Signed distance of x from the surface where the region is now, negative in the region; the cutoff or minus the
    *  cutoff farther away. along_z: how far the closest point is from x along z. It is what match() and surface() tell,
@@ -56,11 +68,13 @@ class RegMPMMesh : public Region {
   };
   using Cells = std::unordered_map<uint64_t, Linear>;    // keys: see distance_by_cells()
   std::unique_ptr<MPM_NS::SurfaceMesh> mesh;
+  bool leaky = false;
   bool placing = false;    // inside() is called only for its place, in the coordinates of the mesh
   double place[3];
   int last_closest = -1;            // triangle, see SurfaceMesh::distance_within()
   std::map<double, Cells> cells;    // by their size
 
+  void report(const char *file) const;
   void find_place(const double *x);
 
   int touch(const double *x, double cutoff, double side);

@@ -213,18 +213,6 @@ TEST(SurfaceMesh, RefusesWhatIsNotClosed)
   EXPECT_THAT(message(text_of({{{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}}})), HasSubstr("no triangles"));
 }
 
-static Soup inverted(Soup soup)
-{
-  for (auto &t : soup) std::swap(t[1], t[2]);
-  return soup;
-}
-
-static Soup both(Soup soup, const Soup &other)
-{
-  soup.insert(soup.end(), other.begin(), other.end());
-  return soup;
-}
-
 TEST(SurfaceMesh, RefusesPartsWithoutInsideAndOutside)
 {
   const Soup one = box({0, 0, 0}, {1, 1, 1}), next = box({1.5, 0.25, 0}, {2.5, 1.25, 1}),

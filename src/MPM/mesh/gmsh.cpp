@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <unordered_map>
@@ -21,7 +22,7 @@ namespace {
 
 constexpr int64_t MAX_COUNT = 2000000000;    // nodes or elements
 
-/** Words of a file, which may be spread over lines at will; knows the line for messages. */
+/** Words of a file, which may be spread over lines at will, or bytes; knows the line for messages. */
 class Words {
  public:
   Words(std::istream &in, const std::string &name) : in(in), name(name), line(0), pos(0) {}
@@ -54,6 +55,11 @@ class Words {
 
   double real()
   {
+    if (binary) {
+      const double value = bytes<double>();
+      if (!std::isfinite(value)) fail("a number is not finite");
+      return value;
+    }
     char *end;
     need();
     const double value = strtod(word.c_str(), &end);
@@ -61,23 +67,41 @@ class Words {
     return value;
   }
 
+  /** Of a binary file, an int. */
   int64_t integer(int64_t low = -MAX_COUNT * MAX_COUNT, int64_t high = MAX_COUNT * MAX_COUNT)
   {
+    if (binary) return in_range(bytes<int32_t>(), low, high);
     char *end;
     need();
     const long long value = strtoll(word.c_str(), &end, 10);
     if (*end) fail("'" + word + "' is not an integer");
-    if (value < low || value > high) fail("the number " + word + " is out of range");
-    return value;
+    return in_range(value, low, high);
   }
 
-  int64_t count() { return integer(0, MAX_COUNT); }
+  /** What is a size_t in binary files of format 4.1, and an int in those of format 2.2. */
+  int64_t label()
+  {
+    return binary && !old ? in_range(bytes<int64_t>(), 0, MAX_COUNT * MAX_COUNT) : integer();
+  }
+  int64_t count()
+  {
+    return binary && !old ? in_range(bytes<int64_t>(), 0, MAX_COUNT) : integer(0, MAX_COUNT);
+  }
   int tag() { return (int) integer(-MAX_COUNT, MAX_COUNT); }
   std::array<double, 3> position() { return {real(), real(), real()}; }
-  void skip(int64_t n)
+  void skip_reals(int64_t n)
   {
-    for (; n > 0; n--) need();
+    for (; n > 0; n--) real();
   }
+  void skip_integers(int64_t n)
+  {
+    for (; n > 0; n--) integer();
+  }
+
+  /** What follows the present line is bytes, or words again. */
+  bool binary = false;
+  bool old = false;        ///< format 2.2
+  bool swapped = false;    ///< the other order of bytes
 
   void expect(const std::string &wanted)
   {
@@ -91,16 +115,41 @@ class Words {
     if (!next(word)) fail("the file ends too early");
   }
 
+  int64_t in_range(int64_t value, int64_t low, int64_t high) const
+  {
+    if (value < low || value > high)
+      fail("the number " + std::to_string(value) + " is out of range");
+    return value;
+  }
+
+  template <class T> T bytes()
+  {
+    char raw[sizeof(T)];
+    if (!in.read(raw, sizeof(T))) fail("the binary file ends too early");
+    if (swapped) std::reverse(raw, raw + sizeof(T));
+    T value;
+    memcpy(&value, raw, sizeof(T));
+    return value;
+  }
+
   std::istream &in;
   std::string name, text, word;
   int line;
   std::size_t pos;
 };
 
+/** Bytes instead of words, as long as this exists. */
+struct InBytes {
+  Words &in;
+  InBytes(Words &in, bool yes) : in(in) { in.binary = yes; }
+  ~InBytes() { in.binary = false; }
+};
+
 /** The mesh while it is read. */
 struct Reader {
   Words &in;
   Mesh &mesh;
+  bool binary;
   std::unordered_map<int64_t, int> place;          // of the nodes, by number
   std::map<std::pair<int, int>, int> of_entity;    // 4.1: (dimension, entity) -> physical group
 
@@ -126,43 +175,47 @@ struct Reader {
 
   void nodes_2()
   {
-    for (int64_t n = in.count(); n > 0; n--) {
-      const int64_t label = in.integer();
+    int64_t n = in.count();
+    const InBytes bytes(in, binary);
+    for (; n > 0; n--) {
+      const int64_t label = in.label();
       add_node(label, in.position());
     }
   }
 
   void entities()
   {
+    const InBytes bytes(in, binary);
     int64_t n[4];
     for (auto &k : n) k = in.count();
     for (int dim = 0; dim < 4; dim++)
       for (; n[dim] > 0; n[dim]--) {
         const int tag = in.tag();
-        for (int k = 0; k < (dim ? 6 : 3); k++) in.real();
+        in.skip_reals(dim ? 6 : 3);
         const int64_t ngroups = in.count();
         for (int64_t k = 0; k < ngroups; k++) {
           const int group = in.tag();
           if (k == 0) of_entity[{dim, tag}] = std::abs(group);    // negative: reversed
         }
-        if (dim) in.skip(in.count());
+        if (dim) in.skip_integers(in.count());
       }
   }
 
   void nodes_4()
   {
+    const InBytes bytes(in, binary);
     const int64_t nblocks = in.count();
-    in.skip(3);
+    for (int k = 0; k < 3; k++) in.label();
     std::vector<int64_t> labels;
     for (int64_t b = 0; b < nblocks; b++) {
       const int dim = in.integer(0, 3);
-      in.skip(1);
+      in.tag();
       const bool parametric = in.integer(0, 1) != 0;
-      labels.resize(in.count());
-      for (auto &label : labels) label = in.integer();
+      labels.clear();    // and not made as long as the file says: that may be wrong
+      for (int64_t n = in.count(); n > 0; n--) labels.push_back(in.label());
       for (const auto label : labels) {
         const auto x = in.position();
-        if (parametric) in.skip(dim);
+        if (parametric) in.skip_reals(dim);
         add_node(label, x);
       }
     }
@@ -177,7 +230,7 @@ struct Reader {
 
   Kind kind()
   {
-    const int type = (int) in.count();
+    const int type = (int) in.integer(0, MAX_COUNT);
     if (type >= 2 && type <= 5) {
       const auto kept = static_cast<ElementType>(type - 2);
       return {element_nodes(kept), true, kept};
@@ -195,7 +248,7 @@ struct Reader {
   {
     MeshElement e = {kind.type, physical, label, {0, 0, 0, 0, 0, 0, 0, 0}};
     for (int k = 0; k < kind.nnodes; k++) {
-      const int64_t node = in.integer();
+      const int64_t node = in.label();
       if (!kind.kept) continue;
       const auto found = place.find(node);
       if (found == place.end())
@@ -212,45 +265,37 @@ struct Reader {
 
   void elements_2()
   {
-    for (int64_t n = in.count(); n > 0; n--) {
-      const int64_t label = in.integer();
+    int64_t n = in.count();
+    const InBytes bytes(in, binary);
+    while (n > 0) {
+      // elements of one type follow each other in a binary file, with one head for all of them
+      int64_t label = binary ? 0 : in.label();
       const Kind type = kind();
+      int64_t same = binary ? in.integer(1, n) : 1;
       const int64_t ntags = in.count();
-      const int physical = ntags ? in.tag() : 0;
-      in.skip(ntags - 1);
-      element(label, physical, type);
+      for (n -= same; same > 0; same--) {
+        if (binary) label = in.label();
+        const int physical = ntags ? in.tag() : 0;
+        in.skip_integers(ntags - 1);
+        element(label, physical, type);
+      }
     }
   }
 
   void elements_4()
   {
+    const InBytes bytes(in, binary);
     const int64_t nblocks = in.count();
-    in.skip(3);
+    for (int k = 0; k < 3; k++) in.label();
     for (int64_t b = 0; b < nblocks; b++) {
       const int dim = in.integer(0, 3), entity = in.tag();
       const Kind type = kind();
       const auto found = of_entity.find({dim, entity});
       const int physical = found == of_entity.end() ? 0 : found->second;
-      for (int64_t n = in.count(); n > 0; n--) element(in.integer(), physical, type);
-    }
-  }
-
-  /** The same nodes twice would be twice the mass. */
-  void check_repeated()
-  {
-    std::map<std::array<int, 8>, int64_t> seen;
-    for (const auto &e : mesh.elements) {
-      std::array<int, 8> key;
-      key.fill(-1);
-      const int n = element_nodes(e.type);
-      std::copy(e.node, e.node + n, key.begin());
-      std::sort(key.begin(), key.begin() + n);
-      const auto found = seen.emplace(key, e.label);
-      if (!found.second)
-        in.fail("elements " + std::to_string(found.first->second) + " and " +
-                std::to_string(e.label) +
-                " have the same nodes; Gmsh's format 2.2 repeats an element that is in two "
-                "physical groups");
+      for (int64_t n = in.count(); n > 0; n--) {
+        const int64_t label = in.label();
+        element(label, physical, type);
+      }
     }
   }
 };
@@ -263,7 +308,6 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
 {
   Mesh mesh;
   Words in(stream, name);
-  Reader reader = {in, mesh, {}, {}};
   std::string word;
 
   if (!in.next(word) || word != "$MeshFormat")
@@ -272,9 +316,17 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
   const bool old = word == "2.2" || word == "2";
   if (!old && word != "4.1")
     in.fail("the format " + word + " of Gmsh is not supported: save as version 2.2 or 4.1");
-  if (in.count() != 0)
-    in.fail("binary files are not supported: save as ASCII (Gmsh: without -bin)");
-  in.count();
+  in.old = old;
+  const bool binary = in.integer(0, 1) == 1;
+  in.integer();
+  if (binary) {
+    const InBytes bytes(in, true);
+    const int64_t one = in.integer();
+    in.swapped = one == 0x01000000;
+    if (one != 1 && !in.swapped)
+      in.fail("the head of a binary file has no 1 for the order of bytes");
+  }
+  Reader reader = {in, mesh, binary, {}, {}};
   in.expect("$EndMeshFormat");
 
   bool have_nodes = false, have_elements = false;
@@ -300,7 +352,11 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
     in.expect("$End" + section);
   }
   if (!have_nodes || !have_elements) in.fail("the file has no nodes or no elements");
-  reader.check_repeated();
+  try {
+    mesh.check_repeated("; Gmsh's format 2.2 repeats an element that is in two physical groups");
+  } catch (const std::runtime_error &e) {
+    in.fail(e.what());
+  }
   return mesh;
 }
 
@@ -308,21 +364,70 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
 
 Mesh MPM_NS::read_gmsh(const std::string &file)
 {
-  std::ifstream in(file);
+  std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error("cannot open the mesh file " + file);
   return read_gmsh(in, file);
 }
 
 /* ---------------------------------------------------------------------- */
 
+void Mesh::check_repeated(const std::string &hint) const
+{
+  std::map<std::array<int, 8>, int64_t> seen;
+  for (const auto &e : elements) {
+    std::array<int, 8> key;
+    key.fill(-1);
+    const int n = element_nodes(e.type);
+    std::copy(e.node, e.node + n, key.begin());
+    std::sort(key.begin(), key.begin() + n);
+    const auto found = seen.emplace(key, e.label);
+    if (!found.second)
+      throw std::runtime_error("elements " + std::to_string(found.first->second) + " and " +
+                               std::to_string(e.label) + " have the same nodes" + hint);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** The numbers of what is left: place has for each the number that it gets, or -1. */
+static void keep_data(std::vector<MeshData> &data, bool at_nodes, const std::vector<int> &place)
+{
+  for (auto &d : data) {
+    if (d.at_nodes != at_nodes) continue;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < place.size(); i++)
+      for (int k = 0; k < d.width && place[i] >= 0; k++) d.values[n++] = d.values[i * d.width + k];
+    d.values.resize(n);
+  }
+}
+
 void Mesh::keep(int dim, const std::string &group)
 {
-  int tag = 0;
+  // physical groups of this dimension become sets
+
+  for (int i = 0; i < (int) elements.size() && sets.empty(); i++) {
+    const int tag = elements[i].physical;
+    if (tag == 0 || element_dimension(elements[i].type) != dim) continue;
+    std::map<int, std::size_t> known;
+    for (int k = i; k < (int) elements.size(); k++) {
+      const auto &e = elements[k];
+      if (e.physical == 0 || element_dimension(e.type) != dim) continue;
+      const auto [place, is_new] = known.emplace(e.physical, sets.size());
+      if (is_new) {
+        const auto name = groups.find({dim, e.physical});
+        sets.push_back({name == groups.end() ? std::to_string(e.physical) : name->second, {}});
+      }
+      sets[place->second].elements.push_back(k);
+    }
+  }
+
+  std::vector<char> wanted(elements.size(), group.empty());
   if (!group.empty()) {
+    int tag = 0;
     bool found = false;
-    for (const auto &g : groups)
-      if (g.first.first == dim && g.second == group) {
-        tag = g.first.second;
+    for (const auto &set : sets)
+      if (set.name == group) {
+        for (const int k : set.elements) wanted[k] = 1;
         found = true;
       }
     char *end;
@@ -330,14 +435,27 @@ void Mesh::keep(int dim, const std::string &group)
     if (!found && *end)
       throw std::runtime_error("the mesh has no physical group '" + group + "' of dimension " +
                                std::to_string(dim));
+    for (std::size_t k = 0; k < elements.size() && !found; k++)
+      wanted[k] = elements[k].physical == tag;
   }
+  std::vector<int> element_place(elements.size(), -1);
   std::size_t n = 0;
-  for (const auto &e : elements)
-    if (element_dimension(e.type) == dim && (group.empty() || e.physical == tag)) elements[n++] = e;
+  for (std::size_t k = 0; k < elements.size(); k++)
+    if (element_dimension(elements[k].type) == dim && wanted[k]) {
+      element_place[k] = (int) n;
+      elements[n++] = elements[k];
+    }
   elements.resize(n);
   if (n == 0)
     throw std::runtime_error("the mesh has no elements of dimension " + std::to_string(dim) +
                              (group.empty() ? "" : " in the physical group " + group));
+  for (auto &set : sets) {
+    std::vector<int> left;
+    for (const int k : set.elements)
+      if (element_place[k] >= 0) left.push_back(element_place[k]);
+    set.elements.swap(left);
+  }
+  keep_data(data, false, element_place);
 
   std::vector<int> place(nodes.size(), -1);
   for (const auto &e : elements)
@@ -351,6 +469,7 @@ void Mesh::keep(int dim, const std::string &group)
   nodes.resize(next);
   for (auto &e : elements)
     for (int k = 0; k < element_nodes(e.type); k++) e.node[k] = place[e.node[k]];
+  keep_data(data, true, place);
 }
 
 /* ---------------------------------------------------------------------- */

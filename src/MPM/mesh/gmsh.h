@@ -9,7 +9,8 @@
 #ifndef MPM_MESH_GMSH_H
 #define MPM_MESH_GMSH_H
 
-// Meshes of linear elements, as Gmsh writes them. Nothing here knows about LAMMPS.
+// Meshes of linear elements, and files of Gmsh with them (others: mesh/mesh_file.h). Nothing here knows
+// about LAMMPS.
 
 #include <array>
 #include <cstdint>
@@ -42,26 +43,46 @@ struct MeshElement {
   int node[8];      ///< places in Mesh::nodes
 };
 
+/** Elements that have a name together. */
+struct MeshSet {
+  std::string name;
+  std::vector<int> elements;    ///< places in Mesh::elements
+};
+
+/** Numbers that a file has for each node, or each element. */
+struct MeshData {
+  std::string name;
+  bool at_nodes;
+  int width;                     ///< numbers of each
+  std::vector<double> values;    ///< [node or element][width]
+};
+
 /** Nodes and elements of a mesh file. */
 struct Mesh {
   std::vector<std::array<double, 3>> nodes;
   std::vector<MeshElement> elements;
   std::map<std::pair<int, int>, std::string> groups;    ///< (dimension, tag) -> name
+  std::vector<MeshSet>
+      sets;    ///< of files whose elements can be in several; filled by keep() for others
+  std::vector<MeshData> data;    ///< of files that have any
 
   /** Keep only elements of a dimension (drop the surface of a solid, say) and, when not empty, of a
-   *  physical group (a name, or a tag), then only the nodes that these use. Throws
-   *  std::runtime_error when nothing is left. */
+   *  physical group (a name, or a tag) or set, then only the nodes that these use. Physical groups become
+   *  sets, with their tags as names if they have none. Throws std::runtime_error when nothing is left. */
   void keep(int dim, const std::string &group = "");
 
   /** Number the nodes of elements of negative size in the opposite sense (a body of elements of
    *  dimension 2 has its normal along +z). */
   void orient();
 
+  /** Throws std::runtime_error if two elements have the same nodes, which would be twice their mass. */
+  void check_repeated(const std::string &hint = "") const;
+
   /** Area or volume of an element, negative when its nodes are numbered in the wrong sense. */
   double size(const MeshElement &) const;
 };
 
-/** Read the ASCII formats 2.2 and 4.1 of Gmsh. Points and lines of the mesh are left out, as are
+/** Read the formats 2.2 and 4.1 of Gmsh, ASCII or binary of either order of bytes. Points and lines of the mesh are left out, as are
  *  sections that describe no mesh. Throws std::runtime_error that begins with name:line. */
 Mesh read_gmsh(std::istream &, const std::string &name);
 

@@ -9,48 +9,21 @@
 #include "mesh/surface_mesh.h"
 
 #include "math/sets.h"
+#include "mesh/surface_file.h"
+#include "mesh/vector3.h"
+#include "mesh/winding.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 #include <unordered_map>
 
 using namespace MPM_NS;
+using namespace MPM_NS::vector3;
 using Point = SurfaceMesh::Point;
-
-static Point operator-(const Point &a, const Point &b)
-{
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-static Point operator+(const Point &a, const Point &b)
-{
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-static Point operator*(double s, const Point &a)
-{
-  return {s * a[0], s * a[1], s * a[2]};
-}
-static double dot(const Point &a, const Point &b)
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-static Point cross(const Point &a, const Point &b)
-{
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/** Make a box larger so that x is in it. */
-static void include(const Point &x, Point &lo, Point &hi)
-{
-  for (int d = 0; d < 3; d++) {
-    lo[d] = std::min(lo[d], x[d]);
-    hi[d] = std::max(hi[d], x[d]);
-  }
-}
 
 static double square_of_distance(const Point &x, const Point &lo, const Point &hi)
 {
@@ -75,52 +48,17 @@ struct NumberedSets : Sets {
 };
 }    // namespace
 
-/** Corners of the triangles of an STL file, three in a row. */
-static std::vector<Point> read_stl(const std::string &bytes, const std::string &name)
-{
-  std::vector<Point> soup;
-  constexpr std::size_t HEAD = 84, EACH = 50;
-  if (bytes.size() >= HEAD) {
-    uint32_t n;
-    memcpy(&n, bytes.data() + 80, 4);
-    if (bytes.size() == HEAD + EACH * (std::size_t) n) {
-      for (std::size_t t = 0; t < n; t++)
-        for (int c = 0; c < 3; c++) {
-          float x[3];
-          memcpy(x, bytes.data() + HEAD + EACH * t + 12 * (c + 1), 12);
-          soup.push_back({x[0], x[1], x[2]});
-        }
-      return soup;
-    }
-  }
-  if (bytes.compare(0, 5, "solid") != 0)
-    throw std::runtime_error("File " + name +
-                             " is no STL file: it does not begin with 'solid', and "
-                             "its length is not that of a binary one");
-  std::istringstream in(bytes);
-  std::string word;
-  while (in >> word)
-    if (word == "vertex") {
-      Point x;
-      if (!(in >> x[0] >> x[1] >> x[2]))
-        throw std::runtime_error("File " + name + ": vertex " + std::to_string(soup.size() + 1) +
-                                 " has no three coordinates");
-      soup.push_back(x);
-    }
-  if (soup.size() % 3 != 0)
-    throw std::runtime_error("File " + name + ": the last triangle has no three corners");
-  return soup;
-}
-
 /* ---------------------------------------------------------------------- */
 
 SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, double scale,
-                         const Point &shift)
+                         const Point &shift, const SurfaceOptions &options)
 {
-  std::vector<Point> soup = read_stl(bytes, name);
-  if (soup.empty()) throw std::runtime_error("File " + name + " has no triangles");
+  std::vector<Point> soup = read_surface(bytes, name);
   for (auto &x : soup) {
-    x = scale * x + shift;
+    Point turned = {0.0, 0.0, 0.0};
+    for (int d = 0; d < 3; d++)
+      for (int e = 0; e < 3; e++) turned[d] += options.turn[d][e] * x[e];
+    x = scale * turned + shift;
     if (!std::isfinite(x[0] + x[1] + x[2]))
       throw std::runtime_error("File " + name + " has a corner that is not finite");
   }
@@ -132,21 +70,68 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
         "File " + name +
         " has no triangles but slivers: all have corners closer than 1e-6 of the "
         "distance between the farthest ones");
-  close(name);
+  if (options.leaky)
+    patch();
+  else
+    close(name);
   integrate();
   if (volume < 0.0) {    // turned inside out
     for (auto &t : triangles) std::swap(t.corner[1], t.corner[2]);
     integrate();
   }
   normals();
-  find_parts();
+  if (options.leaky) {
+    for (auto &t : triangles) t.part = 0;
+    nparts = 1;
+    find_winding(name);
+  } else
+    find_parts();
   tree.reserve(2 * triangles.size());
   build(0, (int) triangles.size());
-  around.resize(corners.size());
-  for (int i = 0; i < (int) triangles.size(); i++)
-    for (const int c : triangles[i].corner) around[c].push_back(i);
-  check_shells(name);
+  if (!options.leaky) {
+    around.resize(corners.size());
+    for (int i = 0; i < (int) triangles.size(); i++)
+      for (const int c : triangles[i].corner) around[c].push_back(i);
+    check_shells(name);
+  }
   make_coarse();
+}
+
+SurfaceMesh::~SurfaceMesh() = default;
+
+std::vector<std::array<Point, 3>> SurfaceMesh::soup() const
+{
+  std::vector<std::array<Point, 3>> all;
+  all.reserve(triangles.size());
+  for (const auto &t : triangles)
+    all.push_back({corners[t.corner[0]], corners[t.corner[1]], corners[t.corner[2]]});
+  return all;
+}
+
+/** As a surface without boundary, with which volume and winding numbers are those of a body. */
+void SurfaceMesh::patch()
+{
+  std::vector<std::array<int, 3>> numbers;
+  for (const auto &t : triangles) numbers.push_back({t.corner[0], t.corner[1], t.corner[2]});
+  holes = patch_surface(corners, numbers);
+  triangles.assign(numbers.size(), Triangle());
+  for (std::size_t i = 0; i < numbers.size(); i++)
+    std::copy(numbers[i].begin(), numbers[i].end(), triangles[i].corner);
+}
+
+void SurfaceMesh::find_winding(const std::string &name)
+{
+  double area = 0.0;
+  std::vector<std::array<int, 3>> numbers;
+  for (const auto &t : triangles) {
+    numbers.push_back({t.corner[0], t.corner[1], t.corner[2]});
+    const Point &a = corners[t.corner[0]];
+    area += 0.5 * norm(cross(corners[t.corner[1]] - a, corners[t.corner[2]] - a));
+  }
+  if (!(2.0 * volume > near * area))
+    throw std::runtime_error("The surface of file " + name +
+                             " has no volume inside of it, also with patches on its holes");
+  winding = std::make_unique<WindingNumber>(corners, numbers);
 }
 
 /** Corners at the same place become one; triangles without area go. */
@@ -209,7 +194,8 @@ void SurfaceMesh::close(const std::string &name)
   std::ostringstream text;
   text << "The surface of file " << name << " is not closed, or its triangles do not all look "
        << "outward: " << open << " of " << edges.size() << " edges, one of them at " << example[0]
-       << " " << example[1] << " " << example[2] << "; repair the mesh";
+       << " " << example[1] << " " << example[2]
+       << "; repair the mesh, or fill it as it is (surface leaky)";
   throw std::runtime_error(text.str());
 }
 
@@ -338,7 +324,8 @@ void SurfaceMesh::check_shells(const std::string &name) const
                              (shell.volume > 0.0
                                   ? ", that is inside of another one and looks outward"
                                   : ", that looks inward and is not the wall of a cavity") +
-                             ": turn its triangles, or remove it");
+                             ": turn its triangles, remove it, or fill what winds around places "
+                             "(surface leaky)");
   }
 }
 
@@ -386,9 +373,10 @@ bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::s
         inside = inside || d < -near;
         outside = outside || d > near;
         if (inside && outside)
-          throw std::runtime_error("The surface of file " + name +
-                                   " has closed parts that reach into each other, near " +
-                                   describe(x) + ": unite them to one where the mesh is made");
+          throw std::runtime_error(
+              "The surface of file " + name +
+              " has closed parts that reach into each other, near " + describe(x) +
+              ": unite them to one where the mesh is made, or fill both (surface leaky)");
         if (t == 0.0) at_a = d;
         if (t == length) at_b = d;
         if (t == length) break;
@@ -676,7 +664,16 @@ void SurfaceMesh::make_coarse()
                          lo[2] + (k + 0.5) * cell};
         // the center before is a cell away
         const double limit = k ? 1.001 * (std::abs((double) coarse[n - 1]) + cell) : FAR_AWAY;
-        coarse[n++] = (float) distance_to(c, limit * limit, closest, no_part);
+        double d = distance_to(c, limit * limit, closest, no_part);
+        // the surface is farther from the center before than that is from this one
+        const bool same = k && std::fabs((double) coarse[n - 1]) > 1.001 * cell;
+        if (winding && same) d = std::copysign(d, (double) coarse[n - 1]);
+        if (winding && !same) {
+          const double turns = (*winding)(c);
+          overlaps = overlaps || turns > 1.5 || turns < -0.5;
+          d = turns > 0.5 ? -std::fabs(d) : std::fabs(d);
+        }
+        coarse[n++] = (float) d;
       }
 }
 
@@ -720,6 +717,7 @@ bool SurfaceMesh::inside(const Point &x) const
 {
   const double known = bound(x);
   if (known != 0.0) return known < 0.0;
+  if (winding) return (*winding)(x) > 0.5;
   Point closest;
   return distance(x, closest) <= 0.0;
 }

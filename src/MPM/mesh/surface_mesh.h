@@ -11,11 +11,26 @@
 
 // Closed surfaces of triangles: signed distance, volume, inertia. Nothing here knows about LAMMPS.
 
+#include "mesh/surface_holes.h"
+
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace MPM_NS {
+
+class WindingNumber;
+
+/** How a surface is read from its file. */
+struct SurfaceOptions {
+  /** Take surfaces with holes, with triangles that look the wrong way, and of parts that reach into each other: see
+   *  patch_surface(). What is inside is where the winding number is above one half. Only inside() and what the
+   *  surface is as a whole can be asked for then. */
+  bool leaky = false;
+  double turn[3][3] = {
+      {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};    ///< rotation of the positions in the file
+};
 
 /** Surface of a body, made of triangles.
  *
@@ -29,12 +44,14 @@ class SurfaceMesh {
  public:
   using Point = std::array<double, 3>;
 
-  /** From the bytes of an STL file, text or binary, positions times scale plus shift. Corners closer
+  /** From the bytes of a file, see read_surface(), positions turned, times scale, plus shift. Corners closer
    *  than 1e-6 of the size of the body become one. Throws std::runtime_error, with name in the
-   *  message, for what is no STL file, when the surface is not closed, and when its closed parts have
+   *  message, for what is no such file, when the surface is not closed, and when its closed parts have
    *  no volume, reach into each other, or look the wrong way: inward, but for walls of cavities. A
    *  surface that has all of this inside out is turned. */
-  SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift);
+  SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift,
+              const SurfaceOptions &options = SurfaceOptions());
+  ~SurfaceMesh();
 
   /** Distance of x from the surface, negative inside; closest: the point there. */
   double distance(const Point &x, Point &closest) const;
@@ -74,6 +91,11 @@ class SurfaceMesh {
   double inertia[6];    ///< about the center, of unit density: xx yy zz xy xz yz
   int nparts;           ///< parts between sharp edges: with normals more than 45 degrees apart
   std::size_t size() const { return triangles.size(); }
+  std::vector<std::array<Point, 3>>
+  soup() const;          ///< corners of all triangles, patches among them
+  SurfaceHoles holes;    ///< of a leaky surface
+  bool overlaps =
+      false;    ///< winds twice around some places, or backward: its volume counts them so
 
  private:
   struct Triangle {
@@ -99,13 +121,16 @@ class SurfaceMesh {
   std::vector<int> shell_of;    // the closed part that a part between sharp edges belongs to
   std::vector<std::vector<int>> around;    // triangles at each corner
   std::vector<Node> tree;
-  std::vector<float> coarse;    // distances at the centers of cells
+  std::unique_ptr<WindingNumber> winding;    // of a leaky surface, else null
+  std::vector<float> coarse;                 // distances at the centers of cells
   int ncells[3];
   double cell;
   double near;    // points closer than this are one
 
   void weld(const std::vector<Point> &soup, const std::string &name);
   void close(const std::string &name);
+  void patch();
+  void find_winding(const std::string &name);
   void integrate();
   void normals();
   void find_parts();

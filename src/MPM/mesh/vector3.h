@@ -1,0 +1,58 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MESH_VECTOR3_H
+#define MPM_MESH_VECTOR3_H
+
+// Arithmetic with places in space, for the geometry of surfaces and meshes.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace MPM_NS {
+namespace vector3 {
+
+  using Vector = std::array<double, 3>;
+
+  inline Vector operator-(const Vector &a, const Vector &b)
+  {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  }
+  inline Vector operator+(const Vector &a, const Vector &b)
+  {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+  }
+  inline Vector operator*(double s, const Vector &a)
+  {
+    return {s * a[0], s * a[1], s * a[2]};
+  }
+  inline double dot(const Vector &a, const Vector &b)
+  {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  inline Vector cross(const Vector &a, const Vector &b)
+  {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  }
+  inline double norm(const Vector &a)
+  {
+    return std::sqrt(dot(a, a));
+  }
+  /** Make a box larger so that x is in it. */
+  inline void include(const Vector &x, Vector &lo, Vector &hi)
+  {
+    for (int d = 0; d < 3; d++) {
+      lo[d] = std::min(lo[d], x[d]);
+      hi[d] = std::max(hi[d], x[d]);
+    }
+  }
+
+}    // namespace vector3
+}    // namespace MPM_NS
+#endif

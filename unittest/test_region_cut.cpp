@@ -1,0 +1,224 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: unit
+// mpi: 1 4
+
+// create_points ... cut yes: points at the surface of a region have the part of their cell that is inside.
+
+#include "mesh/stl_testing.h"
+
+#include "math_eigen.h"
+
+using namespace MPM_TEST;
+
+/** Sums over all points, of their volumes. */
+struct Sum {
+  double volume = 0.0, center[3] = {0.0, 0.0, 0.0}, second[3][3] = {{0.0}}, least = 1.0e300;
+  int points = 0;
+
+  explicit Sum(Scene &scene)
+  {
+    auto *atom = scene.lmp->atom;
+    for (int pass = 0; pass < 2; pass++) {
+      double mine[10] = {0.0}, all[10];
+      for (int i = 0; i < atom->nlocal; i++) {
+        const double v = atom->vfrac[i];
+        least = std::min(least, v);
+        mine[0] += v;
+        for (int d = 0; d < 3; d++) {
+          mine[1 + d] += v * atom->x[i][d];
+          for (int e = d; e < 3; e++)
+            mine[4 + d + e + (d > 0)] +=
+                v * (atom->x[i][d] - center[d]) * (atom->x[i][e] - center[e]);
+        }
+      }
+      MPI_Allreduce(mine, all, 10, MPI_DOUBLE, MPI_SUM, scene.lmp->world);
+      volume = all[0];
+      if (pass == 0)
+        for (int d = 0; d < 3; d++) center[d] = all[1 + d] / volume;
+      for (int d = 0; d < 3; d++)
+        for (int e = d; e < 3; e++) second[d][e] = second[e][d] = all[4 + d + e + (d > 0)];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, scene.lmp->world);
+    points = (int) scene.lmp->atom->natoms;
+  }
+
+  /** Principal moments of inertia of unit density, each point being a cube of this size. */
+  std::array<double, 3> moments(double size) const
+  {
+    double I[3][3], values[3], vectors[3][3];
+    const double trace = second[0][0] + second[1][1] + second[2][2];
+    for (int d = 0; d < 3; d++)
+      for (int e = 0; e < 3; e++)
+        I[d][e] = (d == e ? trace + volume * size * size / 6.0 : 0.0) - second[d][e];
+    MathEigen::jacobi3(I, values, vectors, 1);
+    return {values[0], values[1], values[2]};
+  }
+};
+
+static const std::string box_of_3d = space("lj", "f f f", "-4 4 -4 4 -4 4");
+static const std::string box_of_2d = plane("lj", "f f", "-4 4 -4 4");
+
+static std::string cut(double spacing, const std::string &more = "cut yes")
+{
+  return strprintf("create_points 1 region body spacing %.17g %s\n", spacing, more.c_str());
+}
+
+// Ten cells across, two points to a cell, where no face is at a face of cells.
+TEST(RegionCut, SolidsHaveTheirVolumeAndInertia)
+{
+  for (const auto &solid : solids()) {
+    const ScratchFile file("solid.stl", text_of(solid.soup));
+    const double width = std::string(solid.name) == "L" ? 3.0 : solid.volume < 1.0 ? 1.0 : 2.0;
+    const double size = width / 20.0;
+    Scene run(box_of_3d + "region body mpm/mesh " + file.name + " 1.0 0.037 0.02 -0.011\n" +
+              cut(size));
+    const Sum sum(run);
+    EXPECT_NEAR(sum.volume, solid.volume, 1.0e-8 * solid.volume) << solid.name;    // nine digits
+    const auto moments = sum.moments(size);
+    for (int d = 0; d < 3; d++)
+      EXPECT_NEAR(moments[d], solid.moment[d], 1.0e-3 * solid.moment[d]) << solid.name;
+    EXPECT_GE(sum.least, 0.1 * pow(size, 3) * (1.0 - 1.0e-9)) << solid.name;
+  }
+}
+
+TEST(RegionCut, OutsideOfASurface)
+{
+  const ScratchFile file("ball.stl", text_of(ball(1.0, 3)));
+  const std::string mesh = "region ball mpm/mesh " + file.name + " 1.0 0.037 0.02 -0.011",
+                    block = "region block block -1.5 1.5 -1.5 1.5 -1.5 1.5\n";
+  Scene run(space("lj", "f f f", "-1.5 1.5 -1.5 1.5 -1.5 1.5") + mesh + " side out\n" +
+            "create_points 1 region ball spacing 0.1 cut yes\n");
+  EXPECT_NEAR(Sum(run).volume, 27.0 - 4.1527408171, 1.0e-7);
+  // in another region only what is inside is known
+  Scene rest(box_of_3d + block + mesh + " side out\nregion body intersect 2 block ball\n" +
+             cut(0.1));
+  EXPECT_NEAR(Sum(rest).volume, 27.0 - 4.1527408171, 1.0e-3 * 22.8);
+}
+
+// Regions of LAMMPS, of which only is known what is inside.
+TEST(RegionCut, RegionsHaveTheirVolume)
+{
+  const struct {
+    const char *region;
+    int dim;
+    double volume, width;
+  } cases[] = {{"sphere 0.037 0.02 0.01 1", 3, 4.0 / 3.0 * PI, 2.0},
+               {"cylinder z 0.037 0.02 1 -0.513 0.777", 3, 1.29 * PI, 2.0},
+               {"block -0.513 0.487 -0.511 0.489 -0.523 0.477", 3, 1.0, 1.0},
+               {"prism -0.5 0.5 -0.5 0.5 -0.5 0.5 0.3 0.2 0.1", 3, 1.0, 1.0},
+               {"cone z 0 0.03 1 0.2 -1 0.7", 3, PI * 1.7 / 3.0 * 1.24, 2.0},
+               {"sphere 0.037 0.02 0 1", 2, PI, 2.0},
+               {"sphere 0.137 -0.32 0 0.3", 2, 0.09 * PI, 0.6},
+               {"block -0.513 0.487 -0.511 0.489 -1 1", 2, 1.0, 1.0}};
+  for (const auto &c : cases) {
+    const double size = c.width / 20.0 * 1.0137;
+    Scene run((c.dim == 3 ? box_of_3d : box_of_2d) + "region body " + c.region + "\n" + cut(size));
+    const Sum sum(run);
+    EXPECT_NEAR(measured(c.region, sum.volume / c.volume), 1.0, 1.0e-3) << c.region;
+    EXPECT_GE(sum.least, 0.1 * pow(size, c.dim) * (1.0 - 1.0e-9)) << c.region;
+  }
+}
+
+TEST(RegionCut, CentersAreThoseOfTheRegion)
+{
+  Scene run(box_of_3d + "region body sphere 0.037 0.02 0.01 1\n" + cut(0.1));
+  const Sum sum(run);
+  const double center[3] = {0.037, 0.02, 0.01};
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(sum.center[d], center[d], 1.0e-3);
+  const auto moments = sum.moments(0.1);
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(moments[d], 8.0 / 15.0 * PI, 1.0e-3 * 8.0 / 15.0 * PI);
+}
+
+// A row of cells that ends somewhere in the last one: no point has less than a tenth of a cell, and no volume is lost.
+TEST(RegionCut, LightPartsGoToANeighbor)
+{
+  const struct {
+    double end;
+    int points;
+    double last;    // volume of the outermost points, in cells
+  } cases[] = {
+      {1.0, 10, 1.0}, {1.005, 10, 1.05}, {1.02, 11, 0.2}, {1.05, 11, 0.5}, {1.095, 11, 0.95}};
+  for (const auto &c : cases) {
+    Scene run(plane("lj", "f f", "0 4 0 4") +
+              strprintf("region body block 0 %g 0 0.1 -1 1\n", c.end) + cut(0.1));
+    const auto points = run.gather();
+    ASSERT_EQ((int) points.size(), c.points) << c.end;
+    EXPECT_NEAR(Sum(run).volume, 0.1 * c.end, 0.1 * 0.1 * 0.002) << c.end;
+    EXPECT_NEAR(Sum(run).center[0], 0.5 * c.end, 1.0e-3) << c.end;
+    EXPECT_NEAR(points.back().vol, 0.01 * c.last, 0.01 * 0.02) << c.end;    // IDs go along x
+  }
+}
+
+// Faces that are those of cells: the same as without, to the last bit.
+TEST(RegionCut, WholeCellsAreTheSame)
+{
+  const std::string scene =
+      space("lj", "f f f", "0 4 0 4 0 4") + "region body block 1 2.2 0.4 1.8 2 4\n";
+  Scene with(scene + cut(0.2)), without(scene + cut(0.2, "cut no"));
+  EXPECT_TRUE(identical(with.gather(), without.gather()));
+}
+
+// An inclusion and what is around it share cells, and have all of the volume together.
+TEST(RegionCut, TwoRegionsShareCells)
+{
+  Scene run(plane("lj", "f f", "0 2 0 2", 2) +
+            "region ball sphere 1.03 0.98 0 0.61\nregion rest sphere 1.03 0.98 0 0.61 side out\n"
+            "create_points 1 region ball spacing 0.1 cut yes\n"
+            "create_points 2 region rest spacing 0.1 cut yes\n");
+  EXPECT_NEAR(Sum(run).volume, 4.0, 1.0e-3 * 4.0);
+  EXPECT_THAT(run.error("create_points 2 region rest spacing 0.1 cut yes"), HasSubstr("overlap"));
+}
+
+TEST(RegionCut, AroundAnAxis)
+{
+  Scene run(plane("lj", "f f", "0 2 -2 2") + "fix g all mpm 0.2 axisymmetric yes\n" +
+            "region body sphere 0 0.03 0 1\ncreate_points 1 region body ppc 2 cut yes\n");
+  EXPECT_NEAR(Sum(run).volume, 4.0 / 3.0 * PI, 1.0e-3 * 4.0 / 3.0 * PI);
+}
+
+TEST(RegionCut, AnyNumberOfRanks)
+{
+  const ScratchFile file("torus.stl", text_of(torus(1.0, 0.4, 24)));
+  for (const std::string region : {"sphere 0.037 0.02 0.01 1", "mpm/mesh"}) {
+    const std::string where =
+        region == "mpm/mesh" ? region + " " + file.name + " 1.0 0.037 0.02 0.01" : region;
+    OnRanks both(box_of_3d, "region body " + where + "\n" + cut(0.13) + "run 0\n");
+    EXPECT_TRUE(identical(both.serial.gather(), both.parallel.gather()));
+  }
+}
+
+// A ball hits a wall: no step is shorter than with whole points, it comes back as fast, and energy does not grow.
+TEST(RegionCut, LightPointsAreStable)
+{
+  double speed[2], step[2];
+  for (const bool on : {false, true}) {
+    Scene run(plane("lj", "f f", "-2 2 0 4") +
+              "region body sphere 0.037 1.3 0 1\nfix grid all mpm 0.1\n" +
+              (on ? "create_points 1 region body ppc 2 cut yes\n"
+                  : "create_points 1 region body ppc 2\n") +
+              "fix m all mpm/material density 1.0 neohookean 100.0 0.3\n"
+              "fix w all mpm/boundary ylo separate\nvelocity all set 0 -1 0\n"
+              "fix dt all mpm/dt 0.5 until 2.5\ncompute e all mpm/energy\n"
+              "thermo_style custom step c_e[1] c_e[2]\nthermo_modify norm no\nrun 0\n");
+    const double before = run.evaluate("c_e[1]+c_e[2]");
+    step[on] = run.evaluate("dt");
+    run.commands("run 5000\n");
+    speed[on] = run.evaluate("vcm(all,y)");
+    EXPECT_LE(run.evaluate("c_e[1]+c_e[2]"), before);
+  }
+  EXPECT_NEAR(step[true], step[false], 1.0e-6 * step[false]);
+  EXPECT_NEAR(measured("speed with cut", speed[true]), measured("without", speed[false]),
+              0.02 * speed[false]);
+}
+
+TEST(RegionCut, RefusesMistakes)
+{
+  const std::string region = "region body sphere 0 0 0 1\n",
+                    points = "create_points 1 region body spacing 0.1 ";
+  expect_refused(box_of_3d + region,
+                 {{points + "cut maybe", "cut"},
+                  {points + "cut yes jitter 0.2 123", "cut"},
+                  {"create_points 1 box spacing 0.1 cut yes", "use style region"}});
+}
