@@ -17,6 +17,7 @@ CommandStyle(create_points,CreatePoints);
 
 #include "command.h"
 #include "declare/option.h"
+#include "mpm_thin_body.h"
 
 #include <array>
 #include <string>
@@ -49,10 +50,11 @@ struct CreatePointsOptions {
 struct CreatePointsMeshOptions {
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
   std::string part;    ///< a physical group of the mesh, empty: all of it
+  MPMThinBody thin;    ///< surfaces or lines, for nodes
   double diameter = 0.0;
   std::string group_id;
 
-  MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius);
+  MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius, bool nodes);
 };
 
 /** Fills a region with material points on a regular lattice of sites, or puts them at the nodes of a
@@ -101,7 +103,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void parse(int, char **);
   void parse_mesh(int, char **);
   void find_group(const MPM_NS::Options &, const std::string &name);
-  void find_nodes(const MPM_NS::Mesh &, const char *file);
+  void find_nodes(const MPM_NS::Mesh &, const MPMThinBody &, const char *file);
   void find_elements(const MPM_NS::Mesh &, const char *file);
   void check_periodic(const MPM_NS::Mesh &, const char *file) const;
   void wrap_sites(const char *file, const char *what);

@@ -22,15 +22,25 @@
 namespace MPM_NS {
 
 /** Linear elements; their nodes are in Gmsh's order, which is that of VTK. */
-enum class ElementType : int { TRIANGLE, QUAD, TETRAHEDRON, HEXAHEDRON };
+enum class ElementType : int { TRIANGLE, QUAD, TETRAHEDRON, HEXAHEDRON, LINE };
 
-/** Number of nodes of an element, and its dimension (2 or 3). */
+/** Number of nodes of an element, and its dimension (1, 2 or 3). */
 constexpr int element_nodes(ElementType t)
 {
-  return t == ElementType::TRIANGLE ? 3 : t == ElementType::HEXAHEDRON ? 8 : 4;
+  switch (t) {
+    case ElementType::LINE:
+      return 2;
+    case ElementType::TRIANGLE:
+      return 3;
+    case ElementType::HEXAHEDRON:
+      return 8;
+    default:
+      return 4;
+  }
 }
 constexpr int element_dimension(ElementType t)
 {
+  if (t == ElementType::LINE) return 1;
   return t == ElementType::TRIANGLE || t == ElementType::QUAD ? 2 : 3;
 }
 
@@ -40,6 +50,12 @@ struct MeshElement {
   int physical;     ///< tag of its physical group, 0 for none (the first one of several)
   int64_t label;    ///< its number in the file
   int node[8];      ///< places in Mesh::nodes
+};
+
+/** What the elements of a surface (in the plane: lines) are together. */
+struct SurfaceKind {
+  bool closed;      ///< does each rim belong to two elements?
+  bool oriented;    ///< do all elements have their normals on the same side?
 };
 
 /** Nodes and elements of a mesh file. */
@@ -57,11 +73,15 @@ struct Mesh {
    *  dimension 2 has its normal along +z). */
   void orient();
 
-  /** Area or volume of an element, negative when its nodes are numbered in the wrong sense. */
+  /** Number the nodes of elements of a surface such that those of neighbors go around in the same sense. */
+  SurfaceKind orient_surface();
+
+  /** Area or volume of an element of the dimension of the mesh, negative when its nodes are numbered in the wrong
+   *  sense. */
   double size(const MeshElement &) const;
 };
 
-/** Read the ASCII formats 2.2 and 4.1 of Gmsh. Points and lines of the mesh are left out, as are
+/** Read the ASCII formats 2.2 and 4.1 of Gmsh. Points of the mesh are left out, as are
  *  sections that describe no mesh. Throws std::runtime_error that begins with name:line. */
 Mesh read_gmsh(std::istream &, const std::string &name);
 
