@@ -716,7 +716,8 @@ void CreatePoints::make_point(Site site)
    its domain with shape cpdi2 of fix mpm
 ------------------------------------------------------------------------- */
 
-Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bool has_radius)
+Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bool has_radius,
+                                         bool nodes)
 {
   using namespace option;
   Options o(command);
@@ -736,14 +737,17 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
       .then([this] {
         data.push_back({data_name, data_to});
       });
+  if (nodes) thin.declare(o, dim);
   o.add("diameter",
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
   o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
       .standard("all");
-  o.refuse([=] {
-    return OptionRules{{!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
+  o.refuse([this, has_radius] {
+    auto rules = thin.rules();
+    rules.push_back({!has_radius, "diameter", "needs atom_style hybrid sphere mpm"});
+    return rules;
   });
   return o;
 }
@@ -763,12 +767,12 @@ void CreatePoints::parse_mesh(int narg, char **arg)
 
   const int dim = domain->dimension;
   CreatePointsMeshOptions given;
-  Options options = given.declare(what, dim, atom->radius_flag);
+  Options options = given.declare(what, dim, atom->radius_flag, !in_elements);
   read_options(lmp, options, narg, arg, 3);
   diameter = given.diameter;
   find_group(options, given.group_id);
 
-  Mesh mesh = read_body(lmp, arg[2], given.part, "Create_points", 2);
+  Mesh mesh = read_body(lmp, arg[2], given.part, given.thin.dimension(dim), "Create_points", 2);
   for (auto &x : mesh.nodes)
     for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
 
@@ -778,7 +782,7 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   if (in_elements)
     find_elements(mesh, arg[2]);
   else
-    find_nodes(mesh, arg[2]);
+    find_nodes(mesh, given.thin, arg[2]);
   volume /= mesh_sites.size();
 
   check_periodic(mesh, arg[2]);
@@ -845,7 +849,7 @@ void CreatePoints::wrap_sites(const char *file, const char *what)
 
 static constexpr char bad_element[] = "Create_points: element {} of {} has no volume or is twisted";
 
-void CreatePoints::find_nodes(const Mesh &mesh, const char *file)
+void CreatePoints::find_nodes(const Mesh &mesh, const MPMThinBody &thin, const char *file)
 {
   for (const auto &x : mesh.nodes) mesh_sites.push_back({{x[0], x[1], x[2]}, 0.0, 0});
   for (const auto &e : mesh.elements) {
@@ -853,7 +857,8 @@ void CreatePoints::find_nodes(const Mesh &mesh, const char *file)
     double x[MAX_ELEMENT_NODES][3], g[MAX_ELEMENT_NODES][3];
     for (int k = 0; k < rule.nnode; k++) MathExtra::copy3(mesh.nodes[e.node[k]].data(), x[k]);
     for (int q = 0; q < rule.npoint; q++) {
-      const double w = rule.gradients(q, x, g);
+      const double w = thin ? thin.across() * rule.gradients_along(q, x, g)
+                            : rule.gradients(q, x, g);
       if (!(w > 0.0)) error->all(FLERR, 2, bad_element, e.label, file);
       volume += w;
       for (int k = 0; k < rule.nnode; k++) mesh_sites[e.node[k]].volume += w * rule.N[q][k];

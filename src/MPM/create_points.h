@@ -17,6 +17,7 @@ CommandStyle(create_points,CreatePoints);
 
 #include "command.h"
 #include "declare/option.h"
+#include "mpm_thin_body.h"
 
 #include <array>
 #include <memory>
@@ -58,11 +59,12 @@ struct CreatePointsMeshOptions {
        by_group = false;    ///< the group of a point is its type; joins a group of this name
   std::string data_name, data_to;    ///< as read last
   std::vector<std::array<std::string, 2>>
-      data;    ///< names in the file, and what they are for points
+      data;            ///< names in the file, and what they are for points
+  MPMThinBody thin;    ///< surfaces or lines, for nodes
   double diameter = 0.0;
   std::string group_id;
 
-  MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius);
+  MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius, bool nodes);
 };
 
 /** Fills a region or the bodies of an image with material points on a regular lattice of sites, or puts them at the
@@ -129,7 +131,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void parse_image(int, char **);
   void place_sites(const MPM_NS::Options &);
   void find_group(const MPM_NS::Options &, const std::string &name);
-  void find_nodes(const MPM_NS::Mesh &, const char *file);
+  void find_nodes(const MPM_NS::Mesh &, const MPMThinBody &, const char *file);
   void find_elements(const MPM_NS::Mesh &, const char *file);
   void check_periodic(const MPM_NS::Mesh &, const char *file) const;
   void wrap_sites(const char *file, const char *what);

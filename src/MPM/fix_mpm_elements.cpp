@@ -17,6 +17,7 @@
 #include "group.h"
 #include "material/batch.h"
 #include "material/material.h"
+#include "material/plane_stress.h"
 #include "math/matrix.h"
 #include "math_extra.h"
 #include "mesh/element.h"
@@ -53,7 +54,15 @@ struct FixMPMElements::Work {
   double J[BATCH];                          // without F-bar
   Batch batch = {};                         // must start from zero, see material/batch.h
   std::vector<double> history, mean;        // of the batch, of an element
+  std::vector<PlaneStress::Point> thin;     // [BATCH], of surfaces and lines
 };
+
+/** Those of three dimensions read the same in two. */
+static const BatchKernels &kernels()
+{
+  static const BatchKernels &all = *BatchKernels::select(3);
+  return all;
+}
 
 static const ElementRule &rule_of(const double *row)
 {
@@ -64,7 +73,7 @@ static const ElementRule &rule_of(const double *row)
    fix ID group mpm/elements FILE keyword value ...
 ------------------------------------------------------------------------- */
 
-Options MPMElementsOptions::declare()
+Options MPMElementsOptions::declare(int dim)
 {
   using namespace option;
   Options o("fix mpm/elements");
@@ -74,6 +83,16 @@ Options MPMElementsOptions::declare()
       .standard("all elements of the dimension of the simulation");
   o.add("locking", {word(fbar, {{"none", false}, {"fbar", true}})},
         "what is averaged over an element against volumetric locking");
+  thin.declare(o, dim);
+  o.add("compression", {word(compression, {{"yes", true}, {"no", false}})},
+        "do surfaces and lines resist compression, or wrinkle and sag?");
+  o.refuse([this] {
+    auto rules = thin.rules();
+    rules.push_back({!compression && !thin, "compression no",
+                     "is for surfaces and lines: use thickness or section"});
+    rules.push_back({fbar && thin, "locking fbar", "is for solids, not for surfaces and lines"});
+    return rules;
+  });
   return o;
 }
 
@@ -81,8 +100,9 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
     FixMPMState(lmp, narg, arg), dim(domain->dimension), points(MPMPoints::get(atom)),
     work(new Work)
 {
-  Options options = declare();
+  Options options = declare(dim);
   read_options(lmp, options, narg, arg, 3);
+  along = thin.dimension(dim);
   if (!points)
     error->all(FLERR,
                "Fix mpm/elements requires material points: use atom_style mpm, or hybrid with mpm");
@@ -94,7 +114,8 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   extscalar = 1;
 
   int maxpoint = 0;
-  const Mesh mesh = read_body(lmp, file, part, "Fix mpm/elements", 3);
+  Mesh mesh = read_body(lmp, file, part, along, "Fix mpm/elements", 3);
+  if (along == dim - 1) kind = mesh.orient_surface();
   for (const auto &e : mesh.elements) {
     const auto &rule = ElementRule::of(e.type);
     maxnode = std::max(maxnode, rule.nnode);
@@ -116,10 +137,12 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   material = find_material();
   variables = names_of_history();
   nhistory = material->nhistory;
-  stride = 2 + maxnode * (1 + dim) + maxpoint * (15 + nhistory);
+  stride = 2 + maxnode * (1 + dim) + maxpoint * point_size();
   width = 18 + nhistory;
   comm_reverse = width;
   work->history.resize((std::size_t) std::max(1, nhistory) * BATCH);
+  if (thin) work->thin.resize(BATCH);
+  define_plane_stress();
   state.declare(first, "mpm/elements:first");
   state.declare(count, "mpm/elements:count");
   make_elements(mesh);
@@ -155,6 +178,26 @@ FixMPMMaterial *FixMPMElements::find_material() const
                "fix mpm/elements and a mesh for each",
                id, group->names[igroup]);
   return dynamic_cast<FixMPMMaterial *>(all[index]);
+}
+
+void FixMPMElements::define_plane_stress()
+{
+  if (!thin) return;
+  try {
+    plane_stress.reset(new PlaneStress(*material->material, dim, along, compression));
+  } catch (const std::runtime_error &e) {
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/elements {}: the material of fix mpm/material {} cannot be that of {}: {}",
+               id, material->id,
+               compression ? "surfaces or lines" : "what does not resist compression", e.what());
+  }
+}
+
+/** Of functions in the reference configuration; returns the volume of the point. */
+double FixMPMElements::gradients(const ElementRule &rule, int q, const double (*x)[3],
+                                 double (*g)[3]) const
+{
+  return thin ? thin.across() * rule.gradients_along(q, x, g) : rule.gradients(q, x, g);
 }
 
 std::string FixMPMElements::names_of_history() const
@@ -240,7 +283,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     double frequency = 0.0, size = 0.0;
     for (int q = 0; q < rule.npoint; q++) {
       double g[MAX_ELEMENT_NODES][3];
-      const double w = rule.gradients(q, X, g);
+      const double w = gradients(rule, q, X, g);
       if (!(w > 0.0))
         error->one(FLERR, "Fix mpm/elements {}: element {} of the mesh is inverted", id,
                    element.label);
@@ -252,6 +295,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
         for (int m = 0; m < rule.nnode; m++) at[d] += rule.N[q][m] * X[m][d];
       }
       s[0] = s[4] = s[8] = 1.0;
+      if (thin) find_motion(X, g, rule.nnode, motion_of(s));
       if (nhistory) material->material->initialize(at, s + 15);
     }
     volume[0] += size;
@@ -287,6 +331,8 @@ void FixMPMElements::init()
 {
   check_nodes();
   check_fields();
+  pressure = nullptr;
+  width = 18 + nhistory;
 
   // the fix mpm/material of the definition may have been removed or defined again
 
@@ -297,6 +343,8 @@ void FixMPMElements::init()
                "fix mpm/material {} of its points has{}: elements cannot go on with such a law, "
                "define this fix after their material",
                id, variables, material->id, names_of_history());
+
+  define_plane_stress();
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
 
@@ -434,6 +482,8 @@ void FixMPMElements::compute(bool starting)
     material_update(w, starting);
     add_sums(w);
   });
+  if (pressure) add_pressure(starting);
+  comm_reverse = width;
   comm->reverse_comm(this);
 
   force_on.assign(3 * (std::size_t) atom->nmax, 0.0);
@@ -444,8 +494,16 @@ void FixMPMElements::compute(bool starting)
     for (int d = 0; d < dim; d++) {
       force_on[3 * (std::size_t) i + d] = s[d];
       f[i][d] += s[d];
+      if (!pressure) continue;
+      f[i][d] += s[width - 3 + d];
+      if (kind.closed) force_on[3 * (std::size_t) i + d] += s[width - 3 + d];
     }
     for (int c = 0; c < 9; c++) points->F[i][c] = inverse * s[3 + c];
+    if (thin) {
+      for (int c = 0; c < 9; c++) points->F[i][c] = 0.0;
+      const double stretch = dim == 2 ? sqrt(inverse * s[3]) : cbrt(inverse * s[3]);
+      for (int d = 0; d < 3; d++) points->F[i][4 * d] = d < dim ? stretch : 1.0;
+    }
     for (int c = 0; c < 6; c++) points->tau[i][c] = inverse * s[12 + c];
     for (int k = 0; k < nhistory; k++) material->history[i][k] = inverse * s[18 + k];
   }
@@ -501,8 +559,13 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     const int p = w.n + q;
     double g[MAX_ELEMENT_NODES][3];
     w.state[p] = state_of(r, q);
-    w.volume[p] = rule.gradients(q, X, g);
+    w.volume[p] = gradients(rule, q, X, g);
     double *const f = F[q];
+    if (thin && moved) {
+      load_thin(w.thin[p], x, g, rule.nnode, w.state[p]);
+      memcpy(w.g[p], g, sizeof(g));
+      continue;
+    }
     if (moved) {
       for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
@@ -534,6 +597,13 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     const int p = w.n + q;
     double *const f = F[q];
     const double *const s = w.state[p];
+    if (thin && moved) {    // find_stretches() goes on
+      const double inv = 1.0 / MPMPoints::det(s);
+      for (int c = 0; c < 6; c++) b.stress[c][p] = inv * s[9 + c];
+      b.vol0[p] = w.volume[p];
+      for (int k = 0; k < nhistory; k++) w.history[k * BATCH + p] = s[15 + k];
+      continue;
+    }
     b.J[p] = w.J[p];
     if (fbar && moved && rule.npoint > 1) {
       const double J = mean / size, scale = dim == 2 ? sqrt(J / w.J[p]) : cbrt(J / w.J[p]);
@@ -557,6 +627,40 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
   w.n += rule.npoint;
 }
 
+/** The motion along a surface or a line. */
+void FixMPMElements::load_thin(PlaneStress::Point &point, const double (*x)[3],
+                               const double (*g)[3], int nnode, const double *state) const
+{
+  plane_stress->make_frame(g[1], g[along], point.frame);
+  find_motion(x, g, nnode, point.along);
+  point.old = state;
+}
+
+/** sum_k x_k grad N_k. */
+void FixMPMElements::find_motion(const double (*x)[3], const double (*g)[3], int nnode,
+                                 double *to) const
+{
+  std::fill_n(to, 9, 0.0);
+  for (int m = 0; m < nnode; m++)
+    for (int a = 0; a < dim; a++)
+      for (int b = 0; b < dim; b++) to[3 * a + b] += x[m][a] * g[m][b];
+}
+
+/** Stress and deformation gradient of surfaces and lines. */
+void FixMPMElements::find_stretches(Work &w)
+{
+  const int bad = plane_stress->update(w.batch, w.thin.data(), [this](Batch &b) {
+    material->update_batch(b, kernels());
+  });
+  for (const auto &[number, row, rule, start] : w.elements)
+    if (bad >= start && bad < start + rule.npoint)
+      error->one(
+          FLERR,
+          "Fix mpm/elements {}: no state without stress across element {} was found at step {}: "
+          "use a smaller time step, or a finer mesh",
+          id, (bigint) row[0], update->ntimestep);
+}
+
 /* ----------------------------------------------------------------------
    stress and history of the points in the batch. At the start of a run nothing has moved since the
    stress was computed, unless a command has moved points
@@ -568,17 +672,41 @@ void FixMPMElements::material_update(Work &w, bool starting)
   if (starting) {
     double largest = 0.0;
     for (int c = 0; c < 9; c++)
-      for (int p = 0; p < w.n; p++) largest = std::max(largest, fabs(b.A[c][p]));
-    if (largest < 1.0e-10) return;
+      for (int p = 0; p < w.n; p++)
+        largest = std::max(largest,
+                           fabs(thin ? w.thin[p].along[c] - motion_of(w.state[p])[c] : b.A[c][p]));
+    if (largest < 1.0e-10) {
+      if (thin) map_gradients(w);
+      return;
+    }
   }
-  static const BatchKernels &kernels = *BatchKernels::select(3);    // reads the same in 2d
-  material->update_batch(b, kernels);
+  if (thin)
+    find_stretches(w);
+  else
+    material->update_batch(b, kernels());
   for (int p = 0; p < w.n; p++) {
     double *const s = w.state[p];
     for (int c = 0; c < 9; c++) s[c] = b.F[c][p];
     for (int c = 0; c < 6; c++) s[9 + c] = b.J[p] * b.stress[c][p];
     for (int h = 0; h < nhistory; h++) s[15 + h] = w.history[h * BATCH + p];
+    if (thin) std::copy_n(w.thin[p].along, 9, motion_of(s));
   }
+  if (thin) map_gradients(w);
+}
+
+/** Gradients in the reference configuration to those in space. */
+void FixMPMElements::map_gradients(Work &w)
+{
+  for (const auto &[number, row, rule, start] : w.elements)
+    for (int p = start; p < start + rule.npoint; p++) {
+      const double *const F = w.state[p];
+      const double cofactors[9] = MPM_COFACTORS(F), inv = 1.0 / determinant(F);
+      for (int m = 0; m < rule.nnode; m++) {
+        double g[3];
+        for (int a = 0; a < 3; a++) g[a] = inv * dot(w.g[p][m], cofactors + 3 * a);
+        MathExtra::copy3(g, w.g[p][m]);
+      }
+    }
 }
 
 /* ----------------------------------------------------------------------
@@ -626,6 +754,8 @@ void FixMPMElements::add_sums(Work &w)
     for (int q = 0; q < rule.npoint; q++) {
       const double *const s = w.state[start + q], weight = w.volume[start + q] / size;
       for (int c = 0; c < 15 + nhistory; c++) w.mean[c] += weight * s[c];
+      // elements of a fold have turned by angles of which there is no mean
+      if (thin) w.mean[0] += weight * (MPMPoints::det(s) - s[0]);
     }
     for (int m = 0; m < rule.nnode; m++) {
       double *const sum = &sums[(std::size_t) nodes[number][m] * width];
@@ -637,9 +767,112 @@ void FixMPMElements::add_sums(Work &w)
 
 /* ---------------------------------------------------------------------- */
 
+void FixMPMElements::set_pressure(MPMElementsPressure *who, bool closed)
+{
+  if (along != dim - 1)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/elements {} has no surface for a pressure: use the keyword thickness", id);
+  if (pressure)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/elements {} has more than one fix mpm/airbag",
+               id);
+  if (!kind.oriented)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/elements {}: its surface has no two sides: more than two elements meet at an "
+        "edge, or it is a Moebius strip",
+        id);
+  if (closed && !kind.closed)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/elements {}: its surface has a rim, and encloses no gas: use a closed mesh, whose "
+        "elements share their nodes, or fix mpm/airbag pressure",
+        id);
+  pressure = who;
+  width = 21 + nhistory;
+}
+
+/* ----------------------------------------------------------------------
+   visit triangles, two ways to divide a quadrangle with half a weight each, or lines: the positions of their nodes,
+   without jumps at periodic faces
+------------------------------------------------------------------------- */
+
+template <class Visit> void FixMPMElements::for_faces(Visit visit) const
+{
+  static constexpr int split[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
+  for (int i = 0; i < atom->nlocal; i++) {
+    double here[3];
+    if (count[i] > 0) domain->unmap(atom->x[i], atom->image[i], here);
+    for (int k = 0; k < count[i]; k++) {
+      const auto e = (std::size_t) first[i] + k;
+      const int nnode = rule_of(row(e)).nnode;
+      double x[4][3];
+      for (int m = 0; m < nnode; m++)
+        for (int d = 0; d < 3; d++) x[m][d] = here[d] + atom->x[nodes[e][m]][d] - atom->x[i][d];
+      for (int part = 0; part < (nnode == 4 ? 4 : 1); part++) {
+        const double *at[3];
+        int node[3];
+        for (int m = 0; m < std::min(3, nnode); m++) {
+          at[m] = x[split[part][m]];
+          node[m] = nodes[e][split[part][m]];
+        }
+        visit(nnode == 4 ? 0.5 : 1.0, at, node);
+      }
+    }
+  }
+}
+
+/** Normal of a triangle or line with the length of its area. */
+static void area_vector(int dim, const double *const at[3], double *normal)
+{
+  double a[3], b[3];
+  MathExtra::sub3(at[1], at[0], a);
+  if (dim == 2) {
+    normal[0] = a[1];
+    normal[1] = -a[0];
+    normal[2] = 0.0;
+  } else {
+    MathExtra::sub3(at[2], at[0], b);
+    cross(a, b, normal);
+    for (int d = 0; d < 3; d++) normal[d] *= 0.5;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   p times the gradient of the volume that is enclosed, which is a third (in 2d half) of the area for each node, so that the work
+   is p dV exactly
+------------------------------------------------------------------------- */
+
+void FixMPMElements::add_pressure(bool starting)
+{
+  double mine[2] = {0.0, 0.0}, all[2];
+  for_faces([&](double weight, const double *const at[3], const int *) {
+    double normal[3];
+    area_vector(dim, at, normal);
+    mine[0] += weight * dot(normal, at[0]) / dim;
+    mine[1] += weight * sqrt(dot(normal, normal));
+  });
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  if (side == 0.0) side = kind.closed && all[0] < 0.0 ? -1.0 : 1.0;
+  const double volume = kind.closed ? side * all[0] : 0.0;
+  const double p = pressure->on_surface(volume, all[1], starting);
+  if (!starting) pressure_work += 0.5 * (p + pressure_before) * (volume - volume_before);
+  pressure_before = p;
+  volume_before = volume;
+  const double factor = side * p / (force->nktv2p * dim);
+  for_faces([&](double weight, const double *const at[3], const int *node) {
+    double normal[3];
+    area_vector(dim, at, normal);
+    for (int m = 0; m < dim; m++)
+      for (int d = 0; d < dim; d++)
+        sums[(std::size_t) node[m] * width + width - 3 + d] += weight * factor * normal[d];
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
 double FixMPMElements::stored_energy() const
 {
-  double sum = 0.0, energy[BATCH];
+  double sum = comm->me == 0 ? -pressure_work : 0.0, energy[BATCH];
   for_batches(false, [&](Work &w) {
     material->material->stored_energy(w.batch, energy);
     for (int p = 0; p < w.n; p++) sum += w.volume[p] * energy[p];
@@ -743,14 +976,18 @@ void FixMPMElements::unpack_restart(int i, int nth)
 void FixMPMElements::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const int size = sizeof(double);
+  const double list[] = {shortest, pressure_work};
+  const int size = sizeof(list);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&shortest, sizeof(double), 1, fp);
+  fwrite(list, sizeof(list), 1, fp);
 }
 
 void FixMPMElements::restart(char *buf)
 {
-  memcpy(&shortest, buf, sizeof(double));
+  double list[2];
+  memcpy(list, buf, sizeof(list));
+  shortest = list[0];
+  pressure_work = list[1];
 }
 
 /* ---------------------------------------------------------------------- */

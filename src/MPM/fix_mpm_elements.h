@@ -16,7 +16,10 @@ FixStyle(mpm/elements,FixMPMElements);
 #define LMP_FIX_MPM_ELEMENTS_H
 
 #include "declare/option.h"
+#include "material/plane_stress.h"
+#include "mesh/gmsh.h"
 #include "mpm_state.h"
+#include "mpm_thin_body.h"
 
 #include <array>
 #include <memory>
@@ -24,16 +27,28 @@ FixStyle(mpm/elements,FixMPMElements);
 #include <vector>
 
 namespace MPM_NS {
-struct Mesh;
-}
+struct ElementRule;
+}    // namespace MPM_NS
 
 namespace LAMMPS_NS {
 
 struct MPMElementsOptions {
-  std::string file, part;    ///< part: a physical group of the mesh, empty: all of it
-  bool fbar = false;         ///< average the volume over an element
+  std::string file, part;     ///< part: a physical group of the mesh, empty: all of it
+  bool fbar = false;          ///< average the volume over an element
+  MPMThinBody thin;           ///< surfaces or lines
+  bool compression = true;    ///< do these resist it, or wrinkle?
 
-  MPM_NS::Options declare();
+  MPM_NS::Options declare(int dim);
+};
+
+/** Who gives the pressure on one side of a surface of elements. */
+class MPMElementsPressure {
+ public:
+  /** On all ranks together, in each step: the pressure, for the volume that is enclosed (not known: 0) and the area. */
+  virtual double on_surface(double volume, double area, bool starting) = 0;
+
+ protected:
+  ~MPMElementsPressure() = default;    // who it is owns itself
 };
 
 /** Finite elements whose nodes are material points: the points have no stress of their own, the
@@ -66,10 +81,16 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   int pack_reverse_comm(int, int, double *) override;
   void unpack_reverse_comm(int, int *, double *) override;
 
-  /** Energy stored by the elements of this rank [pressure * volume]. */
+  /** A surface has a pressure inside, or, if it is open, on the side from which its elements go around counterclockwise.
+   *  Until the next init(). closed: it must enclose a volume. */
+  void set_pressure(MPMElementsPressure *, bool closed);
+
+  /** Energy stored by the elements of this rank, and, on the first rank, without the work that the pressure in a closed surface
+   *  has done [pressure * volume]. */
   double stored_energy() const;
 
-  /** Forces of the elements on the points of this rank, [nlocal][3], as added to atom->f. */
+  /** Forces of the elements, and of the pressure in a closed surface, on the points of this rank, [nlocal][3], as added to
+   *  atom->f. */
   const double *forces() const { return force_on.data(); }
 
   /** Smallest stable time step of this rank's elements: 2/omega with a bound of the highest
@@ -86,20 +107,27 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
     tagint low, high;
   };
 
-  int dim, maxnode = 0;    // of the largest element of the mesh
+  int dim, along;     // of space and of elements
+  int maxnode = 0;    // of the largest element of the mesh
   int nhistory, stride;
   int max_of_node = 0;    // largest number of elements that belong to one node
   bigint nelements;       // of the mesh
+  MPM_NS::SurfaceKind kind = {};
+  MPMElementsPressure *pressure = nullptr;
+  double side =
+      0.0;    // of the pressure: 1: on the inside if elements go around counterclockwise; 0: not known
   IDs ids;
+  double pressure_work = 0.0, volume_before = 0.0, pressure_before = 0.0;    // of a closed surface
   double shortest = 0.0;             // length of the smallest element, for artificial viscosity
   class FixMPMMaterial *material;    // found again at the start of each run
   std::string variables;             // names of its history variables, which rows of the pool have
   struct MPMPoints *points;
   std::unique_ptr<Work> work;
+  std::unique_ptr<MPM_NS::PlaneStress> plane_stress;    // of surfaces and lines
 
   // A row of the pool: label and type of an element, tags of its nodes [maxnode], their reference
   // positions relative to the first one [maxnode][dim], and for each integration point F [9],
-  // tau [6], and history.
+  // tau [6], history, and, of surfaces and lines, the gradient of the motion along them [9].
 
   double *first, *count;    // of an atom: its elements in the pool
   std::vector<double> pool;
@@ -111,8 +139,10 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   double *row(std::size_t e) const { return const_cast<double *>(pool.data()) + e * stride; }
   double *state_of(double *row, int q) const
   {
-    return row + 2 + maxnode * (1 + dim) + q * (15 + nhistory);
+    return row + 2 + maxnode * (1 + dim) + q * point_size();
   }
+  int point_size() const { return 15 + nhistory + (thin ? 9 : 0); }
+  double *motion_of(double *state) const { return state + 15 + nhistory; }    // of surfaces, lines
   FixMPMMaterial *find_material() const;
   std::string names_of_history() const;
   bool has_points_of(int other_groupbit) const;
@@ -123,9 +153,18 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   double largest_extent() const;
   void compute(bool starting);
   void load(Work &, std::size_t e, bool moved) const;
+  double gradients(const MPM_NS::ElementRule &, int q, const double (*x)[3], double (*g)[3]) const;
+  void load_thin(MPM_NS::PlaneStress::Point &, const double (*x)[3], const double (*g)[3],
+                 int nnode, const double *state) const;
+  void find_motion(const double (*x)[3], const double (*g)[3], int nnode, double *to) const;
+  void map_gradients(Work &);
+  void find_stretches(Work &);
+  void define_plane_stress();
   template <class Visit> void for_batches(bool moved, Visit) const;
   void material_update(Work &, bool starting);
   void add_sums(Work &);
+  void add_pressure(bool starting);
+  template <class Visit> void for_faces(Visit) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -190,15 +190,15 @@ static void broadcast_named(Mesh &mesh, MPI_Comm world)
 /* ---------------------------------------------------------------------- */
 
 Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::string &part,
-                          const std::string &user, int iarg)
+                          int dimension, const std::string &user, int iarg)
 {
   Mesh mesh;
   std::string message;
   if (lmp->comm->me == 0) {
     try {
       mesh = read_mesh(file);
-      mesh.keep(lmp->domain->dimension, part);
-      mesh.orient();
+      mesh.keep(dimension, part);
+      if (dimension == lmp->domain->dimension) mesh.orient();
     } catch (const std::runtime_error &e) {
       message = e.what();
     }

@@ -23,10 +23,10 @@ class LAMMPS;
 std::unique_ptr<MPM_NS::Material> read_material(LAMMPS *, const std::string &caller, int first,
                                                 int narg, char **arg);
 
-/** The elements of a body in a file (see read_mesh()) on all ranks: those of the dimension of the simulation
- *  and, when not empty, of a physical group, numbered in the positive sense. Stops with an error
+/** The elements of a body in a file (see read_mesh()) on all ranks: those of a dimension and, when not empty, of a physical group; solids
+ *  numbered in the positive sense. Stops with an error
  *  of this user, which points to its argument. */
-MPM_NS::Mesh read_body(LAMMPS *, const std::string &file, const std::string &part,
+MPM_NS::Mesh read_body(LAMMPS *, const std::string &file, const std::string &part, int dimension,
                        const std::string &user, int iarg);
 
 }    // namespace LAMMPS_NS

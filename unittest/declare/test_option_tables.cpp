@@ -55,12 +55,12 @@ std::map<std::string, std::string> files()
   };
   add("create_points", CreatePointsOptions().declare(3, true));
   add("create_points_image", CreatePointsImageOptions().declare(3));
-  add("create_points_mesh", CreatePointsMeshOptions().declare("create_points mesh", 3, true));
+  add("create_points_mesh", CreatePointsMeshOptions().declare("create_points mesh", 3, true, true));
   add("fix_mpm", MPMFieldOptions().declare(3));
   add("fix_mpm_boundary", MPMBoundaryOptions().declare(3));
   add("fix_mpm_contact", MPMContactOptions().declare());
   add("fix_mpm_dt", MPMDtOptions().declare());
-  add("fix_mpm_elements", MPMElementsOptions().declare());
+  add("fix_mpm_elements", MPMElementsOptions().declare(3));
   add("fix_mpm_handshake", MPMHandshakeOptions().declare());
   add("fix_mpm_heat", MPMHeatOptions().declare(3));
   add("fix_mpm_immersed", MPMImmersedOptions().declare(3));

@@ -21,14 +21,14 @@ namespace {
 constexpr int CORNER[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                               {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
 
-/** Triangle or tetrahedron with one point. */
+/** Line, triangle, or tetrahedron with one point. */
 ElementRule simplex(int dim)
 {
   ElementRule r = {};
   r.dim = dim;
   r.nnode = dim + 1;
   r.npoint = 1;
-  r.weight[0] = dim == 2 ? 0.5 : 1.0 / 6.0;
+  r.weight[0] = dim == 1 ? 1.0 : dim == 2 ? 0.5 : 1.0 / 6.0;
   for (int k = 0; k <= dim; k++) {
     r.N[0][k] = 1.0 / (dim + 1);
     for (int d = 0; d < dim; d++) r.dN[0][k][d] = k == 0 ? -1.0 : (k == d + 1 ? 1.0 : 0.0);
@@ -65,7 +65,7 @@ ElementRule cube(int dim)
 
 const ElementRule &ElementRule::of(ElementType type)
 {
-  static const ElementRule rules[4] = {simplex(2), cube(2), simplex(3), cube(3)};
+  static const ElementRule rules[5] = {simplex(2), cube(2), simplex(3), cube(3), simplex(1)};
   return rules[static_cast<int>(type)];
 }
 
@@ -96,14 +96,39 @@ double ElementRule::gradients(int q, const double (*x)[3], double (*g)[3]) const
   return weight[q] * det;
 }
 
-/** 3d: trigonometric form of the cubic equation. */
+/** With the metric M = J^T J: g = J M^-1 dN. */
+double ElementRule::gradients_along(int q, const double (*x)[3], double (*g)[3]) const
+{
+  const double(*d)[3] = dN[q];
+  double J[2][3] = {{0.0}};    // columns
+  for (int k = 0; k < nnode; k++)
+    for (int b = 0; b < dim; b++)
+      for (int a = 0; a < 3; a++) J[b][a] += x[k][a] * d[k][b];
+
+  const double m00 = dot(J[0], J[0]);
+  if (dim == 1) {
+    for (int k = 0; k < nnode; k++)
+      for (int a = 0; a < 3; a++) g[k][a] = J[0][a] * d[k][0] / m00;
+    return weight[q] * sqrt(m00);
+  }
+  const double m01 = dot(J[0], J[1]), m11 = dot(J[1], J[1]);
+  const double det = m00 * m11 - m01 * m01, inv = 1.0 / det;
+  for (int k = 0; k < nnode; k++) {
+    const double a0 = inv * (m11 * d[k][0] - m01 * d[k][1]),
+                 a1 = inv * (m00 * d[k][1] - m01 * d[k][0]);
+    for (int a = 0; a < 3; a++) g[k][a] = a0 * J[0][a] + a1 * J[1][a];
+  }
+  return weight[q] * sqrt(std::max(0.0, det));
+}
+
+/** In space: trigonometric form of the cubic equation. */
 double ElementRule::largest_eigenvalue(const double (*g)[3]) const
 {
   double G[3][3] = {{0.0}};
   for (int k = 0; k < nnode; k++)
     for (int a = 0; a < 3; a++)
       for (int b = 0; b < 3; b++) G[a][b] += g[k][a] * g[k][b];
-  if (dim == 2) {
+  if (G[2][2] == 0.0) {    // all are in the plane
     const double mean = 0.5 * (G[0][0] + G[1][1]);
     return mean + hypot(0.5 * (G[0][0] - G[1][1]), G[0][1]);
   }

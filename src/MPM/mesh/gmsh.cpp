@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -235,9 +236,11 @@ struct Reader {
       const auto kept = static_cast<ElementType>(type - 2);
       return {element_nodes(kept), true, kept};
     }
-    if (type == 1 || type == 15) return {type == 1 ? 2 : 1, false, {}};    // a line, a point
-    const std::string have = ", which is not supported: only triangles, quadrangles, tetrahedra, "
-                             "and hexahedra of first order are";
+    if (type == 1) return {2, true, ElementType::LINE};
+    if (type == 15) return {1, false, {}};    // a point
+    const std::string have =
+        ", which is not supported: only lines, triangles, quadrangles, tetrahedra, "
+        "and hexahedra of first order are";
     if (type == 6 || type == 7)
       in.fail(std::string("the mesh has a ") + (type == 6 ? "prism" : "pyramid") + have);
     in.fail("the mesh has an element of Gmsh's type " + std::to_string(type) + have +
@@ -375,6 +378,7 @@ void Mesh::check_repeated(const std::string &hint) const
 {
   std::map<std::array<int, 8>, int64_t> seen;
   for (const auto &e : elements) {
+    if (e.type == ElementType::LINE) continue;    // often the rim of a body, see keep()
     std::array<int, 8> key;
     key.fill(-1);
     const int n = element_nodes(e.type);
@@ -456,6 +460,12 @@ void Mesh::keep(int dim, const std::string &group)
     set.elements.swap(left);
   }
   keep_data(data, false, element_place);
+
+  std::set<std::pair<int, int>> lines;
+  for (const auto &e : elements)
+    if (dim == 1 && !lines.insert(std::minmax(e.node[0], e.node[1])).second)
+      throw std::runtime_error("the line " + std::to_string(e.label) +
+                               " of the mesh has the nodes of another line");
 
   std::vector<int> place(nodes.size(), -1);
   for (const auto &e : elements)

@@ -23,15 +23,25 @@
 namespace MPM_NS {
 
 /** Linear elements; their nodes are in Gmsh's order, which is that of VTK. */
-enum class ElementType : int { TRIANGLE, QUAD, TETRAHEDRON, HEXAHEDRON };
+enum class ElementType : int { TRIANGLE, QUAD, TETRAHEDRON, HEXAHEDRON, LINE };
 
-/** Number of nodes of an element, and its dimension (2 or 3). */
+/** Number of nodes of an element, and its dimension (1, 2 or 3). */
 constexpr int element_nodes(ElementType t)
 {
-  return t == ElementType::TRIANGLE ? 3 : t == ElementType::HEXAHEDRON ? 8 : 4;
+  switch (t) {
+    case ElementType::LINE:
+      return 2;
+    case ElementType::TRIANGLE:
+      return 3;
+    case ElementType::HEXAHEDRON:
+      return 8;
+    default:
+      return 4;
+  }
 }
 constexpr int element_dimension(ElementType t)
 {
+  if (t == ElementType::LINE) return 1;
   return t == ElementType::TRIANGLE || t == ElementType::QUAD ? 2 : 3;
 }
 
@@ -57,6 +67,12 @@ struct MeshData {
   std::vector<double> values;    ///< [node or element][width]
 };
 
+/** What the elements of a surface (in the plane: lines) are together. */
+struct SurfaceKind {
+  bool closed;      ///< does each rim belong to two elements?
+  bool oriented;    ///< do all elements have their normals on the same side?
+};
+
 /** Nodes and elements of a mesh file. */
 struct Mesh {
   std::vector<std::array<double, 3>> nodes;
@@ -78,11 +94,15 @@ struct Mesh {
   /** Throws std::runtime_error if two elements have the same nodes, which would be twice their mass. */
   void check_repeated(const std::string &hint = "") const;
 
-  /** Area or volume of an element, negative when its nodes are numbered in the wrong sense. */
+  /** Number the nodes of elements of a surface such that those of neighbors go around in the same sense. */
+  SurfaceKind orient_surface();
+
+  /** Area or volume of an element of the dimension of the mesh, negative when its nodes are numbered in the wrong
+   *  sense. */
   double size(const MeshElement &) const;
 };
 
-/** Read the formats 2.2 and 4.1 of Gmsh, ASCII or binary of either order of bytes. Points and lines of the mesh are left out, as are
+/** Read the formats 2.2 and 4.1 of Gmsh, ASCII or binary of either order of bytes. Points of the mesh are left out, as are
  *  sections that describe no mesh. Throws std::runtime_error that begins with name:line. */
 Mesh read_gmsh(std::istream &, const std::string &name);
 

@@ -228,9 +228,11 @@ class VtkReader {
       const int64_t first = offsets[k], n = offsets[k + 1] - first;
       const int type = (int) types[k];
       element_of.push_back(-1);
-      if (type >= 1 && type <= 4) continue;    // points and lines
+      if (type == 1 || type == 2 || type == 4) continue;    // points, and lines of several parts
       MeshElement e = {ElementType::TRIANGLE, 0, k, {0, 0, 0, 0, 0, 0, 0, 0}};
-      if (type == 5)
+      if (type == 3)
+        e.type = ElementType::LINE;
+      else if (type == 5)
         e.type = ElementType::TRIANGLE;
       else if (type == 8 || type == 9)
         e.type = ElementType::QUAD;
@@ -240,7 +242,8 @@ class VtkReader {
         e.type = ElementType::HEXAHEDRON;
       else
         fail("cell " + std::to_string(k) + " is of VTK's type " + std::to_string(type) +
-             ", which is not supported: only triangles, quadrangles, tetrahedra, and hexahedra of "
+             ", which is not supported: only lines, triangles, quadrangles, tetrahedra, and "
+             "hexahedra of "
              "first order are");
       if (n != element_nodes(e.type) || first < 0 || first + n > (int64_t) cells.size())
         fail("cell " + std::to_string(k) + " has a wrong number of points");

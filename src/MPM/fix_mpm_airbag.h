@@ -1,0 +1,67 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/airbag,FixMPMAirbag);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_AIRBAG_H
+#define LMP_FIX_MPM_AIRBAG_H
+
+#include "declare/option.h"
+#include "fix.h"
+#include "fix_mpm_elements.h"
+#include "math/bag_gas.h"
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+struct MPMAirbagOptions {
+  std::string elements_id;
+  MPM_NS::NumberOrVariable pressure;    ///< above that outside
+  bool has_pressure = false, has_gas = false, has_inflow = false;
+  double p = 0.0, gamma = 1.4, outside = 0.0;    ///< of the gas at first, and outside
+  double temperature = 0.0, R = 0.0;             ///< of the gas at first, and outside; 0: not given
+  MPM_NS::NumberOrVariable inflow[2];            ///< mass per time, temperature
+  double vent = 0.0, coefficient = 1.0;          ///< area of holes, and their discharge coefficient
+  double opens = 0.0;    ///< pressure above that outside at which these open
+
+  MPM_NS::Options declare();
+};
+
+/** Pressure on one side of a surface of fix mpm/elements: as given, or that of a gas in the closed bag which this is. */
+class FixMPMAirbag : public Fix, private MPMAirbagOptions, private MPMElementsPressure {
+ public:
+  FixMPMAirbag(class LAMMPS *, int, char **);
+  int setmask() override { return 0; }
+  void init() override;
+  double compute_scalar() override { return over; }
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+ private:
+  class FixMPMElements *elements = nullptr;
+  MPM_NS::BagGas gas;
+  bool filled = false;           // has the gas a volume?
+  bool open = false;             // the vents
+  double over = 0.0;             // present pressure above that outside
+  double volume = 0.0;           // present
+  double area = 0.0;             // present
+  double in = 0.0, out = 0.0;    // mass that has come and gone
+
+  double on_surface(double volume, double area, bool starting) override;
+  void flow(double dt);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

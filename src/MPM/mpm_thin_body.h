@@ -1,0 +1,52 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_THIN_BODY_H
+#define LMP_MPM_THIN_BODY_H
+
+#include "declare/option.h"
+
+namespace LAMMPS_NS {
+
+/** Keywords of bodies that are surfaces or lines of a mesh: what these are as a volume. */
+struct MPMThinBody {
+  double thickness = 0.0;    ///< of surfaces, in 2d of lines; 0: not given
+  double section = 0.0;      ///< area across lines in 3d; 0: not given
+
+  void declare(MPM_NS::Options &o, int dim)
+  {
+    using namespace MPM_NS;
+    using namespace MPM_NS::option;
+    o.add("thickness",
+          {number(thickness, "T", POSITIVE, "distance",
+                  "the body is a surface of the mesh, in 2d lines, of this thickness")})
+        .standard("a solid");
+    o.add("section",
+          {number(section, "A", POSITIVE, "distance^2",
+                  "the body is lines of the mesh with this area across, in 3d")});
+    is_plane = dim == 2;
+  }
+  MPM_NS::OptionRules rules() const
+  {
+    return {{section > 0.0 && is_plane, "section", "is for 3d: lines in 2d have a thickness"},
+            {section > 0.0 && thickness > 0.0, "section",
+             "is for lines, and thickness for surfaces: use one of them, and two bodies for both"}};
+  }
+
+  explicit operator bool() const { return thickness > 0.0 || section > 0.0; }
+  /** Of the elements, in space of dim dimensions. */
+  int dimension(int dim) const { return section > 0.0 ? 1 : thickness > 0.0 ? dim - 1 : dim; }
+  /** Volume per area or length. */
+  double across() const { return section > 0.0 ? section : thickness; }
+
+ private:
+  bool is_plane = false;
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,294 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: unit
+
+// Surfaces and lines: the stretch across them, and what does not resist compression. The neo-Hookean law in plane stress
+// against its own equations, solved here; pressures of balloons are section R2 of the benchmarks.
+
+#include "material/material_testing.h"
+#include "material/plane_stress.h"
+#include "math/bag_gas.h"
+
+using namespace MPM_NS;
+using namespace material_testing;
+
+namespace {
+
+constexpr double E = 1000.0;
+
+struct Surface {
+  std::unique_ptr<Material> material;
+  PlaneStress state;
+  Batch batch = {};
+  std::vector<double> history;
+  PlaneStress::Point point;
+  double old[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  int dim, along;
+
+  Surface(const std::string &text, int dim, int along, bool compression) :
+      material(make(text)), state(*material, dim, along, compression), dim(dim), along(along)
+  {
+    const double a[3] = {1.0, 0.0, 0.0}, b[3] = {0.3, 1.0, 0.0};
+    state.make_frame(a, b, point.frame);
+    history.resize(std::max<std::size_t>(1, material->history().size()) * BATCH);
+    batch.n = 1;
+    batch.dt = batch.h = batch.vol0[0] = 1.0;
+    batch.history = reinterpret_cast<double(*)[BATCH]>(history.data());
+    point.old = old;
+  }
+
+  /** Stress (a matrix) after a motion with the deformation gradient F of the whole space, of which only what is along the body
+   *  counts. */
+  Matrix go(const Matrix &F)
+  {
+    std::fill_n(point.along, 9, 0.0);
+    for (int k = 0; k < along; k++)
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+          point.along[3 * i + j] += dot(&F[3 * i], point.frame[k]) * point.frame[k][j];
+    int calls = 0;
+    EXPECT_EQ(state.update(batch, &point,
+                           [&](Batch &b) {
+                             material->update(b);
+                             calls++;
+                           }),
+              -1);
+    EXPECT_EQ(calls, 1);
+    for (int c = 0; c < 9; c++) old[c] = batch.F[c][0];
+    static constexpr int voigt[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
+    Matrix s;
+    for (int c = 0; c < 9; c++) s[c] = batch.stress[voigt[c]][0];
+    return s;
+  }
+
+  double energy()
+  {
+    double w[BATCH];
+    material->stored_energy(batch, w);
+    return w[0];
+  }
+};
+
+std::string rubber(double nu)
+{
+  return joined("density 1 neohookean ", E, " ", nu);
+}
+
+/** sigma_k of the neo-Hookean law with principal stretches. */
+double neohookean(double nu, int k, double a, double b, double c)
+{
+  const double mu = 0.5 * E / (1.0 + nu), lambda = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+               J = a * b * c;
+  const double l[3] = {a, b, c};
+  return (mu * (l[k] * l[k] - 1.0) + lambda * std::log(J)) / J;
+}
+
+/** Root of a growing function between low and high. */
+double root(double low, double high, const std::function<double(double)> &f)
+{
+  for (int k = 0; k < 200; k++) {
+    const double middle = 0.5 * (low + high);
+    (f(middle) < 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+Matrix diagonal(double a, double b)
+{
+  return {a, 0, 0, 0, b, 0, 0, 0, 1};
+}
+
+}    // namespace
+
+// stretches along both axes: nothing acts across, and the rest is that of the law with the thickness which follows
+TEST(PlaneStress, Surface)
+{
+  for (const double nu : {0.0, 0.3, 0.45})
+    for (const bool compression : {true, false})
+      for (const auto &[a, b] : {std::pair(1.3, 1.1), std::pair(1.2, 1.2), std::pair(2.5, 1.9)}) {
+        const double c = root(1e-3, 10.0, [nu = nu, a = a, b = b](double x) {
+          return neohookean(nu, 2, a, b, x);
+        });
+        Surface s(rubber(nu), 3, 2, compression);
+        const auto stress = s.go(diagonal(a, b));
+        EXPECT_NEAR(s.batch.F[8][0] / c, 1.0, 1e-9);
+        EXPECT_NEAR(stress[0] / neohookean(nu, 0, a, b, c), 1.0, 1e-8);
+        EXPECT_NEAR(stress[4] / neohookean(nu, 1, a, b, c), 1.0, 1e-8);
+        EXPECT_NEAR(stress[8] / E, 0.0, 1e-9);
+      }
+}
+
+// pressure of a balloon in parts of mu t/R
+TEST(PlaneStress, Balloon)
+{
+  const struct {
+    double nu, stretch, pressure;
+  } cases[] = {{0.3, 1.1, 0.552132},  {0.3, 1.2, 0.844962},  {0.3, 1.4, 1.061088},
+               {0.3, 2.0, 0.953695},  {0.45, 1.1, 0.727410}, {0.45, 1.2, 1.047711},
+               {0.45, 1.4, 1.207100}, {0.45, 2.0, 0.980817}};
+  for (const auto &c : cases) {
+    Surface s(rubber(c.nu), 3, 2, false);
+    const auto stress = s.go(diagonal(c.stretch, c.stretch));
+    const double mu = 0.5 * E / (1.0 + c.nu);
+    EXPECT_NEAR(2.0 * stress[0] * s.batch.F[8][0] / (c.stretch * mu), c.pressure, 1e-6);
+  }
+}
+
+// what is narrower than it would be by itself wrinkles, and is in uniaxial tension however narrow it is
+TEST(PlaneStress, Wrinkles)
+{
+  const double nu = 0.3, a = 1.5;
+  const double width = root(1e-3, 2.0, [&](double x) {
+    return neohookean(nu, 1, a, x, x);
+  });
+  const double force = neohookean(nu, 0, a, width, width) * width * width;
+  double energy = 0.0;
+  for (const double b : {1.0, 0.999, 0.5, 0.01, 0.0}) {
+    Surface s(rubber(nu), 3, 2, false);
+    const auto stress = s.go(diagonal(a, b * width));
+    EXPECT_NEAR(s.batch.F[4][0], width, 1e-8);
+    EXPECT_NEAR(stress[0] * width * width / force, 1.0, 1e-8);
+    EXPECT_NEAR(stress[4] / E, 0.0, 1e-9);
+    if (b == 1.0) energy = s.energy();
+    EXPECT_NEAR(s.energy() / energy, 1.0, 1e-8);
+  }
+  // one that resists compression does not
+  Surface stiff(rubber(nu), 3, 2, true);
+  EXPECT_LT(stiff.go(diagonal(a, 0.9 * width))[4] / E, -0.05);
+
+  // slack, also when it has been taut
+  Surface slack(rubber(nu), 3, 2, false);
+  slack.go(diagonal(1.3, 1.2));
+  for (const double c : slack.go(diagonal(0.99, 0.4))) EXPECT_NEAR(c / E, 0.0, 1e-12);
+  EXPECT_NEAR(slack.energy() / E, 0.0, 1e-12);
+  EXPECT_GT(slack.go(diagonal(1.1, 0.4))[0] / E, 0.05);
+}
+
+// The energy is that of the motion alone, and stress is its gradient, along any direction and turned in space
+TEST(PlaneStress, StressIsTheGradientOfEnergy)
+{
+  const double c = cos(0.8), s = sin(0.8);
+  const Matrix turn = {c, -0.6 * s, 0.8 * s, s, 0.6 * c, -0.8 * c, 0.0, 0.8, 0.6};
+  const Matrix motions[] = {{1.3, 0.2, 0, -0.1, 1.2, 0, 0, 0, 1},    // taut
+                            {1.3, 0.4, 0, 0.3, 0.8, 0, 0, 0, 1},     // wrinkled
+                            {0.9, 0.2, 0, 0.2, 1.4, 0, 0, 0, 1}};
+  for (const auto &motion : motions)
+    for (const bool compression : {true, false}) {
+      Matrix F;
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) F[3 * i + j] = product(turn.data(), motion.data(), i, j);
+      for (const int k : {0, 1, 3, 4, 6, 7}) {
+        double energy[2];
+        for (int side = 0; side < 2; side++) {
+          Surface surface(rubber(0.3), 3, 2, compression);
+          Matrix G = F;
+          G[k] += side ? 1e-5 : -1e-5;
+          surface.go(G);
+          energy[side] = surface.energy();
+        }
+        Surface surface(rubber(0.3), 3, 2, compression);
+        const auto stress = surface.go(F);
+        // P = J sigma F^-T; its columns along the surface are those of the motion
+        const double *const f = surface.old;
+        const double cofactors[9] = MPM_COFACTORS(f);
+        const int row = 3 * (k / 3);
+        const double P = stress[row] * cofactors[k % 3] + stress[row + 1] * cofactors[3 + k % 3] +
+            stress[row + 2] * cofactors[6 + k % 3];
+        EXPECT_NEAR(P / E, (energy[1] - energy[0]) / (2e-5 * E), 1e-8);
+      }
+    }
+}
+
+// lines: in space free along two axes, in the plane along one
+TEST(PlaneStress, Lines)
+{
+  const double nu = 0.3, a = 1.4;
+  const double both = root(1e-3, 2.0, [&](double x) {
+    return neohookean(nu, 1, a, x, x);
+  });
+  const double one = root(1e-3, 2.0, [&](double x) {
+    return neohookean(nu, 1, a, x, 1.0);
+  });
+  Surface cable(rubber(nu), 3, 1, false), strip(rubber(nu), 2, 1, false);
+  const auto of_cable = cable.go(diagonal(a, 1.0)), of_strip = strip.go(diagonal(a, 1.0));
+  EXPECT_NEAR(of_cable[0] / neohookean(nu, 0, a, both, both), 1.0, 1e-8);
+  EXPECT_NEAR(of_strip[0] / neohookean(nu, 0, a, one, 1.0), 1.0, 1e-8);
+  EXPECT_NEAR(strip.batch.F[8][0], 1.0, 0.0);
+  // turned by a right angle in one step, as elements of a chain are
+  const auto turned = cable.go({0, -1, 0, a, 0, 0, 0, 0, 1});
+  EXPECT_NEAR(turned[4] / of_cable[0], 1.0, 1e-8);
+  EXPECT_NEAR(turned[0] / E, 0.0, 1e-9);
+  // pushed together
+  for (auto *line : {&cable, &strip})
+    for (const double c : line->go(diagonal(0.7, 1.0))) EXPECT_NEAR(c / E, 0.0, 1e-12);
+  Surface truss(rubber(nu), 3, 1, true);
+  const double more = root(0.5, 3.0, [&](double x) {
+    return neohookean(nu, 1, 0.7, x, x);
+  });
+  EXPECT_NEAR(truss.go(diagonal(0.7, 1.0))[0] / neohookean(nu, 0, 0.7, more, more), 1.0, 1e-8);
+}
+
+// a metal sheet in uniaxial tension beyond yield, in many steps: strength of the law, free of stress across in each of them
+TEST(PlaneStress, PlasticStrip)
+{
+  Surface s("density 1 eos linear 1000 strength j2 400 1 hardening linear 0", 3, 1, true);
+  double stress = 0.0;
+  for (int k = 1; k <= 400; k++) stress = s.go(diagonal(1.0 + 1e-4 * k, 1.0))[0];
+  EXPECT_NEAR(stress, 1.0, 2e-3);
+}
+
+TEST(PlaneStress, Refuses)
+{
+  const auto message = [](const std::string &text, bool compression) -> std::string {
+    try {
+      const auto material = make(text);
+      PlaneStress state(*material, 3, 2, compression);
+    } catch (const std::runtime_error &e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message(rubber(0.3), true), "");
+  EXPECT_EQ(message("density 1 eos linear 1000 strength j2 400 1", true), "");
+  EXPECT_NE(message("density 1 eos linear 1000 strength j2 400 1", false).find("elastic"),
+            std::string::npos);
+  EXPECT_NE(message("density 1 linear 1000 0.3 viscosity newtonian 1", false).find("elastic"),
+            std::string::npos);
+}
+
+// gas: blow-down through a choked nozzle, section V2; filling of an empty bag, and of one that holds as much before
+TEST(BagGas, BlowDownAndFilling)
+{
+  const double gamma = 1.4, R = 287.0, T = 300.0, V = 0.1, p = 1e6, area = 1e-4;
+  const double factor =
+      BagGas::flow(p, 0.0, R * T, gamma) * std::sqrt(R * T) / (p * std::sqrt(gamma));
+  EXPECT_NEAR(factor, 0.578704, 1e-6);
+  EXPECT_NEAR(BagGas::flow(p, 0.52828178 * p, R * T, gamma) / BagGas::flow(p, 0.0, R * T, gamma),
+              1.0, 1e-7);
+  EXPECT_EQ(BagGas::flow(p, p, R * T, gamma), 0.0);
+  EXPECT_NEAR(BagGas::flow(p, 0.8 * p, R * T, 1.0 + 1e-7) / BagGas::flow(p, 0.8 * p, R * T, 1.0),
+              1.0, 1e-6);
+
+  for (const auto &[tau, pressure, temperature] :
+       {std::tuple(0.5, 0.513158, 0.0), std::tuple(1.0, 0.279082, 0.694444)}) {
+    BagGas gas{gamma, R, p * V / (R * T), V, T};
+    const double end = tau * V / (factor * area * std::sqrt(gamma * R * T));
+    const int n = 20000;
+    for (int k = 0; k < n; k++) {
+      const double out =
+          area * BagGas::flow(gas.pressure(), 0.0, R * gas.temperature, gamma) * end / n;
+      gas.add(-out, gas.temperature);
+    }
+    EXPECT_NEAR(gas.pressure() / p, pressure, 1e-4);
+    if (temperature > 0.0) EXPECT_NEAR(gas.temperature / T, temperature, 1e-4);
+  }
+  BagGas empty{gamma, R, 1e-12, V, T}, half{gamma, R, 1.0, V, T};
+  empty.add(1.0, T);
+  half.add(1.0, T);
+  EXPECT_NEAR(empty.temperature / T, 1.4, 1e-9);
+  EXPECT_NEAR(half.temperature / T, 1.2, 1e-12);
+  const double before = half.pressure() * std::pow(half.volume, gamma);
+  for (int k = 0; k < 100; k++) half.expand(V * (1.0 + 0.5 * std::sin(k)));
+  EXPECT_NEAR(half.pressure() * std::pow(half.volume, gamma) / before, 1.0, 1e-12);
+}
