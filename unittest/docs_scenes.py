@@ -33,9 +33,17 @@ REGIONS = {"bar": "block 0.01 0.04 0.01 0.04 0.01 0.04", "ball": "sphere 0.06 0.
            "shell": "cylinder z 0.05 0.05 0.045 INF INF side out", "lid": "plane 0 0.05 0 0 -1 0",
            "mouth": "block 0.07 0.09 0.07 0.09 0.07 0.09", "drain": "block INF 0.025 INF INF INF INF"}
 CORNERS = [(0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
-TOOL = "solid tool\n%sendsolid\n" % "".join(    # a tetrahedron
-    "facet\nouter loop\n%sendloop\nendfacet\n" % "".join("vertex %d %d %d\n" % CORNERS[k] for k in face)
-    for face in [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+
+
+def solid(faces):
+    """An STL file."""
+    return "solid tool\n%sendsolid\n" % "".join(
+        "facet\nouter loop\n%sendloop\nendfacet\n" % "".join("vertex %d %d %d\n" % CORNERS[k] for k in face)
+        for face in faces)
+
+
+TOOL, SCAN = solid(FACES), solid(FACES[:3])    # a tetrahedron, and one with a hole
 VARIABLES = {"down": "equal 1.0e-3", "T": "equal 300+step", "laser": "atom 1.0e6*x", "depth": "equal -0.1*step*dt",
              "p": "equal 1.0e3*step", "damage": "atom id", "speed": "equal 0.1"}
 COMPUTES = {"mine": "all property/atom vx vy"}
@@ -210,6 +218,11 @@ def scene_for(lines):
         before += "group grains type 3\n"
     if "mpm/elements" in text:
         points = "create_points 2 mesh ring.msh move 0.05 0.05 0.05\ngroup ring type 2\n"
+    if "ball.msh" in text or "mpm/airbag" in text:
+        points = "create_points 1 mesh ball.msh scale 0.3 move 0.05 0.05 0.05 thickness 0.001\n"
+        material = "fix default all mpm/material density 1000 neohookean 1.0e5 0.3\n"
+    if "mpm/airbag" in text:
+        before += "fix skin all mpm/elements ball.msh thickness 0.001 compression no\n"
     scene = head + grid + points + material + before
     if with_grains:
         scene += GRAINS
@@ -259,14 +272,46 @@ run             2
 """ % (low, high, "\n".join(lines))
 
 
+def ball_mesh():
+    """Gmsh's file of an octahedron whose triangles are divided twice, on a sphere of radius 0.1."""
+    nodes = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    faces = [(a, b, c) if (a == 0) ^ (b == 2) ^ (c == 4) else (b, a, c) for a in (0, 1) for b in (2, 3) for c in (4, 5)]
+    for _ in range(2):
+        finer = []
+        for face in faces:
+            middles = []
+            for k in range(3):
+                m = [p + q for p, q in zip(nodes[face[k]], nodes[face[(k + 1) % 3]])]
+                r = sum(c * c for c in m) ** 0.5
+                m = tuple(round(c / r, 12) + 0.0 for c in m)
+                if m not in nodes:
+                    nodes.append(m)
+                middles.append(nodes.index(m))
+            finer += [(face[0], middles[0], middles[2]), (face[1], middles[1], middles[0]),
+                      (face[2], middles[2], middles[1]), tuple(middles)]
+        faces = finer
+    return ("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n" % len(nodes) +
+            "".join("%d %.12g %.12g %.12g\n" % ((k + 1,) + tuple(0.1 * c for c in x)) for k, x in enumerate(nodes)) +
+            "$EndNodes\n$Elements\n%d\n" % len(faces) +
+            "".join("%d 2 2 1 1 %d %d %d\n" % ((k + 1,) + tuple(i + 1 for i in f)) for k, f in enumerate(faces)) +
+            "$EndElements\n")
+
+
 def write_files(folder, scene):
     """The files that these scenes read, with the mesh in units of the file or of the scene."""
     size = 10.0 if "scale" in scene else 0.01
     os.makedirs(os.path.join(folder, "out"), exist_ok=True)
     with open(os.path.join(folder, "ring.msh"), "w", encoding="ascii") as file:
         file.write(MESH_FILE % (size, size, size))
+    with open(os.path.join(folder, "ball.msh"), "w", encoding="ascii") as file:
+        file.write(ball_mesh())
     with open(os.path.join(folder, "tool.stl"), "w", encoding="ascii") as file:
         file.write(TOOL)
+    with open(os.path.join(folder, "scan.stl"), "w", encoding="ascii") as file:
+        file.write(SCAN)
+    with open(os.path.join(folder, "hare.obj"), "w", encoding="ascii") as file:
+        file.write("".join("v %d %d %d\n" % corner for corner in CORNERS) +
+                   "".join("f %d %d %d\n" % tuple(k + 1 for k in face) for face in FACES))
     for name, content in IMAGES.items():
         with open(os.path.join(folder, name), "wb") as file:
             file.write(content)

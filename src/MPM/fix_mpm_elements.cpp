@@ -88,9 +88,9 @@ Options MPMElementsOptions::declare(int dim)
         "do surfaces and lines resist compression, or wrinkle and sag?");
   o.refuse([this] {
     auto rules = thin.rules();
-    rules.push_back({!compression && !thin, "compression no",
-                     "is for surfaces and lines: use thickness or section"});
-    rules.push_back({fbar && thin, "locking fbar", "is for solids, not for surfaces and lines"});
+    rules.push_back({!compression && !thin, "compression",
+                     "no is for surfaces and lines: use thickness or section"});
+    rules.push_back({fbar && thin, "locking", "fbar is for solids, not for surfaces and lines"});
     return rules;
   });
   return o;
@@ -332,7 +332,7 @@ void FixMPMElements::init()
   check_nodes();
   check_fields();
   pressure = nullptr;
-  width = 18 + nhistory;
+  comm_reverse = width = 18 + nhistory;
 
   // the fix mpm/material of the definition may have been removed or defined again
 
@@ -483,7 +483,6 @@ void FixMPMElements::compute(bool starting)
     add_sums(w);
   });
   if (pressure) add_pressure(starting);
-  comm_reverse = width;
   comm->reverse_comm(this);
 
   force_on.assign(3 * (std::size_t) atom->nmax, 0.0);
@@ -788,7 +787,7 @@ void FixMPMElements::set_pressure(MPMElementsPressure *who, bool closed)
         "elements share their nodes, or fix mpm/airbag pressure",
         id);
   pressure = who;
-  width = 21 + nhistory;
+  comm_reverse = width = 21 + nhistory;    // before LAMMPS makes room for messages
 }
 
 /* ----------------------------------------------------------------------

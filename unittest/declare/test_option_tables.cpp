@@ -18,6 +18,7 @@
 #include "create_points_image.h"
 #include "fix_mpm_absorb.h"
 #include "fix_mpm_absorbing.h"
+#include "fix_mpm_airbag.h"
 #include "fix_mpm_boundary.h"
 #include "fix_mpm_contact.h"
 #include "fix_mpm_dt.h"
@@ -57,6 +58,7 @@ std::map<std::string, std::string> files()
   add("create_points_image", CreatePointsImageOptions().declare(3));
   add("create_points_mesh", CreatePointsMeshOptions().declare("create_points mesh", 3, true, true));
   add("fix_mpm", MPMFieldOptions().declare(3));
+  add("fix_mpm_airbag", MPMAirbagOptions().declare());
   add("fix_mpm_boundary", MPMBoundaryOptions().declare(3));
   add("fix_mpm_contact", MPMContactOptions().declare());
   add("fix_mpm_dt", MPMDtOptions().declare());

@@ -48,7 +48,13 @@ TEST(Mesh, Format22)
 {
   Mesh mesh = read(FLAT);
   ASSERT_EQ(mesh.nodes.size(), 7u);
-  ASSERT_EQ(mesh.elements.size(), 3u);
+  ASSERT_EQ(mesh.elements.size(), 4u);
+  EXPECT_EQ(mesh.elements[0].type, ElementType::LINE);
+  Mesh rim = mesh;
+  rim.keep(1, "rim");
+  EXPECT_EQ(rim.elements.size(), 1u);
+  EXPECT_EQ(rim.nodes.size(), 2u);
+  mesh.elements.erase(mesh.elements.begin());
   for (const auto &e : mesh.elements) EXPECT_EQ(element_dimension(e.type), 2);
   EXPECT_EQ(mesh.groups.at({2, 5}), "left part");
   EXPECT_EQ(mesh.elements[2].type, ElementType::QUAD);

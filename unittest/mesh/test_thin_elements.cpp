@@ -1,0 +1,343 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 600
+
+// Membranes, strips, and cables of fix mpm/elements, and the gas of fix mpm/airbag. Values of sections R and V of the benchmarks.
+
+#include "fix_mpm_elements.h"
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+using Node = std::array<double, 3>;
+
+/** A mesh file of Gmsh with elements of one kind: 1: lines, 2: triangles, 3: quadrangles. */
+std::string gmsh(int kind, const std::vector<Node> &nodes,
+                 const std::vector<std::vector<int>> &elements)
+{
+  std::string text =
+      strprintf("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", (int) nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); i++)
+    text += strprintf("%d %.17g %.17g %.17g\n", (int) i + 1, nodes[i][0], nodes[i][1], nodes[i][2]);
+  text += strprintf("$EndNodes\n$Elements\n%d\n", (int) elements.size());
+  for (std::size_t e = 0; e < elements.size(); e++) {
+    text += strprintf("%d %d 2 1 1", (int) e + 1, kind);
+    for (const int node : elements[e]) text += strprintf(" %d", node + 1);
+    text += "\n";
+  }
+  return text + "$EndElements\n";
+}
+
+/** Two straight halves of a cable of length 1 between 0 0 and span 0, n lines; up: axis 1 or 2. */
+std::string hanging(int n, double span, int up)
+{
+  std::vector<Node> nodes;
+  std::vector<std::vector<int>> lines;
+  const double drop = sqrt(0.25 - 0.25 * span * span);
+  for (int i = 0; i <= n; i++) {
+    Node x = {span * i / n, 0.0, 0.0};
+    x[up] = -drop * (1.0 - std::fabs(2.0 * i / n - 1.0));
+    nodes.push_back(x);
+    if (i < n) lines.push_back({i, i + 1});
+  }
+  return gmsh(1, nodes, lines);
+}
+
+/** A sphere of radius R: octahedron whose triangles are divided. mixed: every other triangle goes around the other way. */
+std::string sphere(int divisions, double R, bool mixed = false)
+{
+  std::vector<Node> x = {{R, 0, 0}, {-R, 0, 0}, {0, R, 0}, {0, -R, 0}, {0, 0, R}, {0, 0, -R}};
+  std::vector<std::vector<int>> f = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  for (int k = 0; k < divisions; k++) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto key = std::make_pair(std::min(a, b), std::max(a, b));
+      const auto found = middles.find(key);
+      if (found != middles.end()) return found->second;
+      Node m;
+      double square = 0.0;
+      for (int d = 0; d < 3; d++) square += pow(m[d] = x[a][d] + x[b][d], 2);
+      for (double &c : m) c *= R / sqrt(square);
+      x.push_back(m);
+      return middles[key] = (int) x.size() - 1;
+    };
+    std::vector<std::vector<int>> finer;
+    for (const auto &t : f) {
+      const int a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
+      for (const auto &part : {std::vector<int>{t[0], a, c}, {t[1], b, a}, {t[2], c, b}, {a, b, c}})
+        finer.push_back(part);
+    }
+    f.swap(finer);
+  }
+  for (std::size_t k = 0; mixed && k < f.size(); k += 2) std::swap(f[k][0], f[k][1]);
+  return gmsh(2, x, f);
+}
+
+/** n x n squares or pairs of triangles over 0 to l, with nodes in the plane z = 0. */
+std::string sheet(int n, double l, bool triangles)
+{
+  std::vector<Node> x;
+  std::vector<std::vector<int>> f;
+  for (int j = 0; j <= n; j++)
+    for (int i = 0; i <= n; i++) x.push_back({l * i / n, l * j / n, 0.0});
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < n; i++) {
+      const int a = j * (n + 1) + i, b = a + n + 1;
+      if (triangles) {
+        f.push_back({a, a + 1, b});
+        f.push_back({a + 1, b + 1, b});
+      } else
+        f.push_back({a, a + 1, b + 1, b});
+    }
+  return gmsh(triangles ? 2 : 3, x, f);
+}
+
+std::string box(int dim, double low, double high, double h, const std::string &options)
+{
+  const std::string range = strprintf("%g %g ", low, high);
+  return strprintf("units si\ndimension %d\nboundary f f %s\nneighbor %g bin\natom_style mpm\n",
+                   dim, dim == 2 ? "p" : "f", 0.5 * h) +
+      "region box block " + range + range + (dim == 2 ? "-0.01 0.01" : range) +
+      "\ncreate_box 1 box\n" + strprintf("fix grid all mpm %g ", h) + options + "\n";
+}
+
+std::string thin_body(const std::string &file, const std::string &thin, const std::string &material,
+                      const std::string &more = "")
+{
+  return "create_points 1 mesh " + file + " " + thin + "\nfix m all mpm/material density 1000 " +
+      material + "\nfix e all mpm/elements " + file + " " + thin + " " + more + "\n";
+}
+
+double sum_over_ranks(double x)
+{
+  double all;
+  MPI_Allreduce(&x, &all, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  return all;
+}
+
+/** Mean distance of points from 0. */
+double radius(Scene &run)
+{
+  double sum = 0.0;
+  const auto all = run.gather();
+  for (const auto &s : all) sum += sqrt(s.x[0] * s.x[0] + s.x[1] * s.x[1] + s.x[2] * s.x[2]);
+  return sum / all.size();
+}
+
+}    // namespace
+
+// Forces are minus the gradient of the energy at large motions of all nodes, with and without compression, and with a gas
+// inside, whose work is p dV
+TEST(ThinElements, ForcesAreTheGradientOfEnergy)
+{
+  const struct {
+    int dim;
+    const char *thin, *more;
+    std::string mesh;
+    bool gas;
+  } cases[] = {{3, "thickness 0.01", "", sheet(3, 0.3, true), false},
+               {3, "thickness 0.01", "compression no", sheet(3, 0.3, true), false},
+               {3, "thickness 0.01", "", sheet(3, 0.3, false), false},
+               {3, "section 0.001", "compression no", hanging(8, 0.5, 2), false},
+               {3, "section 0.001", "", hanging(8, 0.5, 2), false},
+               {2, "thickness 0.01", "compression no", hanging(8, 0.5, 1), false},
+               {3, "thickness 0.01", "compression no", sphere(2, 0.3), true}};
+  for (const auto &c : cases) {
+    SCOPED_TRACE(std::string(c.thin) + " " + c.more);
+    ScratchFile file("thin.msh", c.mesh);
+    const std::string input = box(c.dim, -1.0, 1.0, 0.1, "") +
+        thin_body(file.name, c.thin, "neohookean 1000 0.3", c.more) +
+        (c.gas ? "fix b all mpm/airbag e gas 50 1.4 outside 20\n" : "") + "timestep 1e-6\nrun 0\n";
+    const auto displaced = [&](double shift) {
+      auto run = std::make_unique<Scene>(input);
+      for (int i = 0; i < run->n(); i++) {
+        const double t = run->lmp->atom->tag[i];
+        for (int d = 0; d < c.dim; d++)
+          run->x()[i][d] += 0.02 * sin(1.7 * t + 2.1 * d) + shift * cos(2.3 * t + 0.7 * d);
+      }
+      run->commands("run 0\n");
+      return run;
+    };
+    double energy[2], work = 0.0;
+    for (int side = 0; side < 2; side++) {
+      auto run = displaced(side ? 1e-6 : -1e-6);
+      const double gas =
+          c.gas ? run->fix("b")->compute_vector(7) + 20.0 * run->fix("b")->compute_vector(1) : 0.0;
+      energy[side] = sum_over_ranks(run->fix<FixMPMElements>("e")->stored_energy()) + gas;
+    }
+    auto run = displaced(0.0);
+    for (int i = 0; i < run->n(); i++)
+      for (int d = 0; d < c.dim; d++)
+        work += run->fix<FixMPMElements>("e")->forces()[3 * i + d] *
+            cos(2.3 * run->lmp->atom->tag[i] + 0.7 * d);
+    EXPECT_NEAR(sum_over_ranks(work) / ((energy[0] - energy[1]) / 2e-6), 1.0, 1e-5);
+  }
+}
+
+// a cable that hangs between two clamps: elastic catenary (H.M. Irvine, Cable Structures (1981)), sag .39978 for EA/W = 102
+SERIAL_TEST(ThinElements, Catenary)
+{
+  double sag[2];
+  for (const int fine : {0, 1}) {
+    const double h = fine ? 0.01 : 0.02;
+    ScratchFile file("cable.msh", hanging(100, 0.5, 1));
+    Scene run(
+        box(2, -0.8, 0.8, h, "transfer flip 0.99") +
+        thin_body(file.name, "thickness 0.001", "neohookean 1e6 0", "compression no") +
+        strprintf("region a sphere 0 0 0 %g\nregion b sphere 0.5 0 0 %g\n", 2.2 * h, 2.2 * h) +
+        "fix a all mpm/boundary region a stick\nfix b all mpm/boundary region b stick\n"
+        "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nfix rest all mpm/relax 1e-3\n"
+        "run 20000\n");
+    double low = 0.0;
+    for (const auto &s : run.gather()) low = std::min(low, s.x[1]);
+    sag[fine] = measured("sag", -low);
+  }
+  EXPECT_NEAR(sag[0] / 0.39978, 1.0, 0.01);
+  EXPECT_NEAR(sag[1] / 0.39978, 1.0, 0.005);
+  EXPECT_LT(std::fabs(sag[1] - 0.39978), 0.6 * std::fabs(sag[0] - 0.39978));
+}
+
+// balloons (R2, V1): a stretch of 1.2 by a given pressure, and what a gas at higher pressure does, of either kind
+SERIAL_TEST(Airbag, Balloons)
+{
+  ScratchFile file("ball.msh", sphere(4, 0.1));
+  const std::string rest = "fix dt all mpm/dt 0.4\nfix rest all mpm/relax 1e-4\nrun 3000\n";
+  {
+    Scene run(box(3, -0.3, 0.3, 0.02, "transfer flip 0.95") +
+              thin_body(file.name, "thickness 0.001", "neohookean 1e5 0.3", "compression no") +
+              strprintf("fix b all mpm/airbag e pressure %.10g\n", 0.844962 * 1e5 / 2.6 * 0.01) +
+              rest);
+    EXPECT_NEAR((measured("stretch", radius(run) / 0.1) - 1.0) / 0.2, 1.0, 0.02);
+    double least = 1.0, most = 0.0;
+    for (const auto &s : run.gather()) {
+      const double r = sqrt(s.x[0] * s.x[0] + s.x[1] * s.x[1] + s.x[2] * s.x[2]);
+      least = std::min(least, r);
+      most = std::max(most, r);
+    }
+    EXPECT_LT(measured("sphericity", most / least - 1.0), 0.01);
+  }
+  for (const auto &[gamma, stretch, pressure] :
+       {std::tuple(1.4, 0.00227733, 101352.050), std::tuple(1.0, 0.00315578, 101362.337)}) {
+    Scene run(box(3, -0.3, 0.3, 0.02, "transfer flip 0.95") +
+              thin_body(file.name, "thickness 0.001", "neohookean 2.98e5 0.49") +
+              strprintf("fix b all mpm/airbag e gas 102325 %g outside 101325\n", gamma) + rest);
+    EXPECT_NEAR((measured("stretch", radius(run) / 0.1) - 1.0) / stretch, 1.0, 0.03);
+    EXPECT_NEAR(run.fix("b")->compute_vector(0) / pressure, 1.0, 1e-3);
+    const double V = run.fix("b")->compute_vector(1);
+    const double before = run.evaluate("f_b[2]");
+    EXPECT_EQ(V, before);
+  }
+}
+
+// gas through a vent (V2) of a bag so heavy that it stays as it is, without anything outside; then what comes in
+SERIAL_TEST(Airbag, VentAndInflow)
+{
+  ScratchFile file("ball.msh", sphere(2, 0.5));
+  const double R = 287.0, T = 300.0, area = 1e-3, tau = 1.0, gamma = 1.4;
+  Scene run(box(3, -1.0, 1.0, 0.2, "") +
+            thin_body(file.name, "thickness 1e5", "neohookean 1e5 0.3") +
+            strprintf("fix b all mpm/airbag e gas 1e5 1.4 temperature %g %g vent %g 0.8\nrun 0\n",
+                      T, R, area));
+  const double V = run.fix("b")->compute_vector(1), mass = run.fix("b")->compute_vector(3);
+  EXPECT_NEAR(mass, 1e5 * V / (R * T), 1e-9 * mass);
+  const double end = tau * V / (0.8 * 0.578704 * area * sqrt(gamma * R * T));
+  run.commands(strprintf("timestep %.15g\nrun 4000\n", end / 4000));
+  const auto entry = [&](int k) {
+    return run.fix("b")->compute_vector(k);
+  };
+  EXPECT_NEAR(measured("pressure", entry(0) / 1e5) / 0.279082, 1.0, 0.005);
+  EXPECT_NEAR(entry(4) / T / 0.694444, 1.0, 0.005);
+  EXPECT_NEAR(entry(3) / mass / 0.401878, 1.0, 0.005);
+  EXPECT_NEAR((entry(3) + entry(6)) / mass, 1.0, 1e-12);
+
+  Scene fill(
+      box(3, -1.0, 1.0, 0.2, "") + thin_body(file.name, "thickness 1e5", "neohookean 1e5 0.3") +
+      "variable rate equal 2*ramp(1,1)\n" +
+      strprintf("fix b all mpm/airbag e gas 1e5 1.4 temperature %g %g inflow v_rate 300\n", T, R) +
+      strprintf("timestep %.15g\nrun 100\n", mass / 200.0));
+  EXPECT_NEAR(fill.fix("b")->compute_vector(3) / mass, 2.0, 1e-9);
+  EXPECT_NEAR(fill.fix("b")->compute_vector(4) / T, 1.2, 1e-3);
+  EXPECT_NEAR(fill.fix("b")->compute_vector(5) / mass, 1.0, 1e-9);
+}
+
+TEST(ThinElements, RanksAndRestart)
+{
+  const struct {
+    int dim;
+    const char *thin;
+    std::string mesh, more;
+  } cases[] = {
+      {3, "thickness 0.001", sphere(3, 0.1),
+       "fix b all mpm/airbag e gas 1200 1.4 outside 1000 temperature 300 287 vent 1e-4 1 opens "
+       "50\n"},
+      {3, "section 1e-5", hanging(40, 0.5, 2), "fix gr all gravity 9.81 vector 0 0.6 -0.8\n"},
+      {2, "thickness 0.001", hanging(40, 0.5, 1), "fix gr all gravity 9.81 vector 0 -1 0\n"}};
+  for (const auto &c : cases) {
+    SCOPED_TRACE(c.thin);
+    ScratchFile file("ranks.msh", c.mesh);
+    const std::string head = box(c.dim, -0.6, 0.6, 0.05, "transfer flip 0.99");
+    const std::string material = "fix m all mpm/material density 1000 neohookean 1e5 0.3\n";
+    const std::string points =
+        std::string("create_points 1 mesh ") + file.name + " " + c.thin + "\n";
+    const std::string elements =
+        std::string("fix e all mpm/elements ") + file.name + " " + c.thin + " compression no\n";
+    const std::string rest = material + elements + c.more + "timestep 0.0002\n";
+    ScratchFile own("serial.msh", c.mesh);
+    const std::string start = head + points +
+        "velocity all set 0.3 0.2 0\nvelocity all ramp vx 0.0 2.0 x 0.0 0.5 sum yes\n" + rest;
+    Scene serial(replaced(start, file.name, own.name) + "run 200\n", MPI_COMM_SELF);
+    Continued run(start, 100, "neighbor 0.025 bin\n" + head.substr(head.find("fix grid")) + rest,
+                  100);
+    const auto state = run.whole.gather();
+    EXPECT_LT(measured("ranks", difference(serial.gather(), state)), 1e-9);
+    EXPECT_TRUE(identical(state, run.again.gather()));
+  }
+}
+
+SERIAL_TEST(ThinElements, BadInput)
+{
+  ScratchFile ball("ball.msh", sphere(2, 0.1)), mixed("mixed.msh", sphere(2, 0.1, true)),
+      open("sheet.msh", sheet(4, 0.2, true)), line("line.msh", hanging(20, 0.5, 2));
+  const auto failure = [&](const std::string &file, const std::string &thin,
+                           const std::string &more, const std::string &bag,
+                           const std::string &material = "neohookean 1e5 0.3") {
+    Scene run;
+    return run.error(box(3, -0.6, 0.6, 0.05, "") + thin_body(file, thin, material, more) + bag +
+                     "timestep 1e-6\nrun 0\n");
+  };
+  const std::string gas = "fix b all mpm/airbag e gas 1e5 1.4\n", thick = "thickness 0.001";
+  EXPECT_THAT(failure(ball.name, thick, "compression no", gas), "");
+  EXPECT_THAT(failure(mixed.name, thick, "", gas), "");    // sides are made the same
+  EXPECT_THAT(failure(open.name, thick, "", "fix b all mpm/airbag e pressure 10\n"), "");
+  EXPECT_THAT(failure(open.name, thick, "", gas), HasSubstr("has a rim"));
+  EXPECT_THAT(failure(line.name, "section 1e-5", "", gas), HasSubstr("has no surface"));
+  EXPECT_THAT(failure(ball.name, "section 1e-5", "", ""), HasSubstr("no elements of dimension 1"));
+  EXPECT_THAT(failure(ball.name, "", "", ""), HasSubstr("no elements of dimension 3"));
+  EXPECT_THAT(failure(ball.name, thick + " section 1", "", ""), HasSubstr("use one of them"));
+  EXPECT_THAT(failure(ball.name, thick, "locking fbar", ""), HasSubstr("is for solids"));
+  EXPECT_THAT(failure(ball.name, thick, "compression no", "", "eos linear 1e5 strength j2 4e4 100"),
+              HasSubstr("must be elastic"));
+  EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag x gas 1e5 1.4\n"),
+              HasSubstr("no fix mpm/elements with ID x"));
+  EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e\n"),
+              HasSubstr("needs either pressure or gas"));
+  EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e gas 1e5 0.9\n"),
+              HasSubstr("0.9"));
+  EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e gas 1e5 1.4 vent 1 1\n"),
+              HasSubstr("use temperature T R"));
+  EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e pressure 1 vent 1 1\n"),
+              HasSubstr("are for gas"));
+  EXPECT_THAT(failure(ball.name, thick, "", gas + "fix c all mpm/airbag e pressure 1\n"),
+              HasSubstr("more than one fix mpm/airbag"));
+  EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e pressure v_none\n"),
+              HasSubstr("none"));
+  EXPECT_THAT(failure(ball.name, thick, "",
+                      "unfix e\nfix e all mpm/elements " + ball.name + " thickness 0.002\n"),
+              HasSubstr("volume"));
+}
