@@ -10,6 +10,7 @@
 
 #include "mpm_flow_air.h"
 #include "mpm_flow_pressure.h"
+#include "mpm_flow_stress.h"
 #include "mpm_flow_transfer.h"
 #include "mpm_flow_viscosity.h"
 #include "mpm_options.h"
@@ -59,6 +60,8 @@ Options MPMIncompressibleOptions::declare(int dim)
   o.argument(number(h, "node spacing", POSITIVE, "distance"));
   o.argument(number(density, "density", POSITIVE, "density"));
   o.add("viscosity", {number(viscosity, "mu", NOT_NEGATIVE, "pressure*time", "dynamic viscosity")});
+  o.add("implicit", {yes_no(implicit)},
+        "solve for viscous stresses together with the pressure: they do not bind the time step");
   o.add("transfer",
         {word(transfer,
               {{"apic", APIC, "points have gradients of the velocity"},
@@ -162,7 +165,14 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
 
   pressure = std::make_unique<MPMFlowPressure>(lmp, cells);
   air = std::make_unique<MPMFlowAir>(cells);
-  if (viscosity > 0.0) {
+  if (implicit && viscosity == 0.0)
+    error->all(FLERR,
+               "Fix mpm/incompressible implicit yes is about the viscosity: add the keyword "
+               "viscosity");
+  if (implicit) {
+    stress = std::make_unique<MPMFlowStress>(lmp, cells, *pressure);
+    cells.wants_around = true;
+  } else if (viscosity > 0.0) {
     viscous = std::make_unique<MPMFlowViscosity>(cells, *pressure);
     cells.wants_around = true;
   }
@@ -171,7 +181,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   time_integrate = 1;
   dynamic_group_allow = 0;
   scalar_flag = vector_flag = 1;
-  size_vector = 13;
+  size_vector = 14;
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -390,18 +400,47 @@ void FixMPMIncompressible::find_flow(double duration)
   for (const double v : star) most[0] = std::max(most[0], std::fabs(v));
   MPI_Allreduce(most, most_all, 1, MPI_DOUBLE, MPI_MAX, world);
   const double cells_of_all = (double) atom->natoms;
-  const auto report = pressure->project(
-      star.data(), velocity.data(), known.data(),
-      {tolerance, ROUNDING * most_all[0] / h * std::sqrt(cells_of_all), most_iterations});
+  const double rounding = ROUNDING * most_all[0] * std::sqrt(cells_of_all);
+  const auto report = pressure->project(star.data(), velocity.data(), known.data(),
+                                        {tolerance, rounding / h, most_iterations});
   if (!report.converged())
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix {} {}: the pressure {} at step {}; allow more iterations, or a larger tolerance",
         style, id, report.describe(), update->ntimestep);
+  if (stress) find_stress(duration, rounding);
   go_on_into_air();
   last.iterations = report.iterations;
   last.residual = report.right_side > 0.0 ? report.residuals.back() / report.right_side : 0.0;
   last.divergence = pressure->largest_divergence(velocity.data());
+}
+
+/* ----------------------------------------------------------------------
+   Viscous stresses, with what they add to the pressure, at the end of a step that so far has none. What a surface at any
+   place does is left to the pressure alone: a fluid at rest stays there
+------------------------------------------------------------------------- */
+
+void FixMPMIncompressible::find_stress(double dt, double rounding)
+{
+  potentials = pressure->psi;
+  const auto report = stress->step(dt * viscosity * acceleration_of_stress() / (h * h), velocity,
+                                   potentials, {tolerance, rounding, most_iterations});
+  if (!report.converged())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: the implicit viscosity {} at step {}; allow more iterations, a larger "
+               "tolerance, or take smaller time steps",
+               style, id, report.describe(), update->ntimestep);
+  last.of_stress = report.iterations;
+  viscous_velocity.swap(velocity);
+  velocity.assign(viscous_velocity.size(), 0.0);
+  const auto again = pressure->project(viscous_velocity.data(), velocity.data(), known.data(),
+                                       {tolerance, rounding / h, most_iterations});
+  if (!again.converged())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: the pressure after implicit viscosity {} at step {}; allow more "
+               "iterations, or a larger tolerance",
+               style, id, again.describe(), update->ntimestep);
+  for (std::size_t k = 0; k < potentials.size(); k++) pressure->psi[k] += potentials[k];
 }
 
 /** Velocities of faces by the momentum of points, and shares that are filled, complete. */
@@ -532,7 +571,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   double dt = std::numeric_limits<double>::max();
   const double nu = viscosity * acceleration_of_stress();
   tag = 0;
-  if (nu > 0.0) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
+  if (nu > 0.0 && !implicit) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
     double square = 0.0, force_square = 0.0;
@@ -581,6 +620,7 @@ double FixMPMIncompressible::compute_vector(int k)
     for (int i = 0; i < atom->nlocal; i++)
       if (cells.is_point(i))
         mine += 0.5 * force->mvv2e * atom->rmass[i] * MathExtra::lensq3(atom->v[i]);
+  if (k == 13) return last.of_stress;
   if (k > 6) mine = last.walls[(k - 7) / 2][(k - 7) % 2];
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;

@@ -25,6 +25,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 namespace LAMMPS_NS {
 class MPMFlowAir;
 class MPMFlowPressure;
+class MPMFlowStress;
 class MPMFlowViscosity;
 struct MPMFlowPoints;
 
@@ -33,6 +34,7 @@ struct MPMIncompressibleOptions {
 
   double h = 0.0, density = 0.0;
   double viscosity = 0.0;
+  bool implicit = false;    ///< viscosity
   Transfer transfer = APIC;
   double flip = 0.0;       ///< share of FLIP
   double reflect = 0.0;    ///< share of the change by the pressure that comes once more
@@ -75,14 +77,17 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   MPMFlowLattice cells;
   std::unique_ptr<MPMFlowPressure> pressure;
   std::unique_ptr<MPMFlowAir> air;
-  std::unique_ptr<MPMFlowViscosity> viscous;    // null: none
+  std::unique_ptr<MPMFlowViscosity> viscous;    // explicit; null: none
+  std::unique_ptr<MPMFlowStress> stress;        // implicit viscosity; null: none
   MPMRows gradient;                             // [n][dim*dim] dv_c/dx_d of points, with apic
-  std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift;
+  std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, potentials,
+      viscous_velocity;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
 
   struct {
-    double iterations = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0, filled = 0.0;
+    double iterations = 0.0, of_stress = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0,
+           filled = 0.0;
     double walls[3][2] = {};
   } last;    // of the last step; filled, wet, and walls of this rank
 
@@ -95,6 +100,7 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   void find_velocities();
   void add_forces(double dt);
   void add_viscosity(double dt);
+  void find_stress(double dt, double rounding);
   void find_flow(double duration);
   void find_pressures(double pressure_to_psi);
   void check_speed() const;
