@@ -11,6 +11,7 @@
 #include "mpm_flow_air.h"
 #include "mpm_flow_pressure.h"
 #include "mpm_flow_stress.h"
+#include "mpm_flow_tension.h"
 #include "mpm_flow_transfer.h"
 #include "mpm_flow_viscosity.h"
 #include "mpm_options.h"
@@ -44,6 +45,8 @@ static constexpr double ROUNDING = 1.0e-14;
 static constexpr double DIFFERENT_DT = 0.01;
 // relative difference of densities that counts as none
 static constexpr double SAME_DENSITY = 1.0e-9;
+// with surface tension, see MPMFlowPressure::nearest
+static constexpr double NEAREST_SURFACE = 1.0e-4;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
 // passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
@@ -62,6 +65,8 @@ Options MPMIncompressibleOptions::declare(int dim)
   o.add("viscosity", {number(viscosity, "mu", NOT_NEGATIVE, "pressure*time", "dynamic viscosity")});
   o.add("implicit", {yes_no(implicit)},
         "solve for viscous stresses together with the pressure: they do not bind the time step");
+  o.add("tension",
+        {number(tension, "sigma", NOT_NEGATIVE, "pressure*distance", "surface tension")});
   o.add("transfer",
         {word(transfer,
               {{"apic", APIC, "points have gradients of the velocity"},
@@ -169,6 +174,12 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR,
                "Fix mpm/incompressible implicit yes is about the viscosity: add the keyword "
                "viscosity");
+  if (tension > 0.0) {
+    curved = std::make_unique<MPMFlowTension>(cells, *pressure);
+    pressure->nearest = NEAREST_SURFACE;
+    cells.wants_more = MPMFlowTension::PASSES;
+    cells.wants_around = true;
+  }
   if (implicit) {
     stress = std::make_unique<MPMFlowStress>(lmp, cells, *pressure);
     cells.wants_around = true;
@@ -331,6 +342,12 @@ double FixMPMIncompressible::acceleration_of_stress() const
   return force->ftm2v / (force->nktv2p * density);
 }
 
+/** dt p/density of free surfaces by their tension; null: they have none. */
+const std::vector<double> *FixMPMIncompressible::surface_psi() const
+{
+  return curved ? &at_surface : nullptr;
+}
+
 MPMFlowPoints FixMPMIncompressible::points_now(double dt) const
 {
   return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt};
@@ -401,8 +418,17 @@ void FixMPMIncompressible::find_flow(double duration)
   MPI_Allreduce(most, most_all, 1, MPI_DOUBLE, MPI_MAX, world);
   const double cells_of_all = (double) atom->natoms;
   const double rounding = ROUNDING * most_all[0] * std::sqrt(cells_of_all);
+  if (curved) {
+    const double most = MPMFlowTension::stable_dt(tension * acceleration_of_stress(), h);
+    if (update->dt > most * (1.0 + 1.0e-9))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix {} {}: the time step {:.6g} is too large for the surface tension, which "
+                 "allows {:.6g}; reduce it, or let fix mpm/dt set it",
+                 style, id, update->dt, most);
+    curved->find(share, duration * acceleration_of_stress() * tension, at_surface);
+  }
   const auto report = pressure->project(star.data(), velocity.data(), known.data(),
-                                        {tolerance, rounding / h, most_iterations});
+                                        {tolerance, rounding / h, most_iterations}, surface_psi());
   if (!report.converged())
     error->all(
         FLERR, Error::NOLASTLINE,
@@ -498,7 +524,7 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
   for (int d = 0; d < cells.lattice.dim; d++)
     for (int s = 0; s < 2; s++)
       last.walls[d][s] = pressure->at_wall(d, s) / (pressure_to_psi * force->nktv2p);
-  pressure->extend_into_air(pressures);
+  pressure->extend_into_air(pressures, surface_psi());
   for (double &p : pressures) p /= pressure_to_psi;
   cells.extrapolate_cells(pressures.data(), [this](int64_t number) {
     return pressure->is_wet(number);
@@ -572,6 +598,8 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   const double nu = viscosity * acceleration_of_stress();
   tag = 0;
   if (nu > 0.0 && !implicit) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
+  if (tension > 0.0)
+    dt = std::min(dt, MPMFlowTension::stable_dt(tension * acceleration_of_stress(), h));
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
     double square = 0.0, force_square = 0.0;
@@ -644,8 +672,10 @@ double FixMPMIncompressible::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
       air->memory_usage();
-  for (const auto *list :
-       {&sums, &share, &old, &star, &more, &velocity, &known, &pressures, &shift})
+  if (curved) bytes += curved->memory_usage();
+  if (stress) bytes += stress->memory_usage();
+  for (const auto *list : {&at_surface, &potentials, &viscous_velocity, &sums, &share, &old, &star,
+                           &more, &velocity, &known, &pressures, &shift})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

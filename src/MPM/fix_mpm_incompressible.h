@@ -26,6 +26,7 @@ namespace LAMMPS_NS {
 class MPMFlowAir;
 class MPMFlowPressure;
 class MPMFlowStress;
+class MPMFlowTension;
 class MPMFlowViscosity;
 struct MPMFlowPoints;
 
@@ -35,6 +36,7 @@ struct MPMIncompressibleOptions {
   double h = 0.0, density = 0.0;
   double viscosity = 0.0;
   bool implicit = false;    ///< viscosity
+  double tension = 0.0;
   Transfer transfer = APIC;
   double flip = 0.0;       ///< share of FLIP
   double reflect = 0.0;    ///< share of the change by the pressure that comes once more
@@ -79,9 +81,10 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   std::unique_ptr<MPMFlowAir> air;
   std::unique_ptr<MPMFlowViscosity> viscous;    // explicit; null: none
   std::unique_ptr<MPMFlowStress> stress;        // implicit viscosity; null: none
+  std::unique_ptr<MPMFlowTension> curved;       // with surface tension; null: none
   MPMRows gradient;                             // [n][dim*dim] dv_c/dx_d of points, with apic
-  std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, potentials,
-      viscous_velocity;
+  std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
+      potentials, viscous_velocity;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
 
@@ -92,6 +95,7 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   } last;    // of the last step; filled, wet, and walls of this rank
 
   double acceleration_of_stress() const;
+  const std::vector<double> *surface_psi() const;
   MPMFlowPoints points_now(double dt) const;
   void check_points();
   void fit_gradients();
