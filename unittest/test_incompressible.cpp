@@ -150,9 +150,9 @@ SERIAL_TEST(Vortices, DecayAsTheyShould)
     measured("error of the pressure", e.pressure);
     measured("fewest points in a cell", e.fewest);
     measured("most points in a cell", e.most);
-    EXPECT_NEAR(e.factor, 1.0, 0.02);
-    EXPECT_LT(e.velocity, 0.02);
-    EXPECT_LT(e.pressure, 0.05);
+    EXPECT_NEAR(e.factor, 1.0, 0.004);
+    EXPECT_LT(e.velocity, drift > 0.0 ? 0.008 : 0.004);
+    EXPECT_LT(e.pressure, drift > 0.0 ? 0.018 : 0.012);
     EXPECT_GE(e.fewest, 1);
     EXPECT_LE(e.most, 8);
     EXPECT_LT(measured("divergence h/U", run.fix("w")->compute_vector(DIVERGENCE) / n), 1e-10);
@@ -201,12 +201,12 @@ SERIAL_TEST(Plates, CouetteAndPoiseuille)
     return sum / weight;
   };
   Scene couette(plates + "wall yhi stick 1 0\n" + run);
-  EXPECT_NEAR(measured("Couette", at_half(couette)), 0.262756, 0.01 * 0.262756);
+  EXPECT_NEAR(measured("Couette", at_half(couette)), 0.262756, 0.004 * 0.262756);
   Scene poiseuille(plates + "wall yhi stick\nfix g all gravity 8 vector 1 0 0\n" + run);
-  EXPECT_NEAR(measured("Poiseuille", at_half(poiseuille)), 0.615353, 0.01 * 0.615353);
+  EXPECT_NEAR(measured("Poiseuille", at_half(poiseuille)), 0.615353, 0.004 * 0.615353);
 }
 
-// O2: the cavity at Re = 100, here with 32 x 32 cells; twice the bound that is for 64 x 64
+// O2: the cavity at Re = 100, here with 32 x 32 cells; where 0.008 is asked of 64 x 64
 SERIAL_TEST(Cavity, Profile)
 {
   const int n = 32;
@@ -231,7 +231,7 @@ SERIAL_TEST(Cavity, Profile)
     }
     worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
   }
-  EXPECT_LT(measured("largest error of the profile", worst), 0.016);
+  EXPECT_LT(measured("largest error of the profile", worst), 0.013);
   EXPECT_EQ(run.n(), 4 * n * n);
   EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);    // no voids
 }
@@ -261,15 +261,15 @@ SERIAL_TEST(Tank, AtRest)
                 (dim == 2 ? "run 1000\n" : "run 100\n"));
       const double thick = dim == 3 ? 4 * h : 1.0;
       auto *const fix = run.fix("w");
-      EXPECT_LT(measured(std::string(options) + ": speed", fix->compute_vector(FASTEST)), 1e-10);
+      EXPECT_LT(measured(std::string(options) + ": speed", fix->compute_vector(FASTEST)), 1e-11);
       double worst = 0.0;
       for (int i = 0; i < run.n(); i++)
         worst = std::max(
             worst,
             std::fabs(-run.points().tau[i][1] / (9810 * depth) - (1.0 - run.x()[i][1] / depth)));
-      EXPECT_LT(measured("pressure", worst), 1e-6);
-      EXPECT_NEAR(fix->compute_vector(WALLS + 2) / (9810 * depth * thick), 1.0, 1e-6);
-      EXPECT_NEAR(fix->compute_vector(WALLS + 1) / (4905 * depth * depth * thick), 1.0, 1e-6);
+      EXPECT_LT(measured("pressure", worst), 1e-10);
+      EXPECT_NEAR(fix->compute_vector(WALLS + 2) / (9810 * depth * thick), 1.0, 1e-10);
+      EXPECT_NEAR(fix->compute_vector(WALLS + 1) / (4905 * depth * depth * thick), 1.0, 1e-10);
       EXPECT_EQ(fix->compute_vector(WALLS + 3), 0.0);
     }
 }
@@ -300,6 +300,48 @@ SERIAL_TEST(Tank, PoolsAndFullOnes)
   const double up =
       full.fix("w")->compute_vector(WALLS + 2) - full.fix("w")->compute_vector(WALLS + 3);
   EXPECT_NEAR(up / 9810, 1.0, 1e-8);
+}
+
+// O7: iterations to 1e-8, with surfaces that are inclined, and with drops; on ranks, and with a closed pool
+SERIAL_TEST(Solver, Iterations)
+{
+  const int most[2][3] = {{21, 27, 33}, {42, 58, 80}};    // asked: 1.5 times those of a transform
+  for (const bool drops : {false, true}) {
+    double before = 1e3;
+    for (int k = 0; k < 3; k++) {
+      const int n = 32 << k;
+      Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) + "region a plane 0.5 0.45 0 0.3 -1 0\n" +
+                "region b sphere 0.2 0.8 0 0.1\nregion c sphere 0.52 0.7 0 0.05\n"
+                "region d sphere 0.81 0.9 0 0.06\nregion w " +
+                (drops ? "union 4 a b c d\n" : "union 2 a a\n") +
+                strprintf("create_points 1 region w spacing %.17g\n", 0.5 / n) +
+                strprintf("fix w all mpm/incompressible %.17g 1000 tolerance 1e-8\n", 1.0 / n) +
+                "fix g all gravity 9.81 vector 0 -1 0\ntimestep 1e-3\nrun 1\n");
+      const double n_iterations = measured("iterations", run.fix("w")->compute_scalar());
+      EXPECT_LE(n_iterations, most[drops][k]);
+      EXPECT_LE(n_iterations, 1.45 * before);
+      EXPECT_LE(n_iterations, 12.0);    // of multigrid
+      before = n_iterations;
+    }
+  }
+}
+
+TEST(Solver, SameOnRanks)
+{
+  for (const char *water : {"plane 0.5 0.45 0 0.3 -1 0", "block INF INF INF INF INF INF"})
+    for (const int dim : {2, 3}) {
+      const auto scene = box(dim, "si", dim == 3 ? "f f f" : "f f",
+                             dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1, 0.02) +
+          "variable u atom y-0.5\nvariable v atom 0.5-x\nregion w " + water + "\n" +
+          strprintf("create_points 1 region w spacing %g\n", dim == 3 ? 0.05 : 0.0125) +
+          strprintf("fix w all mpm/incompressible %g 1000 tolerance 1e-8\n",
+                    dim == 3 ? 0.1 : 0.025) +
+          "fix g all gravity 9.81 vector 0.3 -1 0\ntimestep 1e-3\nvelocity all set v_u v_v 0\n";
+      OnRanks run(scene, "run 3\n", "fix b all balance 1 1.05 shift xy 10 1.05\n");
+      EXPECT_NEAR(measured("iterations", run.parallel.fix("w")->compute_scalar()),
+                  run.serial.fix("w")->compute_scalar(), 1.0);
+      EXPECT_LT(measured("difference", run.difference()), 1e-8);
+    }
 }
 
 // O6: the first pressure of a block that is released, with the surface anywhere in a cell
@@ -333,12 +375,12 @@ SERIAL_TEST(Block, FirstPressure)
         }
         worst[k] /= released(a, H, 0.0, 0.0);
       }
-      EXPECT_LT(measured(strprintf("%g %g: error at 32 cells", ratio, offset), worst[2]), 0.01);
+      EXPECT_LT(measured(strprintf("%g %g: error at 32 cells", ratio, offset), worst[2]), 0.0008);
       mean_order += 0.5 * std::log2(worst[0] / worst[2]);
       orders++;
     }
   // asked is 0.9: the method is of second order
-  EXPECT_GE(measured("order", mean_order / orders), 1.5);
+  EXPECT_GE(measured("order", mean_order / orders), 1.8);
 }
 
 // O5: a standing wave with viscosity. Asked is a frequency to 1 %, which points as dots have, too, with 0.8 %
@@ -348,8 +390,8 @@ SERIAL_TEST(Wave, FrequencyAndDecay)
   double omega = 0.0, decay = 0.0;
   swing(0.01, "", 640, t, m);
   measure(t, m, omega, decay);
-  EXPECT_NEAR(measured("frequency over theory", omega / 5.2992737), 1.0, 0.005);
-  EXPECT_NEAR(measured("decay over theory", decay / 0.1797877), 1.0, 0.10);
+  EXPECT_NEAR(measured("frequency over theory", omega / 5.2992737), 1.0, 0.001);
+  EXPECT_NEAR(measured("decay over theory", decay / 0.1797877), 1.0, 0.05);
 }
 
 // without viscosity a wave neither grows nor decays, whatever is reflected: the numerical viscosity, by 2 nu k^2
@@ -360,44 +402,47 @@ SERIAL_TEST(Wave, KeepsItsHeight)
     double omega = 0.0, decay = 0.0;
     swing(0.0, options, 400, t, m);
     measure(t, m, omega, decay);
-    EXPECT_LT(std::fabs(measured(options + std::string(": decay"), decay)), 0.02);
-    EXPECT_NEAR(measured("frequency over theory", omega / 5.316647), 1.0, 0.01);
+    const bool flip = std::strstr(options, "flip");
+    EXPECT_LT(std::fabs(measured(options + std::string(": decay"), decay)), flip ? 0.01 : 1e-4);
+    EXPECT_NEAR(measured("frequency over theory", omega / 5.316647), 1.0, flip ? 0.003 : 0.002);
   }
 }
 
-// nothing but gravity acts on a drop in flight, whose spin stays
+// nothing acts on a drop in flight, whose spin stays; momentum is kept to what the pressure at faces in the surface is off by
 SERIAL_TEST(Drop, InFlight)
 {
-  for (const int dim : {2, 3}) {
-    Scene run(
-        box(dim, "si", dim == 3 ? "p p p" : "p p", dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1, 0.02) +
-        "region drop sphere 0.52 0.47 " + (dim == 3 ? "0.5" : "0") + " 0.25\n" +
-        "create_points 1 region drop spacing 0.03125\n"
-        "variable vx atom -0.5*(y-0.47)+0.3\nvariable vy atom 0.5*(x-0.52)\n"
-        "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000\n"
-        "timestep 0.02\nrun 0\n");
-    const auto spin = [&run] {
-      double L = 0.0, p[2] = {0.0, 0.0};
-      const auto all = run.gather();
-      double c[2] = {0.0, 0.0}, m = 0.0;
-      for (const auto &s : all)
-        for (int d = 0; d < 2; d++) {
-          m += 0.5 * s.mass;
-          c[d] += s.mass * s.x[d];
-          p[d] += s.mass * s.v[d];
+  for (const int dim : {2, 3})
+    for (const bool spread : {true, false}) {
+      Scene run(box(dim, "si", dim == 3 ? "p p p" : "p p", dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1,
+                    0.02) +
+                "region drop sphere 0.52 0.47 " + (dim == 3 ? "0.5" : "0") + " 0.25\n" +
+                "create_points 1 region drop spacing 0.03125\n"
+                "variable vx atom -0.5*(y-0.47)+0.3\nvariable vy atom 0.5*(x-0.52)\n"
+                "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000" +
+                (spread ? "" : " spread 0") + "\ntimestep 0.02\nrun 0\n");
+      const auto spin = [&run] {
+        double L = 0.0, p[2] = {0.0, 0.0};
+        const auto all = run.gather();
+        double c[2] = {0.0, 0.0}, m = 0.0;
+        for (const auto &s : all) {
+          m += s.mass;
+          for (int d = 0; d < 2; d++) {
+            c[d] += s.mass * s.x[d];
+            p[d] += s.mass * s.v[d];
+          }
         }
-      for (const auto &s : all)
-        L += s.mass * ((s.x[0] - c[0] / m) * s.v[1] - (s.x[1] - c[1] / m) * s.v[0]);
-      return std::array<double, 3>{L, p[0] / m, p[1] / m};
-    };
-    const auto before = spin();
-    run.commands("run 50\n");
-    const auto after = spin();
-    EXPECT_NEAR(after[1], before[1], 1e-4);
-    EXPECT_NEAR(after[2], before[2], 1e-4);
-    measured("angular momentum after 50 steps", after[0] / before[0]);
-    EXPECT_NEAR(after[0] / before[0], 1.0, 0.02);
-  }
+        for (const auto &s : all)
+          L += s.mass * ((s.x[0] - c[0] / m) * s.v[1] - (s.x[1] - c[1] / m) * s.v[0]);
+        return std::array<double, 3>{L, p[0] / m, p[1] / m};
+      };
+      const auto before = spin();
+      run.commands("run 50\n");
+      const auto after = spin();
+      for (int d = 1; d < 3; d++)
+        EXPECT_LT(measured("change of the mean velocity", std::fabs(after[d] - before[d])), 4e-5);
+      measured("angular momentum after 50 steps", after[0] / before[0]);
+      EXPECT_NEAR(after[0] / before[0], 1.0, 0.005);
+    }
 }
 
 // in all units: weight of a tank, fall of a drop
@@ -517,4 +562,58 @@ SERIAL_TEST(Tank, TimeStepThatChanges)
             << more << dt;
     }
   }
+}
+
+// before the first step there are no forces: the first step of a fluid at rest is that of its weight, and runs that go on
+// from restart files, also those that are written on the way, have the steps of the one without a break
+TEST(Tank, FirstTimeStep)
+{
+  for (const char *units : {"si", "metal"}) {
+    const auto scene = plane(units, "f f", "0 8 0 8", 1, 0.3) +
+        "region w block INF 4 INF 6 INF INF\ncreate_points 1 region w spacing 0.5\n";
+    const std::string fixes =
+        "fix w all mpm/incompressible 1 2.0\nfix dt all mpm/dt 0.7 every 1 max 100\n"
+        "fix g all gravity 0.25 vector 0 -1 0\n";
+    Scene first(scene + fixes + "run 0\n");
+    const double a = 0.25 * first.lmp->force->ftm2v;
+    EXPECT_NEAR(first.lmp->update->dt / std::sqrt(1.0 / a), 0.35, 1e-12) << units;
+    EXPECT_NEAR(first.fix("w")->compute_vector(FILLED), 24.0, 1e-12);
+    EXPECT_EQ(first.fix("w")->compute_vector(WET), 24.0);
+
+    // water that falls, with steps that become shorter, and water at rest, with steps that grow
+
+    for (const char *width : {"INF 4", "INF INF"}) {
+      const std::string more = width[4] == '4' ? "fix push all addforce 0.01 0.02 0\n" : "";
+      const ScratchFile file("restart");
+      const std::string first_part = strprintf("restart 5 %s.*\n", file.name.c_str());
+      const auto water = replaced(scene, "INF 4", width);
+      Scene whole(water + fixes + more + first_part + "run 8\n");
+      Scene parts(water + fixes + more + "run 3\nrun 5\n");
+      Scene again("read_restart " + file.name + ".5\nneighbor 0.3 bin\n" + fixes + more +
+                  "run 3\n");
+      if (rank() == 0) std::remove((file.name + ".5").c_str());
+      EXPECT_TRUE(identical(whole.gather(), parts.gather()));
+      EXPECT_EQ(whole.lmp->update->dt, again.lmp->update->dt);
+      EXPECT_TRUE(identical(whole.gather(), again.gather()));
+    }
+  }
+}
+
+// bodies of others, which a flow would go through
+SERIAL_TEST(Incompressible, Others)
+{
+  const auto scene = plane("si", "p p", "0 1 0 1", 1, 0.02) +
+      "region left block INF 0.4 INF INF INF INF\nregion right block 0.5 INF INF INF INF INF\n"
+      "create_points 1 region left spacing 0.05\ncreate_points 1 region right spacing 0.05\n"
+      "group left region left\ngroup right region right\n"
+      "fix w left mpm/incompressible 0.1 1000\ntimestep 1e-5\n";
+  expect_error(scene + "fix v right mpm/incompressible 0.1 900\nrun 1\n", "go through each other");
+  EXPECT_EQ(lines_that_say(scene + "run 1\n", "as neither feels").size(), 0u);
+  EXPECT_EQ(
+      lines_that_say(scene +
+                         "fix grid right mpm 0.1\nfix m right mpm/material density 1000 linear "
+                         "1e5 0.3\nrun 1\nrun 1\n",
+                     "as neither feels")
+          .size(),
+      1u);
 }

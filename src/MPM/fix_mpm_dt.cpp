@@ -427,9 +427,10 @@ std::vector<double> FixMPMDt::saved_options() const
 void FixMPMDt::write_restart(FILE *fp)
 {
   const auto fields = MPMField::all(lmp);
-  const bool running = std::any_of(fields.begin(), fields.end(), [](const auto *field) {
-    return field->running;
-  });
+  const bool flows = update->whichflag == 1 && !find_fixes<FixMPMIncompressible>(lmp).empty();
+  const bool running = flows || std::any_of(fields.begin(), fields.end(), [](const auto *field) {
+                         return field->running;
+                       });
   const Limit steps = smallest(strain_limit_local());
   if (running) {
     dt_left = update->dt;

@@ -10,6 +10,7 @@
 
 #include "mpm_flow_air.h"
 #include "mpm_flow_pressure.h"
+#include "mpm_flow_regions.h"
 #include "mpm_flow_stress.h"
 #include "mpm_flow_tension.h"
 #include "mpm_flow_transfer.h"
@@ -49,6 +50,9 @@ static constexpr double SAME_DENSITY = 1.0e-9;
 static constexpr double NEAREST_SURFACE = 1.0e-4;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
+// accelerations over that of the weight for which the first step of a fluid at rest is made: at the edges of a block of water
+// that is released the pressure makes such ones
+static constexpr double FIRST_FALL = 4.0;
 // passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
@@ -113,6 +117,13 @@ Options MPMIncompressibleOptions::declare(int dim)
         walls[axis][side] = wall;
       })
       .standard("slip, all faces that are not periodic");
+  o.add("region",
+        {text(region_id, "region-ID",
+              "its inside is solid, without friction; can be given more than once")})
+      .then([this] {
+        region_ids.push_back(region_id);
+      })
+      .standard("none");
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
                 "share of an excess of points in a cell that goes elsewhere in a step")});
@@ -121,6 +132,15 @@ Options MPMIncompressibleOptions::declare(int dim)
                 "divergence that is left, as a share of the one before")});
   o.add("iterations",
         {integer(most_iterations, "N", POSITIVE, "largest number of iterations of the pressure")});
+  o.refuse([this] {
+    return OptionRules{
+        {!region_ids.empty() && viscosity > 0.0, "region",
+         "has no friction, and cannot be used with viscosity: use walls of the box, or leave "
+         "viscosity out"},
+        {!region_ids.empty() && tension > 0.0, "region",
+         "has no contact angle, and cannot be used with tension: use walls of the box, or leave "
+         "tension out"}};
+  });
   return o;
 }
 
@@ -187,12 +207,18 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     viscous = std::make_unique<MPMFlowViscosity>(cells, *pressure);
     cells.wants_around = true;
   }
+  if (!region_ids.empty()) {
+    regions = std::make_unique<MPMFlowRegions>(lmp, cells, region_ids);
+    pressure->regions = regions.get();
+    cells.wants_around = true;
+    last.regions.assign(3 * region_ids.size(), 0.0);
+  }
   if (transfer == APIC) state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
 
   time_integrate = 1;
   dynamic_group_allow = 0;
   scalar_flag = vector_flag = 1;
-  size_vector = 14;
+  size_vector = 14 + 3 * region_ids.size();
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -221,6 +247,8 @@ void FixMPMIncompressible::init()
                "Fix mpm/incompressible requires a box of constant size and shape: remove the fix "
                "that changes it");
   cells.check_box(style);
+  if (regions) regions->init(fmt::format("Fix {} {}", style, id));
+  forces_known = false;
 
   // points need no ghosts, see FixMPM::init()
 
@@ -289,6 +317,27 @@ void FixMPMIncompressible::check_points()
           "give the fixes disjoint groups",
           nall, id, style, other->id, other->style);
   }
+  check_others();
+}
+
+/** Others in the same box that this flow would go through. */
+void FixMPMIncompressible::check_others() const
+{
+  for (const auto *other : modify->get_fix_by_style("^mpm/incompressible$"))
+    if (other != this)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fluids of fixes {} and {} (style {}) would go through each other: give their "
+                 "points to one "
+                 "of these fixes",
+                 id, other->id, style);
+  for (const auto *other : modify->get_fix_by_style("^mpm$"))
+    if (comm->me == 0 && !told_of_bodies)
+      error->warning(
+          FLERR,
+          "Points of fix {} (style {}) go through those of fix {} (style {}), as neither feels "
+          "the other",
+          id, style, other->id, other->style);
+  told_of_bodies = true;
 }
 
 void FixMPMIncompressible::setup(int)
@@ -296,7 +345,42 @@ void FixMPMIncompressible::setup(int)
   if (!(update->dt > 0.0))
     error->all(FLERR, Error::NOLASTLINE, "Fix {} requires a positive time step: {}", style,
                update->dt);
+  cells.find_cells();
+  if (regions) {
+    regions->start_run();
+    regions->find(0.0);
+    check_depths();
+  }
   fit_gradients();
+  give_to_cells(cells, points_now(0.0), sums);
+  cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
+  find_velocities();
+  pressure->find_wet(share);
+  note_filling();
+  forces_known = true;
+}
+
+/** Points that begin in a wall: at its surface they are put outside in the first step, farther in they are a mistake. */
+void FixMPMIncompressible::check_depths()
+{
+  bigint mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (cells.is_point(i) && regions->depth(atom->x[i], 2.0 * h) > 0.5 * h) mine++;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: {} points are in a region, which is solid: create them outside of it",
+               style, id, all);
+}
+
+/** What points fill. */
+void FixMPMIncompressible::note_filling()
+{
+  last.wet = (double) pressure->nwet();
+  last.filled = 0.0;
+  for (const auto &cell : cells.cells)
+    last.filled += std::min(1.0, share[cell.number]) * (regions ? regions->room(cell.number) : 1.0);
+  last.filled *= cells.lattice.cell_volume();
 }
 
 /* ----------------------------------------------------------------------
@@ -316,7 +400,6 @@ void FixMPMIncompressible::fit_gradients()
       });
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) return;
-  cells.find_cells();
   for (int pass = 0; pass < FITS; pass++) {
     give_to_cells(cells, points_now(0.0), sums);
     cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
@@ -371,6 +454,7 @@ void FixMPMIncompressible::initial_integrate(int)
   MPI_Allreduce(&valid, &all_valid, 1, MPI_INT, MPI_MIN, world);
   cells.valid = all_valid;
   cells.find_cells();
+  if (regions) regions->find(dt);
 
   give_to_cells(cells, points, sums);
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
@@ -393,16 +477,16 @@ void FixMPMIncompressible::initial_integrate(int)
 
   if (spread > 0.0) find_shift();
 
-  const MPMFlowUpdate update_points = {flip, flip > 0.0 ? old.data() : nullptr, reflect,
+  const MPMFlowUpdate update_points = {flip,
+                                       flip > 0.0 ? old.data() : nullptr,
+                                       reflect,
                                        reflect > 0.0 ? more.data() : nullptr,
-                                       spread > 0.0 ? shift.data() : nullptr};
+                                       spread > 0.0 ? shift.data() : nullptr,
+                                       regions.get()};
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
 
-  last.wet = (double) pressure->nwet();
-  last.filled = 0.0;
-  for (const auto &cell : cells.cells) last.filled += std::min(1.0, share[cell.number]);
-  last.filled *= cells.lattice.cell_volume();
+  note_filling();
 }
 
 /** Velocities after forces and viscosity of a duration, which go to star, and the pressure. */
@@ -484,6 +568,7 @@ void FixMPMIncompressible::find_velocities()
   }
   cells.reflect_velocities(star.data());
   cells.reflect_cells(share.data());
+  if (regions) regions->normalize(share);
 }
 
 /** What forces change, but for walls, which take their share. */
@@ -524,6 +609,16 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
   for (int d = 0; d < cells.lattice.dim; d++)
     for (int s = 0; s < 2; s++)
       last.walls[d][s] = pressure->at_wall(d, s) / (pressure_to_psi * force->nktv2p);
+  if (regions) {
+    std::fill(last.regions.begin(), last.regions.end(), 0.0);
+    regions->add_forces(
+        pressure->psi.data(),
+        [this](int64_t number) {
+          return pressure->is_wet(number);
+        },
+        last.regions.data());
+    for (double &f : last.regions) f /= pressure_to_psi * force->nktv2p;
+  }
   pressure->extend_into_air(pressures, surface_psi());
   for (double &p : pressures) p /= pressure_to_psi;
   cells.extrapolate_cells(pressures.data(), [this](int64_t number) {
@@ -546,7 +641,9 @@ void FixMPMIncompressible::go_on_into_air()
     for (int c = 0; c < dim; c++) {
       const int64_t face = (int64_t) cell.number * dim + c;
       const bool solved = pressure->is_next_to_water(cell, c);
-      if (solved || sums[(int64_t) cell.number * width + dim + c] > 0.0) {
+      if (solved ||
+          (pressure->open(cell.number, c) > 0.0 &&
+           sums[(int64_t) cell.number * width + dim + c] > 0.0)) {
         velocity[face] += star[face];
         known[face] = 1.0;
       } else
@@ -555,6 +652,7 @@ void FixMPMIncompressible::go_on_into_air()
   cells.keep_owned(velocity.data(), dim);
   cells.keep_owned(known.data(), dim);
   air->extend(AIR_LAYERS, velocity, known);
+  if (regions) regions->hold(velocity);
   cells.reflect_velocities(velocity.data());
 }
 
@@ -571,6 +669,7 @@ void FixMPMIncompressible::find_shift()
     error->all(FLERR, Error::NOLASTLINE, "Fix {} {}: the spreading of points {} at step {}", style,
                id, report.describe(), update->ntimestep);
   air->extend(AIR_LAYERS, shift, known);
+  if (regions) regions->hold(shift, false);
   cells.reflect_velocities(shift.data(), false);
 }
 
@@ -600,6 +699,20 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   if (nu > 0.0 && !implicit) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
   if (tension > 0.0)
     dt = std::min(dt, MPMFlowTension::stable_dt(tension * acceleration_of_stress(), h));
+
+  // At the start of a run there are no forces. Those at the end of the last run count by the limit that they gave, also if
+  // it was the run that has written the restart file; at the start of the first one there is the weight
+
+  double weight[3] = {0.0, 0.0, 0.0};
+  if (!forces_known && limit_before > 0.0)
+    dt = std::min(dt, limit_before);
+  else if (!forces_known)
+    for (auto *gravity : modify->get_fix_by_style("^gravity")) {
+      int width;
+      const auto *const g = (const double *) gravity->extract("gvec", width);
+      for (int d = 0; d < cells.lattice.dim; d++) weight[d] += g[d];
+    }
+  const double least = FIRST_FALL * MathExtra::len3(weight) * force->ftm2v;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
     double square = 0.0, force_square = 0.0;
@@ -607,7 +720,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
       square += atom->v[i][d] * atom->v[i][d];
       force_square += atom->f[i][d] * atom->f[i][d];
     }
-    const double a = std::sqrt(force_square) * force->ftm2v / atom->rmass[i];
+    const double a = std::max(least, std::sqrt(force_square) * force->ftm2v / atom->rmass[i]);
     const double speed = 0.5 * (std::sqrt(square) + std::sqrt(square + 4.0 * a * h));
     if (speed * dt > h) {
       dt = h / speed;
@@ -617,12 +730,18 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
       return 0.0;
     }
   }
+  if (regions && regions->largest_speed() * dt > h) {
+    dt = h / regions->largest_speed();
+    tag = 0;
+  }
+  if (forces_known) limit_before = dt;
   return dt;
 }
 
 /* ----------------------------------------------------------------------
    scalar: number of iterations; vector: these, what is left of the divergence (relative), largest |div v|, volume that
-   points fill, number of wet cells, kinetic energy, largest speed, force on the six walls
+   points fill, number of wet cells, kinetic energy, largest speed, force on the six walls, iterations of the implicit viscosity,
+   and force on the regions
 ------------------------------------------------------------------------- */
 
 double FixMPMIncompressible::compute_scalar()
@@ -649,29 +768,39 @@ double FixMPMIncompressible::compute_vector(int k)
       if (cells.is_point(i))
         mine += 0.5 * force->mvv2e * atom->rmass[i] * MathExtra::lensq3(atom->v[i]);
   if (k == 13) return last.of_stress;
-  if (k > 6) mine = last.walls[(k - 7) / 2][(k - 7) % 2];
+  if (k > 13)
+    mine = last.regions[k - 14];
+  else if (k > 6)
+    mine = last.walls[(k - 7) / 2][(k - 7) % 2];
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 
-/** The duration of the last step. */
+/** The duration of the last step, and the limit of the one to come, with forces. */
 void FixMPMIncompressible::write_restart(FILE *fp)
 {
+  tagint tag;
+  double mine = stable_dt(tag), limit;
+  MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
   if (comm->me) return;
-  const int size = sizeof(double);
+  const double state[] = {dt_before, limit};
+  const int size = sizeof(state);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&dt_before, sizeof(double), 1, fp);
+  fwrite(state, size, 1, fp);
 }
 
 void FixMPMIncompressible::restart(char *buf)
 {
-  memcpy(&dt_before, buf, sizeof(double));
+  double state[2];
+  memcpy(state, buf, sizeof(state));
+  dt_before = state[0];
+  limit_before = state[1];
 }
 
 double FixMPMIncompressible::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
-      air->memory_usage();
+      air->memory_usage() + (regions ? regions->memory_usage() : 0.0);
   if (curved) bytes += curved->memory_usage();
   if (stress) bytes += stress->memory_usage();
   for (const auto *list : {&at_surface, &potentials, &viscous_velocity, &sums, &share, &old, &star,

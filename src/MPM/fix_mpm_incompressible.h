@@ -20,11 +20,13 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 #include "mpm_state.h"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
 class MPMFlowAir;
 class MPMFlowPressure;
+class MPMFlowRegions;
 class MPMFlowStress;
 class MPMFlowTension;
 class MPMFlowViscosity;
@@ -44,12 +46,14 @@ struct MPMIncompressibleOptions {
   double tolerance = 1.0e-9;
   int most_iterations = 10000;
   MPMFlowWall walls[3][2];
+  std::vector<std::string> region_ids;
 
   MPM_NS::Options declare(int dim);
 
  private:
   int axis = 0, side = 0;    // of the last wall
   MPMFlowWall wall;
+  std::string region_id;
 };
 
 /** Flow of an incompressible fluid, with free surfaces: its points, on a staggered lattice of its own, with a pressure that
@@ -82,22 +86,31 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   std::unique_ptr<MPMFlowViscosity> viscous;    // explicit; null: none
   std::unique_ptr<MPMFlowStress> stress;        // implicit viscosity; null: none
   std::unique_ptr<MPMFlowTension> curved;       // with surface tension; null: none
+  std::unique_ptr<MPMFlowRegions> regions;      // null: none
   MPMRows gradient;                             // [n][dim*dim] dv_c/dx_d of points, with apic
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
       potentials, viscous_velocity;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
+  mutable double limit_before =
+      0.0;                      // last stable_dt() with forces, on restart of all ranks; 0: none
+  bool forces_known = false;    // they are cleared at the start of a run
+  mutable bool told_of_bodies = false;
 
   struct {
     double iterations = 0.0, of_stress = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0,
            filled = 0.0;
     double walls[3][2] = {};
-  } last;    // of the last step; filled, wet, and walls of this rank
+    std::vector<double> regions = {};    // [3 regions]
+  } last;    // of the last step; filled, wet, walls, and regions of this rank
 
   double acceleration_of_stress() const;
   const std::vector<double> *surface_psi() const;
   MPMFlowPoints points_now(double dt) const;
   void check_points();
+  void check_others() const;
+  void check_depths();
+  void note_filling();
   void fit_gradients();
   void find_shift();
   void go_on_into_air();

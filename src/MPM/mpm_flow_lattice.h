@@ -85,6 +85,8 @@ class MPMFlowLattice : protected Pointers {
   void sum(double *values, int width) const;
   /** Values of owners to other ranks and periodic images; the values of all others must be zero. */
   void publish(double *values, int width) const;
+  /** Who shares cells, for solves. */
+  MPMHalo &halo_of_cells() const { return halo; }
   /** Zero for all cells that are not in the list. */
   void keep_owned(double *values, int width) const;
   /** Velocities [cell][dim] at walls and beyond; moving: those of the walls count. */

@@ -8,6 +8,8 @@
 
 #include "mpm_flow_pressure.h"
 
+#include "mpm_flow_regions.h"
+
 #include "lammps.h"
 
 #include <algorithm>
@@ -16,10 +18,14 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// distance in which points make room for others, in spacings
+static constexpr double SPREAD = 8.0;
 // share of the surroundings of a cell, and mean of its neighbors, from which on it is wet
-static constexpr double SPREAD =
-    8.0;    // distance in which points make room for others, in spacings
 static constexpr double HALF = 0.5, SURROUNDED = 0.6;
+// excess of points in a cell that a region cuts, which need not be one: points there are in steps, and walls are not
+static constexpr double UNSURE = 0.25;
+// open share of the surroundings of a cell below which its neighbors tell whether it is wet, if it has a least share of water
+static constexpr double ROOM = 0.5, LEAST = 0.2;
 
 /** Depth below a flat surface, in spacings, of which this share of a hat is filled. */
 static double depth(double share)
@@ -41,18 +47,59 @@ double MPMFlowPressure::weight_to(int64_t wet_cell, int64_t other) const
   return 1.0 / (h * h * (is_wet(other) ? 1.0 : distance(wet_cell, other)));
 }
 
+double MPMFlowPressure::open(int64_t cell, int axis) const
+{
+  return regions ? regions->open(cell, axis) : 1.0;
+}
+
+/** Open share of a side of a cell; of a wall of the box, too. */
+double MPMFlowPressure::open_side(const MPMFlowLattice::Cell &cell, int side) const
+{
+  const int64_t of = side % 2 ? cell.near[side] : cell.number;
+  return of < 0 ? 1.0 : open(of, side / 2);
+}
+
+/** What flows through the lower face of a cell along an axis, per area, with what a wall in it carries along. */
+double MPMFlowPressure::flux(const double *velocity, int64_t cell, int axis) const
+{
+  const double u = velocity[cell * cells.lattice.dim + axis];
+  return regions ? regions->open(cell, axis) * u + regions->flux(cell, axis) : u;
+}
+
 /** Are the neighbors of a cell filled so well that what is between them is water? At a flat surface, their mean is that of
  *  the cell itself. */
 bool MPMFlowPressure::is_surrounded(const MPMFlowLattice::Cell &cell) const
 {
-  int sides = 0;
-  double sum = 0.0;
+  double sum = 0.0, sides = 0.0;
   for (int s = 0; s < 2 * cells.lattice.dim; s++) {
     if (cell.walls >> s & 1) continue;
-    sides++;
-    sum += std::min(2.0, share_of[cell.near[s]]);
+    const double side = open_side(cell, s);
+    sides += side;
+    sum += side * std::min(2.0, share_of[cell.near[s]]);
   }
   return sum > SURROUNDED * sides;
+}
+
+/** What is left of a cell next to a wall can be too little for points to tell that it is full: it is wet if most of what it is open to is. */
+void MPMFlowPressure::follow_neighbors()
+{
+  std::vector<int> changed;
+  for (const auto &cell : cells.cells) {
+    if (regions->room(cell.number) > ROOM || regions->is_closed(cell.number) ||
+        is_wet(cell.number) || share_of[cell.number] < LEAST)
+      continue;
+    double wet_sides = 0.0, sides = 0.0;
+    for (int s = 0; s < 2 * cells.lattice.dim; s++) {
+      if (cell.walls >> s & 1) continue;
+      const double side = open_side(cell, s);
+      sides += side;
+      if (is_wet(cell.near[s])) wet_sides += side;
+    }
+    if (wet_sides > 0.5 * sides) changed.push_back(cell.number);
+  }
+  for (const int number : changed) flag[number] = 1.0;
+  cells.keep_owned(flag.data(), 1);
+  cells.publish(flag.data(), 1);
 }
 
 void MPMFlowPressure::find_wet(const std::vector<double> &share)
@@ -61,8 +108,10 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
   wet.clear();
   flag.assign(cells.size(), 0.0);
   for (const auto &cell : cells.cells)
-    flag[cell.number] = share[cell.number] > HALF || is_surrounded(cell) ? 1.0 : 0.0;
+    if (!(regions && regions->is_closed(cell.number)))
+      flag[cell.number] = share[cell.number] > HALF || is_surrounded(cell) ? 1.0 : 0.0;
   cells.publish(flag.data(), 1);
+  if (regions) follow_neighbors();
   cells.reflect_cells(flag.data());
   inverse_diagonal.assign(cells.size(), 0.0);
   const int sides = 2 * cells.lattice.dim;
@@ -74,8 +123,9 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
     one.diagonal = 0.0;
     for (int s = 0; s < sides; s++) {
       const int other = cell.near[s];
-      const bool wall = cell.walls >> s & 1;
-      one.weight[s] = wall ? 0.0 : weight_to(cell.number, other);
+      const double side = cell.walls >> s & 1 ? 0.0 : open_side(cell, s);
+      const bool wall = side == 0.0;
+      one.weight[s] = wall ? 0.0 : side * weight_to(cell.number, other);
       one.near[s] = !wall && is_wet(other) ? other : -1;
       one.diagonal += one.weight[s];
     }
@@ -84,6 +134,28 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
     wet.push_back(one);
   }
   cells.publish(inverse_diagonal.data(), 1);
+  levels_are_there = false;
+}
+
+/** The same equations for the multigrid preconditioner: owners of cells give what flows through their upper faces. */
+void MPMFlowPressure::find_levels()
+{
+  if (levels_are_there) return;
+  const int dim = cells.lattice.dim;
+  coefficients.clear();
+  for (const auto &one : wet) {
+    const int64_t number = cells.cells[one.cell].number;
+    double outside = 0.0,
+           inside = 0.0;    // apart: a closed pool has nothing outside, to the last digit
+    for (int s = 0; s < 2 * dim; s++) {
+      (one.near[s] < 0 ? outside : inside) += one.weight[s];
+      if (s % 2 && one.near[s] >= 0) coefficients.face[number * dim + s / 2] = one.weight[s];
+    }
+    coefficients.outside[number] = inside + outside > 0.0 ? outside : one.diagonal;
+  }
+  coefficients.finish();
+  multigrid.setup(coefficients);
+  levels_are_there = true;
 }
 
 void MPMFlowPressure::apply(const double *x, double *y)
@@ -102,6 +174,7 @@ void MPMFlowPressure::apply(const double *x, double *y)
 
 void MPMFlowPressure::precondition(const double *r, double *z)
 {
+  if (screen == 0.0) return multigrid.precondition(r, z);
   for (int64_t k = 0; k < size(); k++) z[k] = inverse_diagonal[k] * r[k];
 }
 
@@ -118,13 +191,15 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
     const auto &cell = cells.cells[one.cell];
     double sum = 0.0;
     for (int d = 0; d < dim; d++) {
-      if (!(cell.walls >> 2 * d & 1)) sum += before[(int64_t) cell.number * dim + d];
-      if (!(cell.walls >> 2 * d & 2)) sum -= before[(int64_t) cell.near[2 * d + 1] * dim + d];
+      if (!(cell.walls >> 2 * d & 1)) sum += flux(before, cell.number, d);
+      if (!(cell.walls >> 2 * d & 2)) sum -= flux(before, cell.near[2 * d + 1], d);
     }
     right_side[cell.number] = sum / h;
   }
   if (surface) find_lift(*surface);
   cells.publish(right_side.data(), 1);
+  find_levels();
+  multigrid.project(right_side.data());
   const SolveReport report = method.solve(*this, right_side.data(), psi.data(), goal);
   for (int64_t k = 0; surface && k < size(); k++) psi[k] += lift[k];
   subtract_gradient(psi, before, after, known, surface);
@@ -185,7 +260,7 @@ void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const dou
       const int here = cell.number, lower = cell.near[2 * d];
       const bool in = is_wet(here), below = is_wet(lower), wall = cell.walls >> 2 * d & 1;
       after[face] = known[face] = 0.0;
-      if (wall || in || below) known[face] = 1.0;
+      if (wall || ((in || below) && open(here, d) > 0.0)) known[face] = 1.0;
       if (wall || known[face] == 0.0) continue;
       const double weight = in ? weight_to(here, lower) : weight_to(lower, here);
       double step = of[here] - of[lower];    // that of a dry cell is zero
@@ -198,7 +273,7 @@ bool MPMFlowPressure::is_deep(const MPMFlowLattice::Cell &cell) const
 {
   bool deep = is_wet(cell.number);
   for (int s = 0; s < 2 * cells.lattice.dim; s++)
-    deep = deep && (cell.walls >> s & 1 || is_wet(cell.near[s]));
+    deep = deep && (cell.walls >> s & 1 || is_wet(cell.near[s]) || open_side(cell, s) == 0.0);
   return deep;
 }
 
@@ -210,8 +285,12 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
   excess.assign(size(), 0.0);
   for (const auto &one : wet) {
     const auto &cell = cells.cells[one.cell];
-    const double more = share_of[cell.number] - 1.0;
-    if (more > 0.0 || is_deep(cell)) right_side[cell.number] = rate * std::min(more, 1.0);
+    double more = share_of[cell.number] - 1.0;
+    if (regions && regions->room(cell.number) < 1.0)
+      more = std::max(0.0, more - UNSURE);
+    else if (more < 0.0 && !is_deep(cell))
+      more = 0.0;
+    right_side[cell.number] = rate * std::min(more, 1.0);
   }
   cells.publish(right_side.data(), 1);
   screen = 1.0 / (SPREAD * SPREAD * h * h);
@@ -229,8 +308,8 @@ double MPMFlowPressure::largest_divergence(const double *velocity) const
     const auto &cell = cells.cells[one.cell];
     double sum = 0.0;
     for (int d = 0; d < dim; d++) {
-      if (!(cell.walls >> 2 * d & 1)) sum -= velocity[(int64_t) cell.number * dim + d];
-      if (!(cell.walls >> 2 * d & 2)) sum += velocity[(int64_t) cell.near[2 * d + 1] * dim + d];
+      if (!(cell.walls >> 2 * d & 1)) sum -= flux(velocity, cell.number, d);
+      if (!(cell.walls >> 2 * d & 2)) sum += flux(velocity, cell.near[2 * d + 1], d);
     }
     most = std::max(most, std::fabs(sum));
   }
@@ -250,7 +329,7 @@ void MPMFlowPressure::extend_into_air(std::vector<double> &values,
     int n = 0;
     for (int s = 0; s < 2 * cells.lattice.dim; s++) {
       const int other = cell.near[s];
-      if (cell.walls >> s & 1 || !is_wet(other)) continue;
+      if (cell.walls >> s & 1 || !is_wet(other) || open_side(cell, s) == 0.0) continue;
       const double in = std::max(nearest, depth(share_of[other])),
                    out = depth(share_of[cell.number]);
       const double at = surface ? (*surface)[(int64_t) (s % 2 ? other : cell.number) * dim + s / 2]
@@ -261,6 +340,7 @@ void MPMFlowPressure::extend_into_air(std::vector<double> &values,
     if (n) values[cell.number] = sum / n;
   }
   cells.publish(values.data(), 1);
+  if (regions) regions->extrapolate(values, flag);
 }
 
 double MPMFlowPressure::at_wall(int axis, int side) const
@@ -271,7 +351,8 @@ double MPMFlowPressure::at_wall(int axis, int side) const
     if (!(cell.walls >> (2 * axis + side) & 1)) continue;
     const int next = cell.near[2 * axis + 1 - side];
     const bool both = is_wet(next) && !(cell.walls >> (2 * axis + 1 - side) & 1);
-    sum += both ? 1.5 * psi[cell.number] - 0.5 * psi[next] : psi[cell.number];
+    const double value = both ? 1.5 * psi[cell.number] - 0.5 * psi[next] : psi[cell.number];
+    sum += open_side(cell, 2 * axis + side) * value;
   }
   return sum * std::pow(cells.lattice.h, cells.lattice.dim - 1);
 }
@@ -281,5 +362,6 @@ double MPMFlowPressure::memory_usage() const
   return (psi.capacity() + lift.capacity() + excess.capacity() + flag.capacity() +
           right_side.capacity() + inverse_diagonal.capacity()) *
       sizeof(double) +
-      wet.capacity() * sizeof(Wet) + method.memory_usage();
+      wet.capacity() * sizeof(Wet) + method.memory_usage() + coefficients.memory_usage() +
+      multigrid.memory_usage();
 }

@@ -10,12 +10,15 @@
 #define LMP_MPM_FLOW_PRESSURE_H
 
 #include "mpm_flow_lattice.h"
+#include "mpm_lattice_ranks.h"
 #include "mpm_node_system.h"
+#include "solve/cell_multigrid.h"
 #include "solve/krylov.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMFlowRegions;
 
 /** The pressure that makes a flow free of divergence: the Poisson equation on the cells that are wet.
  *
@@ -24,13 +27,18 @@ namespace LAMMPS_NS {
  *  a hat that has the depth s below a flat surface is filled by 1/2 + s - s^2/2 of points that are squares (cubes), which tells how far from the middle of a
  *  wet cell the pressure is zero (F. Gibou, R.P. Fedkiw, L.-T. Cheng, M. Kang, J. Comput. Phys. 176 (2002) 205).
  *
- *  The unknown is the potential psi = dt p/density, whose gradient velocities lose. */
+ *  The unknown is the potential psi = dt p/density, whose gradient velocities lose. Its solve has a multigrid preconditioner,
+ *  which is the faster one from the smallest flows on; that of points that spread reaches but a few cells, and the diagonal is enough. */
 class MPMFlowPressure : public MPMNodeSystem {
  public:
   MPMFlowPressure(class LAMMPS *lmp, const MPMFlowLattice &cells) :
-      MPMNodeSystem(lmp, cells.grid, 1), cells(cells)
+      MPMNodeSystem(lmp, cells.grid, 1), cells(cells),
+      ranks(lmp, cells.grid, cells.halo_of_cells()), coefficients(cells.grid, ranks)
   {
   }
+
+  /** Regions that are solid; null: none. */
+  const MPMFlowRegions *regions = nullptr;
 
   /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
   void find_wet(const std::vector<double> &share);
@@ -38,11 +46,14 @@ class MPMFlowPressure : public MPMNodeSystem {
   /** Wet, and so are all neighbors. */
   bool is_deep(const MPMFlowLattice::Cell &) const;
 
-  /** Is the lower face of a cell along an axis in a wall, or next to a wet cell? */
+  /** Is the lower face of a cell along an axis in a wall, or open next to a wet cell? */
   bool is_next_to_water(const MPMFlowLattice::Cell &cell, int axis) const
   {
-    return cell.walls >> 2 * axis & 1 || is_wet(cell.number) || is_wet(cell.near[2 * axis]);
+    return cell.walls >> 2 * axis & 1 ||
+        ((is_wet(cell.number) || is_wet(cell.near[2 * axis])) && open(cell.number, axis) > 0.0);
   }
+  /** Open share of the lower face of a cell along an axis. */
+  double open(int64_t cell, int axis) const;
 
   /** Nearest place of the surface to the middle of a cell that equations are made for, in spacings. Where surfaces have a
    *  pressure, its difference to that in the cell loses as many digits as this has. */
@@ -86,6 +97,10 @@ class MPMFlowPressure : public MPMNodeSystem {
     double diagonal;
   };
   const MPMFlowLattice &cells;
+  MPMLatticeRanks ranks;
+  MPM_NS::CellOperator coefficients;    // as the multigrid preconditioner has them
+  MPM_NS::CellMultigrid multigrid;
+  bool levels_are_there = false;    // for the cells that are wet now
   std::vector<Wet> wet;
   std::vector<double> excess, lift, flag, right_side, inverse_diagonal;
   const double *share_of = nullptr;
@@ -94,9 +109,13 @@ class MPMFlowPressure : public MPMNodeSystem {
 
   void find_lift(const std::vector<double> &surface);
   double weight_to(int64_t wet_cell, int64_t other) const;
+  double open_side(const MPMFlowLattice::Cell &cell, int side) const;
+  double flux(const double *velocity, int64_t cell, int axis) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known, const std::vector<double> *surface = nullptr) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;
+  void follow_neighbors();
+  void find_levels();
 };
 
 }    // namespace LAMMPS_NS

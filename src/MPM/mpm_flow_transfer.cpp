@@ -8,6 +8,8 @@
 
 #include "mpm_flow_transfer.h"
 
+#include "mpm_flow_regions.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -225,6 +227,10 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         x[d] += points.dt * u + shift[d];
       }
       places.keep_inside(x);
+      if (update.regions) {
+        update.regions->keep_outside(x, v);
+        places.keep_inside(x);
+      }
       places.find(x, w);
       all_in_reach = all_in_reach && cells.in_reach(run, w.base);
     }

@@ -16,6 +16,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMFlowRegions;
 
 /** What points and the staggered lattice of a flow tell each other. */
 struct MPMFlowPoints {
@@ -34,6 +35,7 @@ struct MPMFlowUpdate {
   /** [cell][dim] displacements, besides the motion with the velocity, with which points keep their place in the field of
    *  velocities; null: none. */
   const double *shift = nullptr;
+  const MPMFlowRegions *regions = nullptr;    ///< that points stay out of; null: none
 };
 
 /** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a

@@ -97,6 +97,7 @@ void LAMMPS_NS::evaluate_in_step(LAMMPS *lmp, bool any, const std::function<void
   if (any) lmp->modify->clearstep_compute();
   f();
   if (!any) return;
-  const int steps = MPMField::all(lmp)[0]->steps_to_next();
+  const auto fields = MPMField::all(lmp);
+  const int steps = fields.empty() ? 1 : fields[0]->steps_to_next();
   lmp->modify->addstep_compute(lmp->update->ntimestep + steps);
 }

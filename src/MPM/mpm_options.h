@@ -42,7 +42,7 @@ void find_variable(LAMMPS *, MPM_NS::NumberOrVariable &, const std::string &user
 double evaluate(LAMMPS *, const MPM_NS::NumberOrVariable &);
 
 /** Calls f(), which evaluates variables if any are set, and asks for these in the next step of the
- *  cycle. */
+ *  cycle, or of the run if there is no field. */
 void evaluate_in_step(LAMMPS *, bool any, const std::function<void()> &f);
 
 }    // namespace LAMMPS_NS

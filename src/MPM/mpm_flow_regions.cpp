@@ -1,0 +1,606 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_flow_regions.h"
+
+#include "mpm_options.h"
+
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "math_extra.h"
+#include "region.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// distance in which a wall is looked at, and in which closed faces have its normal velocity, in spacings
+static constexpr double FAR = 4.0, HELD = 3.5;
+// open share of a face that is none but rounding
+static constexpr double NO_SHARE = 1.0e-9;
+// points are kept so far outside of walls, in spacings
+static constexpr double MARGIN = 1.0e-6;
+// open share of the surroundings of a cell below which the cells around count, too
+static constexpr double LITTLE_ROOM = 0.3;
+// places along an axis at which the open share of surroundings is found
+static constexpr int PLACES = 8;
+// walls that are floors, by the cosine to the surface; open share from which on a cell is whole; shares of water between which a cell
+// has a surface; least slope of shares that tells where it goes, and what keeps the system for it regular
+static constexpr double FLOOR = 0.7, WHOLE = 0.75, SURFACE = 0.1, LEAST_SLOPE = 0.3,
+                        REGULAR = 1.0e-3;
+// layers of closed cells that points near walls reach
+static constexpr int LAYERS = 2;
+
+namespace {
+/** Center and unit axis of a region's rotation, which are protected members. */
+struct RegionMotion : public Region {
+  static const double *point_of(const Region *r) { return r->*(&RegionMotion::point); }
+  static const double *axis_of(const Region *r) { return r->*(&RegionMotion::runit); }
+};
+
+std::array<double *, 4> motion_of(Region *region)
+{
+  return {&region->dx, &region->dy, &region->dz, &region->theta};
+}
+
+/** Share of a segment, and of a triangle, in which a linear function is positive. */
+double positive(double a, double b)
+{
+  if (a >= 0.0 && b >= 0.0) return 1.0;
+  if (a <= 0.0 && b <= 0.0) return 0.0;
+  return std::max(a, b) / std::fabs(a - b);
+}
+
+double positive(double a, double b, double c)
+{
+  if (a >= 0.0 && b >= 0.0 && c >= 0.0) return 1.0;
+  if (a <= 0.0 && b <= 0.0 && c <= 0.0) return 0.0;
+  const int n = (a > 0.0) + (b > 0.0) + (c > 0.0);
+  const double sign = n == 1 ? 1.0 : -1.0;    // what is alone at one side
+  a *= sign;
+  b *= sign;
+  c *= sign;
+  double share;
+  if (a > 0.0)
+    share = a * a / ((a - b) * (a - c));
+  else if (b > 0.0)
+    share = b * b / ((b - a) * (b - c));
+  else
+    share = c * c / ((c - a) * (c - b));
+  return n == 1 ? share : 1.0 - share;
+}
+
+/** The same of a square with these corners, one after the other: the mean of both ways to make triangles of it. */
+double positive(double a, double b, double c, double d)
+{
+  return 0.25 * (positive(a, b, c) + positive(a, c, d) + positive(a, b, d) + positive(b, c, d));
+}
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+MPMFlowRegions::MPMFlowRegions(LAMMPS *lmp, const MPMFlowLattice &cells,
+                               const std::vector<std::string> &ids) :
+    Pointers(lmp),
+    cells(cells), dim(cells.lattice.dim), ids(ids)
+{
+  walls.resize(ids.size());
+}
+
+void MPMFlowRegions::init(const std::string &name)
+{
+  any_moves = false;
+  for (int w = 0; w < n(); w++) {
+    auto &wall = walls[w];
+    wall.id = ids[w];
+    wall.region = domain->get_region_by_id(wall.id);
+    if (!wall.region)
+      error->all(FLERR, Error::NOLASTLINE, "{} region {} does not exist: define it before", name,
+                 wall.id);
+    wall.surface = std::make_unique<MPMRegionSurface>(wall.region, dim);
+    if (wall.surface->is_open())
+      error->all(FLERR, Error::NOLASTLINE, "{} cannot use region {}: open faces have no inside",
+                 name, wall.id);
+    wall.moves = wall.region->dynamic_check();
+    if (wall.region->varshape)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "{} cannot use region {}: its shape must not change; move or rotate it", name,
+                 wall.id);
+    if (wall.moves && wall.region->nregion > 1)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "{} cannot use region {}: a union or intersection must not move; give each "
+                 "member as a region of its own",
+                 name, wall.id);
+    any_moves = any_moves || wall.moves;
+  }
+  known = false;
+}
+
+void MPMFlowRegions::start_run()
+{
+  evaluate_in_step(lmp, any_moves, [&] {
+    for (auto &wall : walls) wall.region->prematch();
+  });
+  for (auto &wall : walls)
+    for (int k = 0; k < 4; k++) wall.before[k] = *motion_of(wall.region)[k];
+  known = false;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMFlowRegions::find(double duration)
+{
+  if (known && !any_moves && nbuild == cells.nbuild) return;
+
+  // others may have looked at regions since the last step
+
+  for (auto &wall : walls) {
+    if (!wall.moves) continue;
+    if (duration > 0.0)
+      evaluate_in_step(lmp, true, [&] {
+        wall.region->prematch();
+      });
+    const auto motion = motion_of(wall.region);
+    double end[4];
+    for (int k = 0; k < 4; k++) {
+      end[k] = *motion[k];
+      *motion[k] = wall.before[k];
+    }
+    std::fill_n(wall.shift, 3, 0.0);
+    std::fill_n(wall.spin, 3, 0.0);
+    if (!(duration > 0.0)) continue;
+    for (int d = 0; d < 3; d++) wall.shift[d] = (end[d] - wall.before[d]) / duration;
+    if (wall.region->rotateflag) {
+      MathExtra::add3(RegionMotion::point_of(wall.region), wall.before, wall.center);
+      const double rate = (end[3] - wall.before[3]) / duration;
+      for (int d = 0; d < 3; d++) wall.spin[d] = rate * RegionMotion::axis_of(wall.region)[d];
+    }
+    std::copy_n(end, 4, wall.before);
+  }
+  find_shares();
+  find_cuts();
+  for (auto &wall : walls)
+    if (wall.moves)
+      for (int k = 0; k < 4; k++) *motion_of(wall.region)[k] = wall.before[k];
+  known = true;
+  nbuild = cells.nbuild;
+}
+
+/** Distance from the nearest wall, positive in the flow, at most far. */
+double MPMFlowRegions::distance(const double *x, double far, int &nearest) const
+{
+  double least = far;
+  nearest = 0;
+  for (int w = 0; w < n(); w++) {
+    const double d = walls[w].surface->distance(x, far);
+    if (d < least) {
+      least = d;
+      nearest = w;
+    }
+  }
+  return std::max(-far, least);
+}
+
+void MPMFlowRegions::normal_at(int wall, const double *x, double *n) const
+{
+  const double h = cells.lattice.h;
+  walls[wall].surface->normal(x, FAR * h, 1.0e-4 * h, n);
+}
+
+void MPMFlowRegions::velocity_at(int wall, const double *x, double *v) const
+{
+  double arm[3], turn[3];
+  MathExtra::sub3(x, walls[wall].center, arm);
+  MathExtra::cross3(walls[wall].spin, arm, turn);
+  MathExtra::add3(walls[wall].shift, turn, v);
+}
+
+/** offset: from the lower corner of a cell, in spacings. */
+void MPMFlowRegions::place(const int *index, const double *offset, double *x) const
+{
+  const auto &lattice = cells.lattice;
+  for (int d = 0; d < 3; d++) {
+    x[d] = 0.0;
+    if (d < dim) x[d] = lattice.origin[d] + (lattice.wrap(d, index[d]) + offset[d]) * lattice.h;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   for all cells that this rank has, so that nothing has to be told to others
+------------------------------------------------------------------------- */
+
+void MPMFlowRegions::find_shares()
+{
+  const auto &lattice = cells.lattice;
+  const double h = lattice.h, far = FAR * h, near = 1.01 * std::sqrt((double) dim) * h;
+  const int64_t size = cells.size();
+  const int ncorner = 1 << dim;
+  int nearest;
+  shares.assign(size * dim, 1.0);
+  rooms.assign(size, 1.0);
+  levels.assign(size, far);
+  if (any_moves) fluxes.assign(size * dim, 0.0);
+  constexpr double middle[3] = {0.5, 0.5, 0.5};
+  for (int64_t number = 0; number < size; number++) {
+    int index[3];
+    double x[3];
+    cells.grid.node_index(cells.grid.blocks[number / NODES_PER_BLOCK], number % NODES_PER_BLOCK,
+                          index);
+    place(index, middle, x);
+    const double level = levels[number] = distance(x, far, nearest);
+    if (level > near) continue;
+    if (level < -near) {
+      rooms[number] = 0.0;
+      std::fill_n(shares.begin() + number * dim, dim, 0.0);
+    } else {
+      double corner[8], slope[3] = {0.0, 0.0, 0.0};
+      for (int k = 0; k < ncorner; k++) {
+        const double offset[3] = {(double) (k & 1), (double) (k >> 1 & 1), (double) (k >> 2 & 1)};
+        double y[3];
+        int any;
+        place(index, offset, y);
+        corner[k] = distance(y, far, any);
+        for (int d = 0; d < dim; d++) slope[d] += (2.0 * offset[d] - 1.0) * corner[k];
+      }
+      for (int d = 0; d < dim; d++) {
+        const int e = d == 0 ? 2 : 1, f = d == 2 ? 2 : 4;    // the other axes
+        const double share = dim == 2 ? positive(corner[0], corner[e])
+                                      : positive(corner[0], corner[e], corner[e | f], corner[f]);
+        shares[number * dim + d] = share < NO_SHARE ? 0.0 : share;
+        slope[d] /= ncorner / 2;
+      }
+
+      // the surroundings, with the plane that is nearest to these distances
+
+      double sum = 0.0;
+      const double step = 2.0 / PLACES;
+      double width = 0.0;
+      for (int d = 0; d < dim; d++) width += std::fabs(slope[d]) * step;
+      for (int a = 0; a < PLACES; a++)
+        for (int b = 0; b < PLACES; b++)
+          for (int c = 0; c < (dim == 3 ? PLACES : 1); c++) {
+            const int k[3] = {a, b, c};
+            double weight = 1.0, at = level;
+            for (int d = 0; d < dim; d++) {
+              const double t = (k[d] + 0.5) * step - 1.0;
+              weight *= (1.0 - std::fabs(t)) * step;
+              at += slope[d] * t;
+            }
+            sum +=
+                weight * (width > 0.0 ? std::max(0.0, std::min(0.5 + at / width, 1.0)) : at > 0.0);
+          }
+      rooms[number] = sum;
+    }
+    if (!any_moves || !walls[nearest].moves) continue;
+    for (int d = 0; d < dim; d++) {
+      double offset[3] = {0.5, 0.5, 0.5}, y[3], v[3];
+      offset[d] = 0.0;
+      place(index, offset, y);
+      int wall;
+      distance(y, far, wall);
+      velocity_at(wall, y, v);
+      fluxes[number * dim + d] = (1.0 - shares[number * dim + d]) * v[d];
+    }
+  }
+  speed = 0.0;
+  for (const double f : fluxes) speed = std::max(speed, std::fabs(f));
+}
+
+/** Lists of owned cells and faces. */
+void MPMFlowRegions::find_cuts()
+{
+  const double h = cells.lattice.h, far = FAR * h, face_area = std::pow(h, dim - 1);
+  closed.assign(cells.size(), 0);
+  std::vector<double> flag(cells.size(), 0.0);
+  cuts.clear();
+  helds.clear();
+  int nthin = 0;
+  for (int k = 0; k < (int) cells.cells.size(); k++) {
+    const auto &cell = cells.cells[k];
+    Cut cut = {cell.number, 0, {0.0, 0.0, 0.0}};
+    double most = 0.0;
+    bool whole = true;
+    for (int d = 0; d < dim; d++) {
+      const double low = open(cell.number, d), high = open(cell.near[2 * d + 1], d);
+      if (!(cell.walls >> 2 * d & 1)) most = std::max(most, low);
+      if (!(cell.walls >> 2 * d & 2)) most = std::max(most, high);
+      whole = whole && low == 1.0 && high == 1.0;
+      cut.area[d] = (low - high) * face_area;
+    }
+    if (most == 0.0) flag[cell.number] = 1.0;
+    if (!told_of_thin && levels[cell.number] < 0.5 * h) nthin += is_thin(cell);
+    double x[3];
+    if (!whole && most > 0.0) {
+      constexpr double middle[3] = {0.5, 0.5, 0.5};
+      place(cell.index, middle, x);
+      distance(x, far, cut.wall);
+      cuts.push_back(cut);
+    }
+    if (levels[cell.number] > 2.0 * h || levels[cell.number] <= -HELD * h) continue;
+    for (int d = 0; d < dim; d++) {
+      if (open(cell.number, d) > 0.0 || cell.walls >> 2 * d & 1) continue;
+      double offset[3] = {0.5, 0.5, 0.5};
+      offset[d] = 0.0;
+      place(cell.index, offset, x);
+      Held held = {k, d, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+      int wall;
+      distance(x, far, wall);
+      normal_at(wall, x, held.normal);
+      velocity_at(wall, x, held.velocity);
+      helds.push_back(held);
+    }
+  }
+  cells.publish(flag.data(), 1);
+  for (int64_t number = 0; number < cells.size(); number++) closed[number] = flag[number] > 0.0;
+  if (!told_of_thin) warn_of_thin(nthin);
+}
+
+/** Is there a wall between the middles of opposite faces that are open? */
+bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
+{
+  constexpr double OPEN = 0.75, TOWARDS = 0.5;
+  const double h = cells.lattice.h;
+  for (int d = 0; d < dim; d++) {
+    if (open(cell.number, d) < OPEN || open(cell.near[2 * d + 1], d) < OPEN) continue;
+    double from_wall[2], sum = 0.0;
+    for (int s = 0; s < 2; s++) {
+      double offset[3] = {0.5, 0.5, 0.5}, x[3], n[3];
+      offset[d] = s;
+      place(cell.index, offset, x);
+      int wall;
+      sum += distance(x, FAR * h, wall);
+      normal_at(wall, x, n);
+      from_wall[s] = n[d];
+    }
+    if (sum < 1.001 * h && from_wall[0] < -TOWARDS && from_wall[1] > TOWARDS) return true;
+  }
+  return false;
+}
+
+void MPMFlowRegions::warn_of_thin(int nthin)
+{
+  int all;
+  MPI_Allreduce(&nthin, &all, 1, MPI_INT, MPI_SUM, world);
+  if (all == 0) return;
+  told_of_thin = true;
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/incompressible: regions are thinner than a node spacing in {} cells, so that "
+        "the flow goes through: use a smaller node spacing, or thicker walls",
+        all);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMFlowRegions::normalize(std::vector<double> &share) const
+{
+  values.assign(cells.size(), 0.0);
+  for (int64_t number = 0; number < cells.size(); number++)
+    if (rooms[number] < 1.0 && rooms[number] >= LITTLE_ROOM) share[number] /= rooms[number];
+  for (const auto &cell : cells.cells) {
+    double &mine = values[cell.number];
+    mine = share[cell.number];
+    if (rooms[cell.number] >= LITTLE_ROOM) continue;
+    double sum = 0.0, weight = 0.0;
+    for (int s = 0; s < 2 * dim; s++) {
+      const int other = cell.near[s];
+      const double a = open(s % 2 ? other : cell.number, s / 2);
+      if (cell.walls >> s & 1 || rooms[other] < LITTLE_ROOM) continue;
+      sum += a * share[other];
+      weight += a;
+    }
+    if (weight > 0.0)
+      mine = (mine + (LITTLE_ROOM - rooms[cell.number]) * sum / weight) / LITTLE_ROOM;
+    else
+      mine = rooms[cell.number] > 0.0 ? mine / rooms[cell.number] : 0.0;
+  }
+  cells.publish(values.data(), 1);
+  cells.reflect_cells(values.data());
+  share.swap(values);
+  continue_surface(share);
+}
+
+/* ----------------------------------------------------------------------
+   Of the surroundings of a cell next to a wall only a part is open, above a floor the upper one, so that what is filled of it does not
+   tell how deep the middle of the cell is below a surface. Where whole cells around have a surface, it goes on
+   as a plane
+------------------------------------------------------------------------- */
+
+void MPMFlowRegions::continue_surface(std::vector<double> &share) const
+{
+  const int naround = dim == 2 ? 9 : 27;
+  values.assign(cells.size(), 0.0);
+  for (std::size_t k = 0; k < cells.cells.size(); k++) {
+    const auto &cell = cells.cells[k];
+    double &mine = values[cell.number];
+    mine = share[cell.number];
+    if (rooms[cell.number] >= WHOLE || closed[cell.number]) continue;
+
+    // gradient of the shares of whole cells, least squares
+
+    const int *const at = cells.around.data() + (int64_t) k * naround;
+    double n = 0.0, mean = 0.0, middle[3] = {0.0, 0.0, 0.0};
+    const auto each = [&](const auto &f) {
+      for (int j = 0; j < naround; j++) {
+        if (at[j] < 0 || rooms[at[j]] < WHOLE) continue;
+        const int plain = dim == 2 ? 3 * j : j;    // as if there were three layers
+        const double offset[3] = {(double) (plain / 9 - 1), (double) (plain / 3 % 3 - 1),
+                                  dim == 2 ? 0.0 : (double) (plain % 3 - 1)};
+        f(std::min(1.0, share[at[j]]), offset);
+      }
+    };
+    each([&](double s, const double *offset) {
+      n += 1.0;
+      mean += s;
+      for (int d = 0; d < dim; d++) middle[d] += offset[d];
+    });
+    if (n == 0.0) continue;
+    double A[3][3] = {{REGULAR, 0.0, 0.0}, {0.0, REGULAR, 0.0}, {0.0, 0.0, REGULAR}};
+    double b[3] = {0.0, 0.0, 0.0}, up[3];
+    each([&](double s, const double *offset) {
+      for (int d = 0; d < dim; d++) {
+        b[d] += (s - mean / n) * (offset[d] - middle[d] / n);
+        for (int e = 0; e < dim; e++)
+          A[d][e] += (offset[d] - middle[d] / n) * (offset[e] - middle[e] / n);
+      }
+    });
+    double inverse[3][3];
+    MathExtra::invert3(A, inverse);
+    MathExtra::matvec(inverse, b, up);
+    double slope = MathExtra::len3(up);
+    constexpr double center[3] = {0.5, 0.5, 0.5};
+    double x[3], normal[3];
+    int wall;
+    place(cell.index, center, x);
+    distance(x, FAR * cells.lattice.h, wall);
+    normal_at(wall, x, normal);
+    if (slope < LEAST_SLOPE) {    // all as deep: a film along the wall
+      for (int d = 0; d < 3; d++) up[d] = -normal[d];
+      slope = 1.0;
+    }
+    if (-MathExtra::dot3(up, normal) < FLOOR * slope) continue;
+
+    double depth = 0.0, weight = 0.0;
+    each([&](double s, const double *offset) {
+      if (s < SURFACE || s > 1.0 - SURFACE) return;
+      const double of = s < 0.5 ? std::sqrt(2.0 * s) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - s));
+      depth += of - MathExtra::dot3(up, offset) / slope;
+      weight += 1.0;
+    });
+    if (weight == 0.0) continue;
+    depth = std::max(-1.0, std::min(depth / weight, 1.0));
+    mine = std::max(mine,
+                    depth < 0.0 ? 0.5 * (1.0 + depth) * (1.0 + depth)
+                                : 1.0 - 0.5 * (1.0 - depth) * (1.0 - depth));
+  }
+  cells.publish(values.data(), 1);
+  cells.reflect_cells(values.data());
+  share.swap(values);
+}
+
+void MPMFlowRegions::hold(std::vector<double> &velocity, bool moving) const
+{
+  const int here = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
+  constexpr int stride2[2] = {3, 1}, stride3[3] = {9, 3, 1};
+  const int *const stride = dim == 2 ? stride2 : stride3;
+  changed.resize(helds.size());
+  for (std::size_t k = 0; k < helds.size(); k++) {
+    const auto &held = helds[k];
+    const int *const at = cells.around.data() + (int64_t) held.cell * naround + here;
+    const int c = held.axis;
+    double into = 0.0;
+    for (int d = 0; d < dim; d++) {
+      const auto v = [&](int offset) {
+        return velocity[(int64_t) at[offset] * dim + d];
+      };
+      const double u =
+          d == c ? v(0) : 0.25 * (v(0) + v(stride[d]) + v(-stride[c]) + v(stride[d] - stride[c]));
+      into += held.normal[d] * (moving ? u - held.velocity[d] : u);
+    }
+    const int64_t face = (int64_t) cells.cells[held.cell].number * dim + c;
+    changed[k] = velocity[face] - into * held.normal[c];
+  }
+  for (std::size_t k = 0; k < helds.size(); k++)
+    velocity[(int64_t) cells.cells[helds[k].cell].number * dim + helds[k].axis] = changed[k];
+  cells.keep_owned(velocity.data(), dim);
+  cells.publish(velocity.data(), dim);
+}
+
+void MPMFlowRegions::keep_outside(double *x, double *v) const
+{
+  const double h = cells.lattice.h, margin = MARGIN * h;
+  for (int pass = 0; pass < 3; pass++) {
+    int wall;
+    const double d = distance(x, FAR * h, wall);
+    if (d >= margin) return;
+    double n[3], of_wall[3];
+    normal_at(wall, x, n);
+    velocity_at(wall, x, of_wall);
+    double into = 0.0;
+    for (int k = 0; k < dim; k++) into += n[k] * (v[k] - of_wall[k]);
+    for (int k = 0; k < dim; k++) {
+      x[k] += (2.0 * margin - d) * n[k];
+      if (into < 0.0) v[k] -= into * n[k];
+    }
+  }
+}
+
+double MPMFlowRegions::depth(const double *x, double far) const
+{
+  int wall;
+  return -distance(x, far, wall);
+}
+
+/* ----------------------------------------------------------------------
+   owners of wet cells have the slopes of psi away from a neighbor that is closed; those of the next layer are the same
+------------------------------------------------------------------------- */
+
+void MPMFlowRegions::extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const
+{
+  const int width = dim + 2;    // psi, slopes per spacing, and whether these are known
+  std::vector<double> &all = slopes;
+  all.assign(cells.size() * width, 0.0);
+  for (const auto &cell : cells.cells) {
+    double *const mine = all.data() + (int64_t) cell.number * width;
+    mine[0] = psi[cell.number];
+    if (!(wet[cell.number] > 0.0)) continue;
+    mine[dim + 1] = 1.0;
+    for (int d = 0; d < dim; d++) {
+      double sum = 0.0;
+      int n = 0;
+      for (int s = 0; s < 2; s++) {
+        const int other = cell.near[2 * d + s];
+        if (cell.walls >> (2 * d + s) & 1 || !(wet[other] > 0.0)) continue;
+        sum += (s ? 1.0 : -1.0) * (psi[other] - psi[cell.number]);
+        n++;
+      }
+      if (n) mine[1 + d] = sum / n;
+    }
+  }
+  cells.publish(all.data(), width);
+  for (int layer = 0; layer < LAYERS; layer++) {
+    std::vector<double> next(all.size(), 0.0);
+    for (const auto &cell : cells.cells) {
+      const double *const from = all.data() + (int64_t) cell.number * width;
+      double *const mine = next.data() + (int64_t) cell.number * width;
+      std::copy_n(from, width, mine);
+      if (from[dim + 1] > 0.0 || !closed[cell.number]) continue;
+      double sum[4] = {0.0, 0.0, 0.0, 0.0};
+      int n = 0;
+      for (int s = 0; s < 2 * dim; s++) {
+        if (cell.walls >> s & 1) continue;
+        const double *const other = all.data() + (int64_t) cell.near[s] * width;
+        if (!(other[dim + 1] > 0.0)) continue;
+        sum[0] += other[0] + (s % 2 ? -1.0 : 1.0) * other[1 + s / 2];
+        for (int d = 0; d < dim; d++) sum[1 + d] += other[1 + d];
+        n++;
+      }
+      if (n == 0) continue;
+      for (int k = 0; k <= dim; k++) mine[k] = sum[k] / n;
+      mine[dim + 1] = 1.0;
+    }
+    cells.publish(next.data(), width);
+    all.swap(next);
+  }
+  for (int64_t number = 0; number < cells.size(); number++)
+    if (closed[number]) psi[number] = all[number * width];
+}
+
+double MPMFlowRegions::memory_usage() const
+{
+  double bytes =
+      cuts.capacity() * sizeof(Cut) + helds.capacity() * sizeof(Held) + closed.capacity();
+  for (const auto *list : {&shares, &rooms, &fluxes, &levels})
+    bytes += list->capacity() * sizeof(double);
+  return bytes;
+}

@@ -1,0 +1,120 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_REGIONS_H
+#define LMP_MPM_FLOW_REGIONS_H
+
+#include "mpm_flow_lattice.h"
+#include "mpm_region_surface.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class Region;
+
+/** Regions whose inside is solid to a flow, fixed or with a rigid motion of their own. Cells are cut: a face lets through what its
+ *  open share is, and through the rest goes the wall (Y.T. Ng, C. Min, F. Gibou, J. Comput. Phys. 228 (2009) 8807). Shares are
+ *  those of the linear functions of the distances at the corners of a cell, exact for planes.
+ *
+ *  Faces, cells, and forces are for the place that regions have at the start of a step, to which the places of points belong;
+ *  velocities are the mean ones of the step, and points are kept out of where regions are at its end. */
+class MPMFlowRegions : protected Pointers {
+ public:
+  MPMFlowRegions(class LAMMPS *, const MPMFlowLattice &, const std::vector<std::string> &ids);
+
+  /** Finds the regions of a run. Errors, in words that begin with name, where there is none of these, or one that is not for flows. */
+  void init(const std::string &name);
+  /** State at the start of a run. */
+  void start_run();
+  /** Motion in this step, and what is open where it begins. duration 0: without motion. */
+  void find(double duration);
+  int n() const { return walls.size(); }
+
+  /** Open share of the lower face of a cell along an axis, 0 to 1. */
+  double open(int64_t cell, int axis) const { return shares[cell * dim + axis]; }
+  /** Open share of the hat in the middle of a cell. */
+  double room(int64_t cell) const { return rooms[cell]; }
+  /** Is none of the faces of a cell open? */
+  bool is_closed(int64_t cell) const { return closed[cell]; }
+  /** What the walls carry through a face, per area [velocity]: the closed share times their velocity. */
+  double flux(int64_t cell, int axis) const
+  {
+    return fluxes.empty() ? 0.0 : fluxes[cell * dim + axis];
+  }
+
+  /** Shares that points fill of what is open, from those of whole cells; complete before and afterwards. Where next to nothing is open,
+   *  the cells around count. */
+  void normalize(std::vector<double> &share) const;
+  /** Velocities [cell][dim] of closed faces near walls get the normal component of the wall, or none. Complete. */
+  void hold(std::vector<double> &velocity, bool moving = true) const;
+  /** Takes a point that is in a wall out of it, with the velocity into the wall. */
+  void keep_outside(double *x, double *v) const;
+  /** Depth of a place in a wall, at most far. */
+  double depth(const double *x, double far) const;
+
+  /** Adds the force of potentials psi of owned cells, those that wet(number) is true of, to force[3 n()]. */
+  template <class Wet> void add_forces(const double *psi, const Wet &wet, double *force) const
+  {
+    for (const auto &cut : cuts)
+      if (wet(cut.number))
+        for (int d = 0; d < dim; d++) force[3 * cut.wall + d] += psi[cut.number] * cut.area[d];
+  }
+  /** Psi in closed cells that points near walls reach, linearly from the wet cells around; psi is complete, and zero there. */
+  void extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const;
+
+  double largest_speed() const { return speed; }
+  double memory_usage() const;
+
+ private:
+  struct Wall {
+    std::string id;
+    Region *region = nullptr;
+    std::unique_ptr<MPMRegionSurface> surface;
+    bool moves = false;
+    double before[4];    // shift and angle at the start of the step
+    double shift[3] = {}, spin[3] = {},
+           center[3] = {};    // velocity, angular velocity about a place
+  };
+  struct Cut {    // owned cell with a part of a wall
+    int number, wall;
+    double area[3];    // of the wall, into it
+  };
+  struct Held {    // closed face near a wall
+    int cell, axis;
+    double normal[3], velocity[3];
+  };
+
+  const MPMFlowLattice &cells;
+  const int dim;
+  const std::vector<std::string> ids;
+  std::vector<Wall> walls;
+  std::vector<double> shares, rooms, fluxes;
+  std::vector<char> closed;
+  std::vector<Cut> cuts;
+  std::vector<Held> helds;
+  bigint nbuild = -1;
+  bool any_moves = false, known = false, told_of_thin = false;
+  double speed = 0.0;
+  std::vector<double> levels;    // distances in the middle of cells, at most far
+  mutable std::vector<double> changed, slopes, values;
+
+  double distance(const double *x, double far, int &nearest) const;
+  void normal_at(int wall, const double *x, double *n) const;
+  void velocity_at(int wall, const double *x, double *v) const;
+  void place(const int *index, const double *offset, double *x) const;
+  void continue_surface(std::vector<double> &share) const;
+  void find_shares();
+  void find_cuts();
+  bool is_thin(const MPMFlowLattice::Cell &) const;
+  void warn_of_thin(int nthin);
+};
+
+}    // namespace LAMMPS_NS
+#endif
