@@ -35,10 +35,10 @@ COARSER = {"taylor-bar": 2.0, "spall": 2.0, "cook-membrane": 2.0, "hypervelocity
 FEWER_STEPS = {"grains-on-block": 1000, "impact-on-crystal": 1000, "vortex": 110, "ring-on-block": 1200, "hopper": 1500,
                "boulders-in-debris": 600, "tyre-on-gravel": 500, "settling": 600, "scratch": 400,
                "friction-weld": 9000, "machining": 2500, "foam": 2000, "microstructure": 10, "quench": 1000, "casting": 1000,
-               "extruder": 8000, "elastic-gate": 26500, "elastic-plate": 4600}    # until the last time of PUBLISHED
+               "pouring-honey": 400, "extruder": 8000, "elastic-gate": 26500, "elastic-plate": 4600}    # until the last time of PUBLISHED
 
 # the same with two processes, where it is less than half of these
-FEWER_STEPS_OF_TWO = {"elastic-gate": 1500, "elastic-plate": 1500}
+FEWER_STEPS_OF_TWO = {"pouring-honey": 150, "elastic-gate": 1500, "elastic-plate": 1500}
 
 # steps with the spacing of the input of those in COARSER, which are compared with the first rows of the log
 FIRST_STEPS = {"taylor-bar": 200, "spall": 1500, "cook-membrane": 4000, "hypervelocity": 500, "ring-collision": 960,

@@ -15,7 +15,7 @@ using namespace MPM_TEST;
 namespace {
 
 /** Entries of the vector of the fix; from REGIONS on three for each region. */
-enum { FILLED = 3, KINETIC = 5, FASTEST, WALLS, REGIONS = 13 };
+enum { FILLED = 3, KINETIC = 5, FASTEST, WALLS, REGIONS = 14 };
 
 double entry(Scene &run, int k)
 {
@@ -243,6 +243,10 @@ SERIAL_TEST(Regions, BadInput)
                   {"region b block 0.9 1 0.9 1 INF INF open 1\n" + fix + "region b", "open faces"},
                   {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b viscosity 1",
                    "cannot be used with viscosity"},
+                  {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b viscosity 1 implicit yes",
+                   "cannot be used with viscosity: use walls of the box"},
+                  {"region b sphere 0.5 0.5 0 0.001\n" + fix + "tension 1 region b",
+                   "cannot be used with tension: use walls of the box"},
                   {"variable r equal 0.01\nregion b sphere 0.5 0.5 0 v_r\n" + fix + "region b",
                    "must not change"},
                   {"variable d equal 0.0\nregion a sphere 0.51 0.51 0 0.01 move v_d NULL "

@@ -11,6 +11,8 @@
 #include "mpm_flow_air.h"
 #include "mpm_flow_pressure.h"
 #include "mpm_flow_regions.h"
+#include "mpm_flow_stress.h"
+#include "mpm_flow_tension.h"
 #include "mpm_flow_transfer.h"
 #include "mpm_flow_viscosity.h"
 #include "mpm_options.h"
@@ -44,6 +46,8 @@ static constexpr double ROUNDING = 1.0e-14;
 static constexpr double DIFFERENT_DT = 0.01;
 // relative difference of densities that counts as none
 static constexpr double SAME_DENSITY = 1.0e-9;
+// with surface tension, see MPMFlowPressure::nearest
+static constexpr double NEAREST_SURFACE = 1.0e-4;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
 // accelerations over that of the weight for which the first step of a fluid at rest is made: at the edges of a block of water
@@ -63,6 +67,10 @@ Options MPMIncompressibleOptions::declare(int dim)
   o.argument(number(h, "node spacing", POSITIVE, "distance"));
   o.argument(number(density, "density", POSITIVE, "density"));
   o.add("viscosity", {number(viscosity, "mu", NOT_NEGATIVE, "pressure*time", "dynamic viscosity")});
+  o.add("implicit", {yes_no(implicit)},
+        "solve for viscous stresses together with the pressure: they do not bind the time step");
+  o.add("tension",
+        {number(tension, "sigma", NOT_NEGATIVE, "pressure*distance", "surface tension")});
   o.add("transfer",
         {word(transfer,
               {{"apic", APIC, "points have gradients of the velocity"},
@@ -128,7 +136,10 @@ Options MPMIncompressibleOptions::declare(int dim)
     return OptionRules{
         {!region_ids.empty() && viscosity > 0.0, "region",
          "has no friction, and cannot be used with viscosity: use walls of the box, or leave "
-         "viscosity out"}};
+         "viscosity out"},
+        {!region_ids.empty() && tension > 0.0, "region",
+         "has no contact angle, and cannot be used with tension: use walls of the box, or leave "
+         "tension out"}};
   });
   return o;
 }
@@ -179,7 +190,20 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
 
   pressure = std::make_unique<MPMFlowPressure>(lmp, cells);
   air = std::make_unique<MPMFlowAir>(cells);
-  if (viscosity > 0.0) {
+  if (implicit && viscosity == 0.0)
+    error->all(FLERR,
+               "Fix mpm/incompressible implicit yes is about the viscosity: add the keyword "
+               "viscosity");
+  if (tension > 0.0) {
+    curved = std::make_unique<MPMFlowTension>(cells, *pressure);
+    pressure->nearest = NEAREST_SURFACE;
+    cells.wants_more = MPMFlowTension::PASSES;
+    cells.wants_around = true;
+  }
+  if (implicit) {
+    stress = std::make_unique<MPMFlowStress>(lmp, cells, *pressure);
+    cells.wants_around = true;
+  } else if (viscosity > 0.0) {
     viscous = std::make_unique<MPMFlowViscosity>(cells, *pressure);
     cells.wants_around = true;
   }
@@ -194,7 +218,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   time_integrate = 1;
   dynamic_group_allow = 0;
   scalar_flag = vector_flag = 1;
-  size_vector = 13 + 3 * region_ids.size();
+  size_vector = 14 + 3 * region_ids.size();
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -401,6 +425,12 @@ double FixMPMIncompressible::acceleration_of_stress() const
   return force->ftm2v / (force->nktv2p * density);
 }
 
+/** dt p/density of free surfaces by their tension; null: they have none. */
+const std::vector<double> *FixMPMIncompressible::surface_psi() const
+{
+  return curved ? &at_surface : nullptr;
+}
+
 MPMFlowPoints FixMPMIncompressible::points_now(double dt) const
 {
   return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt};
@@ -471,18 +501,56 @@ void FixMPMIncompressible::find_flow(double duration)
   for (const double v : star) most[0] = std::max(most[0], std::fabs(v));
   MPI_Allreduce(most, most_all, 1, MPI_DOUBLE, MPI_MAX, world);
   const double cells_of_all = (double) atom->natoms;
-  const auto report = pressure->project(
-      star.data(), velocity.data(), known.data(),
-      {tolerance, ROUNDING * most_all[0] / h * std::sqrt(cells_of_all), most_iterations});
+  const double rounding = ROUNDING * most_all[0] * std::sqrt(cells_of_all);
+  if (curved) {
+    const double most = MPMFlowTension::stable_dt(tension * acceleration_of_stress(), h);
+    if (update->dt > most * (1.0 + 1.0e-9))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix {} {}: the time step {:.6g} is too large for the surface tension, which "
+                 "allows {:.6g}; reduce it, or let fix mpm/dt set it",
+                 style, id, update->dt, most);
+    curved->find(share, duration * acceleration_of_stress() * tension, at_surface);
+  }
+  const auto report = pressure->project(star.data(), velocity.data(), known.data(),
+                                        {tolerance, rounding / h, most_iterations}, surface_psi());
   if (!report.converged())
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix {} {}: the pressure {} at step {}; allow more iterations, or a larger tolerance",
         style, id, report.describe(), update->ntimestep);
+  if (stress) find_stress(duration, rounding);
   go_on_into_air();
   last.iterations = report.iterations;
   last.residual = report.right_side > 0.0 ? report.residuals.back() / report.right_side : 0.0;
   last.divergence = pressure->largest_divergence(velocity.data());
+}
+
+/* ----------------------------------------------------------------------
+   Viscous stresses, with what they add to the pressure, at the end of a step that so far has none. What a surface at any
+   place does is left to the pressure alone: a fluid at rest stays there
+------------------------------------------------------------------------- */
+
+void FixMPMIncompressible::find_stress(double dt, double rounding)
+{
+  potentials = pressure->psi;
+  const auto report = stress->step(dt * viscosity * acceleration_of_stress() / (h * h), velocity,
+                                   potentials, {tolerance, rounding, most_iterations});
+  if (!report.converged())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: the implicit viscosity {} at step {}; allow more iterations, a larger "
+               "tolerance, or take smaller time steps",
+               style, id, report.describe(), update->ntimestep);
+  last.of_stress = report.iterations;
+  viscous_velocity.swap(velocity);
+  velocity.assign(viscous_velocity.size(), 0.0);
+  const auto again = pressure->project(viscous_velocity.data(), velocity.data(), known.data(),
+                                       {tolerance, rounding / h, most_iterations});
+  if (!again.converged())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: the pressure after implicit viscosity {} at step {}; allow more "
+               "iterations, or a larger tolerance",
+               style, id, again.describe(), update->ntimestep);
+  for (std::size_t k = 0; k < potentials.size(); k++) pressure->psi[k] += potentials[k];
 }
 
 /** Velocities of faces by the momentum of points, and shares that are filled, complete. */
@@ -551,7 +619,7 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
         last.regions.data());
     for (double &f : last.regions) f /= pressure_to_psi * force->nktv2p;
   }
-  pressure->extend_into_air(pressures);
+  pressure->extend_into_air(pressures, surface_psi());
   for (double &p : pressures) p /= pressure_to_psi;
   cells.extrapolate_cells(pressures.data(), [this](int64_t number) {
     return pressure->is_wet(number);
@@ -628,7 +696,9 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   double dt = std::numeric_limits<double>::max();
   const double nu = viscosity * acceleration_of_stress();
   tag = 0;
-  if (nu > 0.0) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
+  if (nu > 0.0 && !implicit) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
+  if (tension > 0.0)
+    dt = std::min(dt, MPMFlowTension::stable_dt(tension * acceleration_of_stress(), h));
 
   // At the start of a run there are no forces. Those at the end of the last run count by the limit that they gave, also if
   // it was the run that has written the restart file; at the start of the first one there is the weight
@@ -670,7 +740,8 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
 
 /* ----------------------------------------------------------------------
    scalar: number of iterations; vector: these, what is left of the divergence (relative), largest |div v|, volume that
-   points fill, number of wet cells, kinetic energy, largest speed, force on the six walls, and on the regions
+   points fill, number of wet cells, kinetic energy, largest speed, force on the six walls, iterations of the implicit viscosity,
+   and force on the regions
 ------------------------------------------------------------------------- */
 
 double FixMPMIncompressible::compute_scalar()
@@ -696,8 +767,9 @@ double FixMPMIncompressible::compute_vector(int k)
     for (int i = 0; i < atom->nlocal; i++)
       if (cells.is_point(i))
         mine += 0.5 * force->mvv2e * atom->rmass[i] * MathExtra::lensq3(atom->v[i]);
-  if (k > 12)
-    mine = last.regions[k - 13];
+  if (k == 13) return last.of_stress;
+  if (k > 13)
+    mine = last.regions[k - 14];
   else if (k > 6)
     mine = last.walls[(k - 7) / 2][(k - 7) % 2];
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
@@ -729,8 +801,10 @@ double FixMPMIncompressible::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
       air->memory_usage() + (regions ? regions->memory_usage() : 0.0);
-  for (const auto *list :
-       {&sums, &share, &old, &star, &more, &velocity, &known, &pressures, &shift})
+  if (curved) bytes += curved->memory_usage();
+  if (stress) bytes += stress->memory_usage();
+  for (const auto *list : {&at_surface, &potentials, &viscous_velocity, &sums, &share, &old, &star,
+                           &more, &velocity, &known, &pressures, &shift})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

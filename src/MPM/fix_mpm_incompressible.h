@@ -27,6 +27,8 @@ namespace LAMMPS_NS {
 class MPMFlowAir;
 class MPMFlowPressure;
 class MPMFlowRegions;
+class MPMFlowStress;
+class MPMFlowTension;
 class MPMFlowViscosity;
 struct MPMFlowPoints;
 
@@ -35,6 +37,8 @@ struct MPMIncompressibleOptions {
 
   double h = 0.0, density = 0.0;
   double viscosity = 0.0;
+  bool implicit = false;    ///< viscosity
+  double tension = 0.0;
   Transfer transfer = APIC;
   double flip = 0.0;       ///< share of FLIP
   double reflect = 0.0;    ///< share of the change by the pressure that comes once more
@@ -79,10 +83,13 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   MPMFlowLattice cells;
   std::unique_ptr<MPMFlowPressure> pressure;
   std::unique_ptr<MPMFlowAir> air;
-  std::unique_ptr<MPMFlowViscosity> viscous;    // null: none
+  std::unique_ptr<MPMFlowViscosity> viscous;    // explicit; null: none
+  std::unique_ptr<MPMFlowStress> stress;        // implicit viscosity; null: none
+  std::unique_ptr<MPMFlowTension> curved;       // with surface tension; null: none
   std::unique_ptr<MPMFlowRegions> regions;      // null: none
   MPMRows gradient;                             // [n][dim*dim] dv_c/dx_d of points, with apic
-  std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift;
+  std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
+      potentials, viscous_velocity;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
   mutable double limit_before =
@@ -91,12 +98,14 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   mutable bool told_of_bodies = false;
 
   struct {
-    double iterations = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0, filled = 0.0;
+    double iterations = 0.0, of_stress = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0,
+           filled = 0.0;
     double walls[3][2] = {};
     std::vector<double> regions = {};    // [3 regions]
   } last;    // of the last step; filled, wet, walls, and regions of this rank
 
   double acceleration_of_stress() const;
+  const std::vector<double> *surface_psi() const;
   MPMFlowPoints points_now(double dt) const;
   void check_points();
   void check_others() const;
@@ -108,6 +117,7 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
   void find_velocities();
   void add_forces(double dt);
   void add_viscosity(double dt);
+  void find_stress(double dt, double rounding);
   void find_flow(double duration);
   void find_pressures(double pressure_to_psi);
   void check_speed() const;

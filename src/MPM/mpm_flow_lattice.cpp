@@ -144,7 +144,8 @@ void MPMFlowLattice::find_cells()
     }
   }
 
-  constexpr int MARGIN = DRIFT + HALF, STENCIL = 2, LOWER = 1;    // of points that have a width
+  constexpr int STENCIL = 2, LOWER = 1;    // of points that have a width
+  const int margin_of_all = DRIFT + HALF + wants_more;
   const auto cover = [&](const Range &r, int margin, bool reached) {
     int low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, b[3];
     for (int d = 0; d < lattice.dim; d++) {
@@ -164,8 +165,8 @@ void MPMFlowLattice::find_cells()
         }
   };
   for (const auto &range : ranges) {
-    cover(range, MARGIN, true);
-    cover(range, MARGIN + 1, false);
+    cover(range, margin_of_all, true);
+    cover(range, margin_of_all + 1, false);
   }
   grid.close_periodic();
   grid.finish();

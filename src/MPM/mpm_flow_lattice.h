@@ -53,6 +53,8 @@ class MPMFlowLattice : protected Pointers {
   std::vector<Cell> cells;    ///< owned by this rank, within walls
   std::vector<int> around;    ///< [cells][3^dim] cells around each one and itself, if wanted
   bool wants_around = false;
+  int wants_more =
+      0;    ///< layers of cells around those in reach of points, whose values smoothing reaches
   bool valid = false;    ///< the blocks are those of the present points
   bigint nbuild = 0;
 

@@ -10,14 +10,14 @@
 
 #include "mpm_flow_regions.h"
 
+#include "lammps.h"
+
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// nearest place of the surface to the middle of a cell that equations are made for, in spacings
-static constexpr double NEAREST = 1.0e-8;
 // distance in which points make room for others, in spacings
 static constexpr double SPREAD = 8.0;
 // share of the surroundings of a cell, and mean of its neighbors, from which on it is wet
@@ -37,7 +37,7 @@ static double depth(double share)
 double MPMFlowPressure::distance(int64_t wet_cell, int64_t dry) const
 {
   const double in = depth(share_of[wet_cell]), out = depth(share_of[dry]);
-  return in > 0.0 ? std::max(NEAREST, in / (in - out)) : 0.5;    // surrounded: nobody knows
+  return in > 0.0 ? std::max(nearest, in / (in - out)) : 0.5;    // surrounded: nobody knows
 }
 
 /** 1/h^2 times what the difference of psi, or psi itself where the other cell is dry, has to be multiplied with. */
@@ -181,7 +181,7 @@ void MPMFlowPressure::precondition(const double *r, double *z)
 /* ---------------------------------------------------------------------- */
 
 SolveReport MPMFlowPressure::project(const double *before, double *after, double *known,
-                                     const SolveGoal &goal)
+                                     const SolveGoal &goal, const std::vector<double> *surface)
 {
   const int dim = cells.lattice.dim;
   const double h = cells.lattice.h;
@@ -196,17 +196,61 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
     }
     right_side[cell.number] = sum / h;
   }
+  if (surface) find_lift(*surface);
   cells.publish(right_side.data(), 1);
   find_levels();
   multigrid.project(right_side.data());
   const SolveReport report = method.solve(*this, right_side.data(), psi.data(), goal);
-  subtract_gradient(psi, before, after, known);
+  for (int64_t k = 0; surface && k < size(); k++) psi[k] += lift[k];
+  subtract_gradient(psi, before, after, known, surface);
   return report;
+}
+
+/* ----------------------------------------------------------------------
+   psi that is that of the surface next to it, and the mean of all surfaces elsewhere: solved for is the rest. The norm of the
+   right side is to be that of what drives a flow, and not of a pressure divided by small distances
+------------------------------------------------------------------------- */
+
+void MPMFlowPressure::find_lift(const std::vector<double> &surface)
+{
+  const int dim = cells.lattice.dim;
+  double mine[2] = {0.0, 0.0}, all[2];
+  lift.assign(size(), 0.0);
+  const auto visit = [&](const Wet &one, double &weight, double &sum) {
+    const auto &cell = cells.cells[one.cell];
+    weight = sum = 0.0;
+    for (int s = 0; s < 2 * dim; s++) {
+      if (one.near[s] >= 0 || one.weight[s] == 0.0) continue;
+      weight += one.weight[s];
+      sum += one.weight[s] * surface[(int64_t) (s % 2 ? cell.near[s] : cell.number) * dim + s / 2];
+    }
+  };
+  double weight, sum;
+  for (const auto &one : wet) {
+    visit(one, weight, sum);
+    if (weight == 0.0) continue;
+    mine[0] += sum / weight;
+    mine[1] += 1.0;
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, lmp->world);
+  for (const auto &one : wet) {
+    const int number = cells.cells[one.cell].number;
+    visit(one, weight, sum);
+    lift[number] = weight > 0.0 ? sum / weight : all[1] > 0.0 ? all[0] / all[1] : 0.0;
+  }
+  cells.publish(lift.data(), 1);
+  for (const auto &one : wet) {    // what surfaces push is that of the cells next to them
+    const int number = cells.cells[one.cell].number;
+    for (int s = 0; s < 2 * dim; s++)
+      if (one.near[s] >= 0)
+        right_side[number] -= one.weight[s] * (lift[number] - lift[one.near[s]]);
+  }
 }
 
 /** Of owned cells; null: before is zero. */
 void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const double *before,
-                                        double *after, double *known) const
+                                        double *after, double *known,
+                                        const std::vector<double> *surface) const
 {
   const int dim = cells.lattice.dim;
   const double h = cells.lattice.h;
@@ -219,7 +263,9 @@ void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const dou
       if (wall || ((in || below) && open(here, d) > 0.0)) known[face] = 1.0;
       if (wall || known[face] == 0.0) continue;
       const double weight = in ? weight_to(here, lower) : weight_to(lower, here);
-      after[face] = (before ? before[face] : 0.0) - h * weight * (of[here] - of[lower]);
+      double step = of[here] - of[lower];    // that of a dry cell is zero
+      if (surface && in != below) step += in ? -(*surface)[face] : (*surface)[face];
+      after[face] = (before ? before[face] : 0.0) - h * weight * step;
     }
 }
 
@@ -270,8 +316,10 @@ double MPMFlowPressure::largest_divergence(const double *velocity) const
   return most / cells.lattice.h;
 }
 
-void MPMFlowPressure::extend_into_air(std::vector<double> &values) const
+void MPMFlowPressure::extend_into_air(std::vector<double> &values,
+                                      const std::vector<double> *surface) const
 {
+  const int dim = cells.lattice.dim;
   values.assign(size(), 0.0);
   for (const auto &one : wet)
     values[cells.cells[one.cell].number] = psi[cells.cells[one.cell].number];
@@ -282,9 +330,11 @@ void MPMFlowPressure::extend_into_air(std::vector<double> &values) const
     for (int s = 0; s < 2 * cells.lattice.dim; s++) {
       const int other = cell.near[s];
       if (cell.walls >> s & 1 || !is_wet(other) || open_side(cell, s) == 0.0) continue;
-      const double in = std::max(NEAREST, depth(share_of[other])),
+      const double in = std::max(nearest, depth(share_of[other])),
                    out = depth(share_of[cell.number]);
-      sum += psi[other] * out / in;
+      const double at = surface ? (*surface)[(int64_t) (s % 2 ? other : cell.number) * dim + s / 2]
+                                : 0.0;
+      sum += at + (psi[other] - at) * out / in;
       n++;
     }
     if (n) values[cell.number] = sum / n;
@@ -309,8 +359,8 @@ double MPMFlowPressure::at_wall(int axis, int side) const
 
 double MPMFlowPressure::memory_usage() const
 {
-  return (psi.capacity() + excess.capacity() + flag.capacity() + right_side.capacity() +
-          inverse_diagonal.capacity()) *
+  return (psi.capacity() + lift.capacity() + excess.capacity() + flag.capacity() +
+          right_side.capacity() + inverse_diagonal.capacity()) *
       sizeof(double) +
       wet.capacity() * sizeof(Wet) + method.memory_usage() + coefficients.memory_usage() +
       multigrid.memory_usage();

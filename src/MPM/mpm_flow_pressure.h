@@ -43,6 +43,8 @@ class MPMFlowPressure : public MPMNodeSystem {
   /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
   void find_wet(const std::vector<double> &share);
   bool is_wet(int64_t number) const { return flag[number] > 0.0; }
+  /** Wet, and so are all neighbors. */
+  bool is_deep(const MPMFlowLattice::Cell &) const;
 
   /** Is the lower face of a cell along an axis in a wall, or open next to a wet cell? */
   bool is_next_to_water(const MPMFlowLattice::Cell &cell, int axis) const
@@ -53,13 +55,19 @@ class MPMFlowPressure : public MPMNodeSystem {
   /** Open share of the lower face of a cell along an axis. */
   double open(int64_t cell, int axis) const;
 
+  /** Nearest place of the surface to the middle of a cell that equations are made for, in spacings. Where surfaces have a
+   *  pressure, its difference to that in the cell loses as many digits as this has. */
+  double nearest = 1.0e-8;
+
   /** From the middle of a wet cell to the surface, towards a neighbor that is dry, in spacings. */
   double distance(int64_t wet_cell, int64_t dry) const;
 
   /** Takes the divergence from velocities [cell][dim] of faces next to wet cells. known: [cell][dim] in which these are
-   *  marked with 1, and others with 0. Both have values in owned cells only. */
+   *  marked with 1, and others with 0. Both have values in owned cells only. surface: [cell][dim] psi of a free surface
+   *  between a cell and the one before it along an axis, of all cells; null: zero. */
   MPM_NS::SolveReport project(const double *before, double *after, double *known,
-                              const MPM_NS::SolveGoal &);
+                              const MPM_NS::SolveGoal &,
+                              const std::vector<double> *surface = nullptr);
   /** Displacements of faces that take points from where they fill more than all of a cell to where they leave some of it
    *  empty, and no surface is near: their divergence is rate (share - 1), but for what is farther than a few cells. As in
    *  T. Kugelstadt, A. Longva, N. Thuerey, J. Bender, IEEE Trans. Vis. Comput. Graph. 27 (2021) 2731. */
@@ -70,8 +78,9 @@ class MPMFlowPressure : public MPMNodeSystem {
   /** Largest |div v| of the wet cells of this rank [1/time]. */
   double largest_divergence(const double *velocity) const;
   int64_t nwet() const { return (int64_t) wet.size(); }    ///< of this rank
-  /** psi with values next to the surface that are negative, so that it is zero there in between; of all cells. */
-  void extend_into_air(std::vector<double> &values) const;
+  /** psi with values next to the surface that make it what it is there in between, zero or that of project(); of all cells. */
+  void extend_into_air(std::vector<double> &values,
+                       const std::vector<double> *surface = nullptr) const;
   /** Integral of psi over the wall of an axis, the share of this rank. */
   double at_wall(int axis, int side) const;
 
@@ -93,17 +102,17 @@ class MPMFlowPressure : public MPMNodeSystem {
   MPM_NS::CellMultigrid multigrid;
   bool levels_are_there = false;    // for the cells that are wet now
   std::vector<Wet> wet;
-  std::vector<double> excess, flag, right_side, inverse_diagonal;
+  std::vector<double> excess, lift, flag, right_side, inverse_diagonal;
   const double *share_of = nullptr;
   double screen = 0.0;    // 1/length^2
   MPM_NS::ConjugateGradients method;
 
+  void find_lift(const std::vector<double> &surface);
   double weight_to(int64_t wet_cell, int64_t other) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
   double flux(const double *velocity, int64_t cell, int axis) const;
-  bool is_deep(const MPMFlowLattice::Cell &) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
-                         double *known) const;
+                         double *known, const std::vector<double> *surface = nullptr) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;
   void follow_neighbors();
   void find_levels();

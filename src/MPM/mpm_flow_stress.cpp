@@ -1,0 +1,259 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_flow_stress.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// nearest place of the surface to the middle of a cell that masses are made for, in spacings
+static constexpr double NEAREST = 0.1;
+// of neighbors among the cells around one
+static constexpr int STRIDE[2][3] = {{3, 1, 0}, {9, 3, 1}};
+
+MPMFlowStress::MPMFlowStress(LAMMPS *lmp, const MPMFlowLattice &cells,
+                             const MPMFlowPressure &water) :
+    MPMNodeSystem(lmp, cells.grid, cells.lattice.dim * (cells.lattice.dim + 1) / 2),
+    cells(cells), water(water), dim(cells.lattice.dim)
+{
+}
+
+/** Of wet cells along each axis: up to the middle between two of them, to a wall, or to the surface. */
+void MPMFlowStress::find_lengths()
+{
+  length.assign(cells.size() * dim, 0.0);
+  for (const auto &cell : cells.cells) {
+    if (!water.is_wet(cell.number)) continue;
+    for (int s = 0; s < 2 * dim; s++) {
+      const int other = cell.near[s];
+      const bool surface = !(cell.walls >> s & 1) && !water.is_wet(other);
+      length[(int64_t) cell.number * dim + s / 2] +=
+          surface ? std::max(NEAREST, water.distance(cell.number, other)) : 0.5;
+    }
+  }
+  cells.publish(length.data(), dim);
+}
+
+/* ----------------------------------------------------------------------
+   faces next to water, with their masses: from middle to middle of cells or to the surface along their axis, and as long as
+   the cells on their sides along the others
+------------------------------------------------------------------------- */
+
+void MPMFlowStress::find_faces()
+{
+  faces.clear();
+  inverse_mass.assign(cells.size() * dim, 0.0);
+  for (const auto &cell : cells.cells)
+    for (int c = 0; c < dim; c++) {
+      if (cell.walls >> 2 * c & 1) continue;
+      const int64_t here = cell.number, lower = cell.near[2 * c];
+      const bool in = water.is_wet(here), below = water.is_wet(lower);
+      if (!in && !below) continue;
+      double mass = 1.0;
+      if (!in) mass = std::max(NEAREST, water.distance(lower, here));
+      if (!below) mass = std::max(NEAREST, water.distance(here, lower));
+      double across[3] = {1.0, 1.0, 1.0};
+      for (int d = 0; d < dim; d++) {
+        if (d == c) continue;
+        across[d] = (length[here * dim + d] + length[lower * dim + d]) / (in && below ? 2.0 : 1.0);
+        mass *= across[d];
+      }
+      Face face = {};
+      face.at = here * dim + c;
+      double of_walls = 0.0;
+      for (int d = 0; d < dim; d++)
+        for (int s = 0; d != c && s < 2; s++) {
+          const auto &wall = cells.walls[d][s];
+          if (!(cell.walls >> (2 * d + s) & 1) || !wall.sticks) continue;
+          const double drag = 2.0 * number * mass / across[d];
+          of_walls += drag;
+          face.wall += drag * wall.v[c];
+        }
+      face.inverse = inverse_mass[face.at] = 1.0 / (mass + of_walls);
+      face.share = mass * face.inverse;
+      face.wall *= face.inverse;
+      faces.push_back(face);
+    }
+  cells.publish(inverse_mass.data(), dim);
+}
+
+/* ----------------------------------------------------------------------
+   normal stresses where it is wet, shear stresses where three of the four cells around are, but for edges in walls
+------------------------------------------------------------------------- */
+
+void MPMFlowStress::find_stresses()
+{
+  normals.clear();
+  edges.clear();
+  volume.assign(size(), 0.0);
+  const int here_around = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
+  for (std::size_t k = 0; k < cells.cells.size(); k++) {
+    const auto &cell = cells.cells[k];
+    const int *const around = cells.around.data() + k * naround + here_around;
+    const int64_t here = cell.number;
+    if (water.is_wet(here)) {
+      Normal one = {};
+      one.at = here * width;
+      one.volume = 1.0;
+      for (int d = 0; d < dim; d++) {
+        one.volume *= length[here * dim + d];
+        one.lower[d] = here * dim + d;
+        one.upper[d] = (int64_t) cell.near[2 * d + 1] * dim + d;
+      }
+      std::fill_n(volume.begin() + one.at, dim, one.volume);
+      normals.push_back(one);
+    }
+    for (int c = 0; c < dim; c++)
+      for (int d = c + 1; d < dim; d++) {
+        if (cell.walls >> 2 * c & 1 || cell.walls >> 2 * d & 1) continue;
+        const int step_c = STRIDE[dim - 2][c], step_d = STRIDE[dim - 2][d];
+        const int64_t left = around[-step_c], below = around[-step_d],
+                      corner = around[-step_c - step_d];
+        // two cells that meet at the edge alone do not hold each other
+        int wet = 0;
+        double third = 0.0;
+        for (const int64_t one : {here, left, below, corner}) {
+          wet += water.is_wet(one);
+          if (dim == 3) third += length[one * dim + 3 - c - d];
+        }
+        if (wet < 3) continue;
+        Edge edge;
+        edge.at = here * width + dim + pair_of(c, d);
+        edge.face[0] = here * dim + c;
+        edge.face[1] = below * dim + c;
+        edge.face[2] = here * dim + d;
+        edge.face[3] = left * dim + d;
+        edge.volume = dim == 3 ? third / wet : 1.0;
+        volume[edge.at] = edge.volume;
+        edges.push_back(edge);
+      }
+  }
+  cells.publish(volume.data(), width);
+}
+
+/** The stresses at the faces of owned cells. */
+void MPMFlowStress::find_forces()
+{
+  auto face = faces.begin();
+  for (const auto &cell : cells.cells)
+    for (int c = 0; c < dim; c++) {
+      const int64_t here = cell.number;
+      if (face == faces.end() || face->at != here * dim + c) continue;
+      for (int d = 0; d < dim; d++) {
+        const int upper = 2 * d, lower = 2 * d + 1;
+        if (d == c) {
+          face->from[upper] = here * width + c;
+          face->from[lower] = (int64_t) cell.near[2 * c] * width + c;
+        } else {
+          const int pair = dim + pair_of(c, d);
+          face->from[upper] = (int64_t) cell.near[2 * d + 1] * width + pair;
+          face->from[lower] = here * width + pair;
+        }
+        face->weight[upper] = volume[face->from[upper]];
+        face->weight[lower] = -volume[face->from[lower]];
+      }
+      ++face;
+    }
+}
+
+void MPMFlowStress::find_diagonal()
+{
+  inverse_diagonal.assign(size(), 0.0);
+  for (const auto &one : normals)
+    for (int d = 0; d < dim; d++)
+      inverse_diagonal[one.at + d] = 1.0 /
+          (one.volume * one.volume * (inverse_mass[one.lower[d]] + inverse_mass[one.upper[d]]) +
+           one.volume * (1.0 - 1.0 / dim) / (2.0 * number));
+  for (const auto &edge : edges) {
+    double sum = 0.0;
+    for (const int64_t face : edge.face) sum += inverse_mass[face];
+    inverse_diagonal[edge.at] = 1.0 / (edge.volume * edge.volume * sum + edge.volume / number);
+  }
+  cells.publish(inverse_diagonal.data(), width);
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** out += sign W E u, in owned cells. */
+void MPMFlowStress::strain(const double *u, double *out, double sign) const
+{
+  for (const auto &one : normals)
+    for (int d = 0; d < dim; d++)
+      out[one.at + d] += sign * one.volume * (u[one.upper[d]] - u[one.lower[d]]);
+  for (const auto &edge : edges) {
+    const int64_t *const f = edge.face;
+    out[edge.at] += sign * edge.volume * (u[f[0]] - u[f[1]] + u[f[2]] - u[f[3]]);
+  }
+}
+
+void MPMFlowStress::apply(const double *x, double *y)
+{
+  speed.assign(cells.size() * dim, 0.0);
+  for (const auto &face : faces) {
+    double force = 0.0;
+    for (int k = 0; k < 2 * dim; k++) force += face.weight[k] * x[face.from[k]];
+    speed[face.at] = face.inverse * force;
+  }
+  cells.publish(speed.data(), dim);
+  std::fill_n(y, size(), 0.0);
+  const double half = 0.5 / number;
+  for (const auto &one : normals) {
+    double mean = 0.0;
+    for (int d = 0; d < dim; d++) mean += x[one.at + d] / dim;
+    for (int d = 0; d < dim; d++) y[one.at + d] = one.volume * half * (x[one.at + d] - mean);
+  }
+  for (const auto &edge : edges) y[edge.at] = 2.0 * half * edge.volume * x[edge.at];
+  strain(speed.data(), y, -1.0);
+  cells.publish(y, width);
+}
+
+void MPMFlowStress::precondition(const double *r, double *z)
+{
+  for (int64_t k = 0; k < size(); k++) z[k] = inverse_diagonal[k] * r[k];
+}
+
+SolveReport MPMFlowStress::step(double new_number, std::vector<double> &velocity,
+                                std::vector<double> &psi, const SolveGoal &goal)
+{
+  number = new_number;
+  find_lengths();
+  find_faces();
+  find_stresses();
+  find_forces();
+  find_diagonal();
+
+  for (const auto &face : faces) velocity[face.at] = face.share * velocity[face.at] + face.wall;
+  cells.publish(velocity.data(), dim);
+  right_side.assign(size(), 0.0);
+  stress.assign(size(), 0.0);
+  strain(velocity.data(), right_side.data(), 1.0);
+  cells.publish(right_side.data(), width);
+  const SolveReport report = method.solve(*this, right_side.data(), stress.data(), goal);
+
+  cells.keep_owned(velocity.data(), dim);
+  for (const auto &face : faces)
+    for (int k = 0; k < 2 * dim; k++)
+      velocity[face.at] += face.inverse * face.weight[k] * stress[face.from[k]];
+  cells.publish(velocity.data(), dim);
+  const double to_psi = -cells.lattice.h / dim;
+  for (int64_t k = 0; k < cells.size(); k++)
+    for (int d = 0; d < dim; d++) psi[k] += to_psi * stress[k * width + d];
+  return report;
+}
+
+double MPMFlowStress::memory_usage() const
+{
+  double bytes = faces.capacity() * sizeof(Face) + normals.capacity() * sizeof(Normal) +
+      edges.capacity() * sizeof(Edge) + method.memory_usage();
+  for (const auto *list :
+       {&length, &inverse_mass, &volume, &speed, &right_side, &stress, &inverse_diagonal})
+    bytes += list->capacity() * sizeof(double);
+  return bytes;
+}

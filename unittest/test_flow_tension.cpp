@@ -1,0 +1,200 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// Surface tension of fix mpm/incompressible: drops at rest, drops that swing, capillary waves.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+enum { KINETIC = 5, FASTEST = 6, WALLS = 7 };
+
+/** A drop of radius, density, and tension 1 with n cells in its radius, about a place. r = c (1 + eps cos 2 theta) in 2d. */
+std::string drop(int dim, int n, double eps, double x, double y, double mu)
+{
+  const double h = 1.0 / n, c = 1.0 / std::sqrt(1.0 + 0.5 * eps * eps);
+  const auto where = strprintf("sqrt((x-(%.17g))^2+(y-(%.17g))^2)", x, y);
+  const auto two = strprintf("((x-(%.17g))^2-(y-(%.17g))^2)", x, y);
+  return box(dim, "lj", dim == 3 ? "p p p" : "p p",
+             dim == 3 ? "-1.5 1.5 -1.5 1.5 -1.5 1.5" : "-1.5 1.5 -1.5 1.5", 1, 0.5 * h) +
+      strprintf("create_points 1 box spacing %.17g\n", 0.5 * h) +
+      (dim == 3 ? strprintf("variable out atom sqrt((x-(%.17g))^2+(y-(%.17g))^2+z^2)>1\n", x, y)
+                : "variable out atom " + where + strprintf(">%.17g*(1+%.17g*", c, eps) + two +
+               "/(" + where + "^2+1e-20))\n") +
+      "group out variable out\ndelete_atoms group out compress no\n" +
+      strprintf("fix w all mpm/incompressible %.17g 1 tension 1 viscosity %.17g\n", h, mu) +
+      "fix dt all mpm/dt 0.8 every 1 max 0.05 until ";
+}
+
+double pressure_inside(Scene &run)
+{
+  double sum = 0.0, n = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double *const x = run.x()[i];
+    if (x[0] * x[0] + x[1] * x[1] + x[2] * x[2] > 0.25) continue;
+    sum -= run.points().tau[i][0];
+    n += 1.0;
+  }
+  return sum / n;
+}
+
+/** Times at which m passes zero. */
+std::vector<double> zeros_of(const std::vector<double> &t, const std::vector<double> &m)
+{
+  std::vector<double> zeros;
+  for (std::size_t k = 1; k < m.size(); k++)
+    if (m[k - 1] * m[k] < 0.0)
+      zeros.push_back(t[k - 1] + (t[k] - t[k - 1]) * m[k - 1] / (m[k - 1] - m[k]));
+  return zeros;
+}
+
+/** Extrema, by time and value. */
+std::vector<std::array<double, 2>> peaks_of(const std::vector<double> &t,
+                                            const std::vector<double> &m)
+{
+  std::vector<std::array<double, 2>> peaks;
+  for (std::size_t k = 6; k + 1 < m.size(); k++)
+    if ((m[k] - m[k - 1]) * (m[k + 1] - m[k]) < 0.0) peaks.push_back({t[k], m[k]});
+  return peaks;
+}
+
+}    // namespace
+
+// O3: the pressure is sigma/R, in 3d twice that; what is left of flow and drift, anywhere in a cell
+SERIAL_TEST(Drop, AtRest)
+{
+  const double mu = 1.0 / std::sqrt(12000.0);
+  for (const int n : {8, 16})
+    for (const double offset : {0.0, 0.31}) {
+      Scene run(drop(2, n, 0.0, offset / n, 0.5 * offset / n, mu) + (n == 8 ? "3" : "1") +
+                "\nrun 100000\n");
+      EXPECT_NEAR(measured(strprintf("%d cells, %g: pressure", n, offset), pressure_inside(run)),
+                  1.0, n == 8 ? 0.05 : 0.02);
+      EXPECT_LT(measured("capillary number", mu * run.fix("w")->compute_vector(FASTEST)), 1e-3);
+      double middle[2] = {0.0, 0.0};
+      for (int i = 0; i < run.n(); i++)
+        for (int d = 0; d < 2; d++) middle[d] += run.x()[i][d] / run.n();
+      EXPECT_LT(measured("drift", std::hypot(middle[0] - offset / n, middle[1] - 0.5 * offset / n)),
+                0.01);
+    }
+  Scene ball(drop(3, 8, 0.0, 0.01, 0.02, mu) + "0.2\nrun 100000\n");
+  EXPECT_NEAR(measured("3d: pressure", pressure_inside(ball)), 2.0, 0.1);
+  EXPECT_LT(measured("capillary number", mu * ball.fix("w")->compute_vector(FASTEST)), 1e-3);
+}
+
+// O4: zeros of the second moment of a drop that swings with eps = 0.1, Oh = 0.01, and its decay
+SERIAL_TEST(Drop, Swings)
+{
+  std::vector<double> t, Q;
+  Scene run(drop(2, 16, 0.1, 0.013, 0.007, 0.01) + "3.6\n");
+  run.each_step([&](double **) {
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      sum += run.x()[i][0] * run.x()[i][0] - run.x()[i][1] * run.x()[i][1];
+    t.push_back(run.time());
+    Q.push_back(sum);
+  });
+  run.commands("run 100000\n");
+  const auto zeros = zeros_of(t, Q);
+  ASSERT_EQ(zeros.size(), 3u);
+  constexpr double exact[3] = {0.64661, 1.93824, 3.23103};
+  for (int k = 0; k < 3; k++)
+    EXPECT_NEAR(measured("zero over that of theory", zeros[k] / exact[k]), 1.0, 0.02);
+  const auto peaks = peaks_of(t, Q);
+  ASSERT_EQ(peaks.size(), 2u);
+  const double decay = std::log(-peaks[0][1] / peaks[1][1]) / (peaks[1][0] - peaks[0][0]);
+  EXPECT_NEAR(measured("decay over theory", decay / 0.0381478), 1.0, 0.2);
+  double spin = 0.0, inertia = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    spin += run.x()[i][0] * run.v()[i][1] - run.x()[i][1] * run.v()[i][0];
+    inertia += run.x()[i][0] * run.x()[i][0] + run.x()[i][1] * run.x()[i][1];
+  }
+  EXPECT_LT(measured("spin", std::fabs(spin / inertia)), 1e-3);
+}
+
+// O5: a capillary wave of half its length between two walls, which it meets at a right angle, as deep as it is long
+SERIAL_TEST(Wave, BetweenWalls)
+{
+  const int n = 40;    // cells in a wave
+  std::vector<double> t, m;
+  Scene run(plane("lj", "f f", "0 0.5 0 1.5", 1, 0.01) + "region w block INF INF 0 1 INF INF\n" +
+            strprintf("create_points 1 region w spacing %.17g\n", 0.5 / n) +
+            strprintf("variable s equal %.17g\n", std::exp(2 * PI) - std::exp(-2 * PI)) +
+            "variable up atom 0.02*cos(2*PI*x)*(exp(2*PI*y)-exp(-2*PI*y))/v_s\n"
+            "variable side atom -0.02*sin(2*PI*x)*(exp(2*PI*y)+exp(-2*PI*y))/v_s\n"
+            "displace_atoms all move v_side v_up 0\n" +
+            strprintf("fix w all mpm/incompressible %.17g 1 tension 1 viscosity 0.01\n", 1.0 / n) +
+            "timestep 0.0008\n");
+  run.each_step([&](double **) {
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++) sum += std::cos(2 * PI * run.x()[i][0]) * run.x()[i][1];
+    t.push_back(run.time());
+    m.push_back(sum / run.n());
+  });
+  run.commands("run 1400\n");
+  const auto zeros = zeros_of(t, m);
+  ASSERT_GT(zeros.size(), 4u);
+  const double omega = PI * (zeros.size() - 1) / (zeros.back() - zeros.front());
+  measured("frequency over theory", omega / 15.662275);
+  // smoothing takes k^2 h^2 of the force
+  const double k = 2 * PI / n;
+  EXPECT_NEAR(omega / 15.662275, std::sqrt(1.0 - k * k), 0.01);
+  const auto peaks = peaks_of(t, m);
+  const auto &first = peaks.front(), &last = peaks.back();
+  const double decay = std::log(std::fabs(first[1] / last[1])) / (last[0] - first[0]);
+  EXPECT_NEAR(measured("decay over theory", decay / 0.7000615), 1.0, 0.15);
+}
+
+// the pressure in all units
+SERIAL_TEST(Units, Pressure)
+{
+  for (const char *units : {"si", "metal", "real", "lj"}) {
+    Scene run(
+        plane(units, "p p", "-12 12 -12 12", 1, 0.3) + "region d sphere 0 0 0 8\n" +
+        "create_points 1 region d spacing 0.5\nfix w all mpm/incompressible 1 2.0 tension 0.8\n"
+        "timestep 1e-6\nrun 2\n");
+    double sum = 0.0, n = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      if (std::hypot(run.x()[i][0], run.x()[i][1]) > 4.0) continue;
+      sum -= run.points().tau[i][0];
+      n += 1.0;
+    }
+    EXPECT_NEAR(sum / n / 0.1, 1.0, 0.05) << units;
+  }
+}
+
+// a drop that swings across faces of the box, on four ranks, balanced; and the same to the last bit from a restart file
+TEST(Drop, RanksAndRestart)
+{
+  for (const int dim : {2, 3}) {
+    const auto scene =
+        box(dim, "lj", dim == 3 ? "p f p" : "p f", dim == 3 ? "0 2 0 2 0 1" : "0 2 0 2", 1, 0.02) +
+        "region d block 1.2 1.8 INF 0.9 " + (dim == 3 ? "0.2 0.8" : "INF INF") + "\n" +
+        strprintf("create_points 1 region d spacing %g\n", dim == 3 ? 0.1 : 0.05) +
+        "variable u atom 0.5+y\nvelocity all set v_u 0 0\n";
+    const auto fixes = strprintf("fix w all mpm/incompressible %g 1 viscosity 0.01 tension 0.5 ",
+                                 dim == 3 ? 0.2 : 0.1) +
+        "tolerance 1e-11\nfix dt all mpm/dt 0.5 max 0.05 every 2\ntimestep 0.005\n";
+    OnRanks run(scene + fixes, "run 20\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
+    EXPECT_LT(measured("difference", run.difference()), 1e-9);
+    Continued again(scene + fixes, 8, "neighbor 0.02 bin\n" + fixes, 14);
+    EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+  }
+}
+
+SERIAL_TEST(Tension, BadInput)
+{
+  const auto plain = plane("si", "p f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.05\n";
+  const std::string fix = "fix w all mpm/incompressible 0.1 1000 ";
+  expect_refused(plain,
+                 {{fix + "tension -1", "tension"},
+                  {fix + "tension", "tension"},
+                  {fix + "tension nan", "nan"},
+                  {fix + "tension 1000", "too large for the surface tension"}},
+                 "timestep 0.05\nrun 1\n");
+}
