@@ -47,7 +47,7 @@ std::string on_body(const std::string &law, double slope, double offset, int dim
 }
 
 struct Motion {
-  double v[2] = {0.0, 0.0}, lowest = 1e300;
+  double v[2] = {0.0, 0.0}, lowest = 1e300, highest = -1e300;
 };
 /** Mean of the points of the soil. */
 Motion of_soil(Scene &run)
@@ -58,6 +58,7 @@ Motion of_soil(Scene &run)
     if (run.lmp->atom->type[i] != 1) continue;
     for (int d = 0; d < 2; d++) m.v[d] += run.v()[i][d];
     m.lowest = std::min(m.lowest, run.x()[i][1]);
+    m.highest = std::max(m.highest, run.x()[i][1]);
     n++;
   }
   for (double &v : m.v) v /= n;
@@ -65,16 +66,19 @@ Motion of_soil(Scene &run)
 }
 
 /** Friction of the layer when it has come to rest on what is below, over that of its grains: what its weight is above the pressure of the
- *  water at its lower side, which may be a part of a cell off the surface of the other body. */
+ *  water at its lower side, which may be a part of a cell off the surface of the other body. The pressure is zero at the upper end of
+ *  the soil, which may be as much below the face of the box. */
 double friction(Scene &run, double slope, double coefficient)
 {
   run_to(run, 0.6);
   const auto before = of_soil(run);
   run_to(run, 0.7);
-  const double cosine = 1.0 / std::sqrt(1.0 + slope * slope), low = before.lowest - 0.025;
+  const double cosine = 1.0 / std::sqrt(1.0 + slope * slope), low = before.lowest - 0.025,
+               high = before.highest + 0.025;
   EXPECT_LT(std::fabs(low), 0.03);
+  EXPECT_LT(std::fabs(high - 1.0), 0.03);
   const double held = 9.81 * cosine * slope - (of_soil(run).v[0] - before.v[0]) / 0.1;
-  return held / (9.81 * cosine * coefficient * (1990.0 - 1000.0 * (1.0 - low)) / 1990.0);
+  return held / (9.81 * cosine * coefficient * (1990.0 - 1000.0 * (high - low)) / 1990.0);
 }
 
 }    // namespace

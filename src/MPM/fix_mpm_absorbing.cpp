@@ -150,8 +150,10 @@ void FixMPMAbsorbing::init_physics(MPMPlan &plan)
                   {options.has_fmpm(), "transfer fmpm",
                    "its terms do not have the dashpots: use another transfer"}});
     field->keep_old = true;
-    bodies.push_back({field, &field->nodes.add_field("rates of " + std::string(id), 6),
-                      &field->nodes.add_field("pushes of " + std::string(id), 3)});
+    bodies.emplace_back();
+    bodies.back().field = field;
+    bodies.back().rates = &field->nodes.add_field("rates of " + std::string(id), 6);
+    bodies.back().pushes = &field->nodes.add_field("pushes of " + std::string(id), 3);
   }
 }
 
