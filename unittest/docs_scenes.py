@@ -221,6 +221,11 @@ def scene_for(lines):
     if "ball.msh" in text or "mpm/airbag" in text:
         points = "create_points 1 mesh ball.msh scale 0.3 move 0.05 0.05 0.05 thickness 0.001\n"
         material = "fix default all mpm/material density 1000 neohookean 1.0e5 0.3\n"
+    own_grid = re.search(r"^fix\s+\S+\s+\S+\s+mpm/mesh\s+(\S+)", text, re.M)
+    if own_grid:    # the mesh
+        grid = ""
+        points = "" if makes_points else "create_points 1 elements %s part cells\n" % own_grid.group(1)
+        material = "" if "mpm/material" in text else MATERIAL
     if "mpm/airbag" in text:
         before += "fix skin all mpm/elements ball.msh thickness 0.001 compression no\n"
     scene = head + grid + points + material + before
@@ -297,6 +302,43 @@ def ball_mesh():
             "$EndElements\n")
 
 
+def block_mesh(dim, low, size, names):
+    """Gmsh's file of 4 x 2 (x 2) cells, a group named cells or as given, and their sides with names: {"xlo": name, ...}."""
+    n = (4, 2, 2)
+    edge = size / n[0]
+    node = lambda i, j, k: (k * (n[1] + 1) + j) * (n[0] + 1) + i + 1
+    nodes = [tuple(low + edge * c for c in (i, j)) + ((low + edge * k) if dim == 3 else 0.0,)
+             for k in range(n[2] + 1 if dim == 3 else 1) for j in range(n[1] + 1) for i in range(n[0] + 1)]
+    groups = sorted(set(names.values()))
+    elements = []
+    for k in range(n[2] if dim == 3 else 1):
+        for j in range(n[1]):
+            for i in range(n[0]):
+                flat = [node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k)]
+                all_nodes = flat + [m + (n[0] + 1) * (n[1] + 1) for m in flat] if dim == 3 else flat
+                elements.append((5 if dim == 3 else 3, 1, all_nodes))
+                sides = {"xlo": (i == 0, (0, 3, 7, 4)), "xhi": (i == n[0] - 1, (1, 2, 6, 5)),
+                         "ylo": (j == 0, (0, 1, 5, 4)), "yhi": (j == n[1] - 1, (3, 2, 6, 7)),
+                         "zlo": (k == 0, (0, 1, 2, 3)), "zhi": (k == n[2] - 1, (4, 5, 6, 7))}
+                for side, (there, corners) in sides.items():
+                    if there and side in names and (dim == 3 or side[0] != "z"):
+                        used = [all_nodes[c] for c in corners[:2 if dim == 2 else 4]]
+                        elements.append((3 if dim == 3 else 1, 2 + groups.index(names[side]), used))
+    text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%d\n%d 1 \"cells\"\n" % (len(groups) + 1, dim)
+    text += "".join('%d %d "%s"\n' % (dim - 1, k + 2, name) for k, name in enumerate(groups)) + "$EndPhysicalNames\n"
+    text += "$Nodes\n%d\n" % len(nodes) + "".join("%d %.12g %.12g %.12g\n" % ((k + 1,) + x) for k, x in enumerate(nodes))
+    text += "$EndNodes\n$Elements\n%d\n" % len(elements)
+    return text + "".join("%d %d 2 %d 1 %s\n" % (k + 1, kind, tag, " ".join(map(str, used)))
+                          for k, (kind, tag, used) in enumerate(elements)) + "$EndElements\n"
+
+
+# meshes whose cells are the grid: dimension, lower corner, length, names of sides
+GRIDS = {"plate.msh": (3, 0.01, 0.08, {"xlo": "left", "ylo": "bottom", "xhi": "right"}),
+         "tube.msh": (3, 0.01, 0.08, {"ylo": "xz", "zlo": "yz", "xlo": "bore"}),
+         "around.msh": (3, 0.01, 0.08, {"zlo": "bottom", "xlo": "sides", "xhi": "sides", "ylo": "sides", "yhi": "sides"}),
+         "bar.msh": (2, 0.0, 1.0, {"xlo": "left", "ylo": "bottom", "xhi": "right"})}
+
+
 def write_files(folder, scene):
     """The files that these scenes read, with the mesh in units of the file or of the scene."""
     size = 10.0 if "scale" in scene else 0.01
@@ -305,6 +347,9 @@ def write_files(folder, scene):
         file.write(MESH_FILE % (size, size, size))
     with open(os.path.join(folder, "ball.msh"), "w", encoding="ascii") as file:
         file.write(ball_mesh())
+    for name, about in GRIDS.items():
+        with open(os.path.join(folder, name), "w", encoding="ascii") as file:
+            file.write(block_mesh(*about))
     with open(os.path.join(folder, "tool.stl"), "w", encoding="ascii") as file:
         file.write(TOOL)
     with open(os.path.join(folder, "scan.stl"), "w", encoding="ascii") as file:

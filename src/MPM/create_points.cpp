@@ -738,14 +738,19 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
         data.push_back({data_name, data_to});
       });
   if (nodes) thin.declare(o, dim);
+  o.add("halve",
+        {integer(halve, "N", {0, 6, true},
+                 "divide elements N times along each edge: 4^N (solids: 8^N) points in each")});
   o.add("diameter",
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
   o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
       .standard("all");
-  o.refuse([this, has_radius] {
+  o.refuse([this, has_radius, nodes] {
     auto rules = thin.rules();
+    rules.push_back({nodes && halve > 0, "halve",
+                     "is for points in elements: use create_points elements, or a finer mesh"});
     rules.push_back({!has_radius, "diameter", "needs atom_style hybrid sphere mpm"});
     return rules;
   });
@@ -776,6 +781,7 @@ void CreatePoints::parse_mesh(int narg, char **arg)
   for (auto &x : mesh.nodes)
     for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
 
+  for (int k = 0; k < given.halve; k++) mesh.halve_elements();
   mesh_fields = std::make_unique<MPMMeshFields>(lmp, mesh, !in_elements, type, given.by_type,
                                                 given.by_group, given.data);
   volume = 0.0;
@@ -787,10 +793,12 @@ void CreatePoints::parse_mesh(int narg, char **arg)
 
   check_periodic(mesh, arg[2]);
   wrap_sites(arg[2], in_elements ? "elements" : "nodes");
-  if (in_elements && MPMField::all(lmp).empty() && comm->me == 0)
-    error->warning(FLERR,
-                   "Create_points elements: only centers and volumes of the elements are used, for "
-                   "there is no fix mpm yet: with shape cpdi2, define it before");
+  if (in_elements && MPMField::all(lmp).empty() && modify->get_fix_by_style("^mpm/mesh$").empty() &&
+      comm->me == 0)
+    error->warning(
+        FLERR,
+        "Create_points elements: only centers and volumes of the elements are used, for "
+        "there is no fix mpm or mpm/mesh yet: with shape cpdi2, define the fix mpm before");
 }
 
 /* ----------------------------------------------------------------------

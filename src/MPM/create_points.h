@@ -61,6 +61,7 @@ struct CreatePointsMeshOptions {
   std::vector<std::array<std::string, 2>>
       data;            ///< names in the file, and what they are for points
   MPMThinBody thin;    ///< surfaces or lines, for nodes
+  int halve = 0;       ///< how many times elements are divided
   double diameter = 0.0;
   std::string group_id;
 

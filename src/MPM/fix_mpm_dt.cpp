@@ -97,9 +97,9 @@ FixMPMDt::~FixMPMDt() = default;
 
 void FixMPMDt::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty() &&
-      modify->get_fix_by_style("^mpm/incompressible$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/dt needs a fix mpm or mpm/incompressible");
+  if (modify->get_fix_by_style("^mpm$").empty() && find_fixes<MPMStepLimit>(lmp).empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/dt needs a fix mpm, mpm/mesh, or mpm/incompressible");
   for (auto *ifix : modify->get_fix_list()) {
     if (ifix == this) continue;
     const std::string other = ifix->style;
@@ -150,7 +150,7 @@ FixMPMDt::Limit FixMPMDt::point_limit() const
   for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
     compare(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
   speed = 0.0;
-  for (const auto *flow : find_fixes<FixMPMIncompressible>(lmp)) compare(flow->stable_dt(tag));
+  for (const auto *other : find_fixes<MPMStepLimit>(lmp)) compare(other->stable_dt(tag));
   tag = 0;
   for (auto *ifix : modify->get_fix_by_style("^mpm/rigid$"))
     compare(dynamic_cast<FixMPMRigid *>(ifix)->stable_dt());

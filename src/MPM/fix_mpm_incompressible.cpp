@@ -15,6 +15,7 @@
 #include "mpm_flow_tension.h"
 #include "mpm_flow_transfer.h"
 #include "mpm_flow_viscosity.h"
+#include "mpm_integrators.h"
 #include "mpm_options.h"
 #include "mpm_points.h"
 
@@ -303,20 +304,7 @@ void FixMPMIncompressible::check_points()
         "Fix {} {}: {} points have another mass than density {} times their volume; there is one "
         "density",
         style, id, all[1], density);
-  for (auto *other : modify->get_fix_list()) {
-    if (other == this || !(other->time_integrate || utils::strmatch(other->style, "^mpm$")))
-      continue;
-    bigint n = 0, nall;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (cells.is_point(i) && (atom->mask[i] & other->groupbit)) n++;
-    MPI_Allreduce(&n, &nall, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    if (nall)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "{} material points of fix {} (style {}) are also integrated by fix {} (style {}): "
-          "give the fixes disjoint groups",
-          nall, id, style, other->id, other->style);
-  }
+  refuse_other_integrators(lmp, *this);
   check_others();
 }
 

@@ -18,6 +18,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 #include "declare/option.h"
 #include "mpm_flow_lattice.h"
 #include "mpm_state.h"
+#include "mpm_step_limit.h"
 
 #include <memory>
 #include <string>
@@ -58,7 +59,10 @@ struct MPMIncompressibleOptions {
 
 /** Flow of an incompressible fluid, with free surfaces: its points, on a staggered lattice of its own, with a pressure that
  *  makes velocities free of divergence. */
-class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOptions {
+class FixMPMIncompressible :
+    public FixMPMState,
+    public MPMStepLimit,
+    private MPMIncompressibleOptions {
  public:
   FixMPMIncompressible(class LAMMPS *, int, char **);
   ~FixMPMIncompressible() override;
@@ -77,7 +81,7 @@ class FixMPMIncompressible : public FixMPMState, private MPMIncompressibleOption
 
   /** Time in which a point of this rank passes one spacing with the velocity and the acceleration that it has, or one half of
    *  what viscosity allows; no less than that of points without motion. tag: that of the point, 0: viscosity. */
-  double stable_dt(tagint &tag) const;
+  double stable_dt(tagint &tag) const override;
 
  private:
   MPMFlowLattice cells;

@@ -19,6 +19,7 @@
 #include "modify.h"
 #include "mpm_cpdi.h"
 #include "mpm_frame.h"
+#include "mpm_integrators.h"
 #include "mpm_pair_styles.h"
 #include "mpm_point_batches.h"
 #include "mpm_point_map.h"
@@ -46,19 +47,7 @@ using namespace MPM_NS;
 
 void MPMGuard::check_integrators() const
 {
-  for (auto *other : modify->get_fix_list()) {
-    if (other == &field.fix || !(other->time_integrate || utils::strmatch(other->style, "^mpm$")))
-      continue;
-    bigint n = 0, all;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (field.is_point(i) && (atom->mask[i] & other->groupbit)) n++;
-    MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    if (all)
-      error->all(FLERR,
-                 "{} material points of fix {} (style mpm) are also integrated by fix {} "
-                 "(style {}): give the fixes disjoint groups",
-                 all, field.id(), other->id, other->style);
-  }
+  refuse_other_integrators(lmp, field.fix);
 }
 
 /* ----------------------------------------------------------------------

@@ -164,7 +164,7 @@ std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::strin
 }
 
 /* ----------------------------------------------------------------------
-   sets and data of a mesh, with their names
+   sets, groups, and data of a mesh, with their names
 ------------------------------------------------------------------------- */
 
 static void broadcast_named(Mesh &mesh, MPI_Comm world)
@@ -177,6 +177,14 @@ static void broadcast_named(Mesh &mesh, MPI_Comm world)
     broadcast(set.elements, world);
   }
   mesh.data.resize(counts[1]);
+  std::vector<int> keys;    // dimension, tag
+  for (const auto &[key, name] : mesh.groups) {
+    keys.push_back(key.first);
+    keys.push_back(key.second);
+  }
+  broadcast(keys, world);
+  for (std::size_t k = 0; k < keys.size(); k += 2)
+    broadcast(mesh.groups[{keys[k], keys[k + 1]}], world);
   for (auto &data : mesh.data) {
     std::vector<int> about = {data.at_nodes, data.width};
     broadcast(about, world);
@@ -189,16 +197,16 @@ static void broadcast_named(Mesh &mesh, MPI_Comm world)
 
 /* ---------------------------------------------------------------------- */
 
-Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::string &part,
-                          int dimension, const std::string &user, int iarg)
+/** What prepare() makes of the mesh in a file, on all ranks. */
+static Mesh read_on_all(LAMMPS *lmp, const std::string &file, const std::string &user, int iarg,
+                        const std::function<void(Mesh &)> &prepare)
 {
   Mesh mesh;
   std::string message;
   if (lmp->comm->me == 0) {
     try {
       mesh = read_mesh(file);
-      mesh.keep(dimension, part);
-      if (dimension == lmp->domain->dimension) mesh.orient();
+      prepare(mesh);
     } catch (const std::runtime_error &e) {
       message = e.what();
     }
@@ -209,6 +217,23 @@ Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::strin
   broadcast(mesh.elements, lmp->world);
   broadcast_named(mesh, lmp->world);
   return mesh;
+}
+
+Mesh LAMMPS_NS::read_body(LAMMPS *lmp, const std::string &file, const std::string &part,
+                          int dimension, const std::string &user, int iarg)
+{
+  return read_on_all(lmp, file, user, iarg, [&](Mesh &mesh) {
+    mesh.keep(dimension, part);
+    if (dimension == lmp->domain->dimension) mesh.orient(dimension);
+  });
+}
+
+Mesh LAMMPS_NS::read_whole_mesh(LAMMPS *lmp, const std::string &file, const std::string &user,
+                                int iarg)
+{
+  return read_on_all(lmp, file, user, iarg, [&](Mesh &mesh) {
+    mesh.orient(lmp->domain->dimension);
+  });
 }
 
 /* ---------------------------------------------------------------------- */

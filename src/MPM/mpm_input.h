@@ -29,5 +29,9 @@ std::unique_ptr<MPM_NS::Material> read_material(LAMMPS *, const std::string &cal
 MPM_NS::Mesh read_body(LAMMPS *, const std::string &file, const std::string &part, int dimension,
                        const std::string &user, int iarg);
 
+/** All elements in a file on all ranks, with their groups; those of the dimension of the simulation are numbered in the positive
+ *  sense. Errors as for read_body(). */
+MPM_NS::Mesh read_whole_mesh(LAMMPS *, const std::string &file, const std::string &user, int iarg);
+
 }    // namespace LAMMPS_NS
 #endif

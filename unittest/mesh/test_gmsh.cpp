@@ -62,7 +62,7 @@ TEST(Mesh, Format22)
   EXPECT_EQ(mesh.elements[2].label, 5);
   EXPECT_DOUBLE_EQ(mesh.size(mesh.elements[0]), 0.5);
   EXPECT_DOUBLE_EQ(mesh.size(mesh.elements[1]), -0.5);    // clockwise
-  mesh.orient();
+  mesh.orient(2);
   double area = 0.0;
   for (const auto &e : mesh.elements) {
     EXPECT_GT(mesh.size(e), 0.0);
@@ -106,7 +106,7 @@ TEST(Mesh, Format41)
   EXPECT_EQ(mesh.elements[1].physical, 2);
   EXPECT_EQ(mesh.elements[2].physical, 0);
   EXPECT_DOUBLE_EQ(mesh.size(mesh.elements[1]), -1.0);
-  mesh.orient();
+  mesh.orient(2);
   EXPECT_DOUBLE_EQ(mesh.size(mesh.elements[1]), 1.0);
   EXPECT_DOUBLE_EQ(mesh.size(mesh.elements[2]), 1.0 / 6.0);
   mesh.keep(3, "solid");

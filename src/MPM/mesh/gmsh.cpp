@@ -484,10 +484,10 @@ void Mesh::keep(int dim, const std::string &group)
 
 /* ---------------------------------------------------------------------- */
 
-void Mesh::orient()
+void Mesh::orient(int dim)
 {
   for (auto &e : elements) {
-    if (size(e) >= 0.0) continue;
+    if (element_dimension(e.type) != dim || size(e) >= 0.0) continue;
     if (e.type == ElementType::HEXAHEDRON)
       for (int k = 0; k < 4; k++) std::swap(e.node[k], e.node[4 + k]);
     else

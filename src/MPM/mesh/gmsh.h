@@ -87,9 +87,13 @@ struct Mesh {
    *  sets, with their tags as names if they have none. Throws std::runtime_error when nothing is left. */
   void keep(int dim, const std::string &group = "");
 
-  /** Number the nodes of elements of negative size in the opposite sense (a body of elements of
+  /** Divide each element into those of half of its size along each edge, 4 of a triangle or a quadrangle and 8 of a
+   *  solid, with its label, groups, and data. They do not share their nodes, and data of nodes are dropped. */
+  void halve_elements();
+
+  /** Number the nodes of elements of a dimension whose size is negative in the opposite sense (a body of elements of
    *  dimension 2 has its normal along +z). */
-  void orient();
+  void orient(int dim);
 
   /** Throws std::runtime_error if two elements have the same nodes, which would be twice their mass. */
   void check_repeated(const std::string &hint = "") const;

@@ -1,0 +1,731 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_mesh.h"
+
+#include "fix_mpm_material.h"
+#include "material/batch.h"
+#include "material/material.h"
+#include "math/matrix.h"
+#include "mesh/element.h"
+#include "mpm_input.h"
+#include "mpm_integrators.h"
+#include "mpm_options.h"
+#include "mpm_physics.h"
+#include "mpm_points.h"
+#include "mpm_time_limit.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// a point that is farther outside, in widths of the next cell, has left the mesh
+
+static constexpr double OUTSIDE = 0.1;
+
+static constexpr int CHECK_EVERY = 10;    // steps between looks at the time step
+
+/* ----------------------------------------------------------------------
+   fix ID group mpm/mesh FILE keyword values ...
+------------------------------------------------------------------------- */
+
+Options MPMMeshOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/mesh");
+  o.argument(text(file, "file"));
+  o.add("part",
+        {text(
+            part, "name",
+            "name or tag of a physical group of the mesh, or a set, whose elements are the cells")})
+      .standard("all elements of the dimension of the simulation");
+  o.add("frame",
+        {word(total,
+              {{"updated", false, "nodes are places in space, through which points move"},
+               {"total", true, "nodes are places of the body as it was at first"}})})
+      .keep();
+  o.add("scheme",
+        {word(musl,
+              {{"usl", false, "strain by the velocities after the momentum equation"},
+               {"musl", true, "strain by the new velocities of the points, mapped back"}})})
+      .keep();
+  o.add("transfer",
+        {word(transfer,
+              {{"flip",
+                FLIP,
+                "velocities of points change as those of nodes do",
+                {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
+               {"apic", APIC, "with the velocity gradient of the cell"}})})
+      .keep();
+  const auto condition = [&](const std::string &keyword, MPMMeshCondition::Kind kind,
+                             const std::string &names, const std::string &unit,
+                             const std::string &meaning, int n, bool null) {
+    std::vector<OptionValue> values = {text(next.group, "name", meaning)};
+    if (n)
+      values.push_back(variables(next.value, n, names, unit,
+                                 null ? "can be variables; NULL: free" : "can be a variable",
+                                 null));
+    o.add(keyword, values)
+        .then([this, kind] {
+          next.kind = kind;
+          conditions.push_back(next);
+          next = {};
+        })
+        .standard("none");
+  };
+  condition("velocity", MPMMeshCondition::VELOCITY, dim == 3 ? "vx vy vz" : "vx vy", "velocity",
+            "nodes of a physical group or set have this velocity", dim, true);
+  condition("slip", MPMMeshCondition::SLIP, "", "",
+            "nodes of these sides have no velocity along their normals", 0, false);
+  condition("pressure", MPMMeshCondition::PRESSURE, "p", "pressure",
+            "on sides of the mesh: of frame updated as they are in the file, of frame total as "
+            "they go with the body",
+            1, false);
+  condition("traction", MPMMeshCondition::TRACTION, dim == 3 ? "tx ty tz" : "tx ty", "pressure",
+            "on sides of the mesh, as they are in the file", dim, false);
+  return o;
+}
+
+FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) :
+    FixMPMState(lmp, narg, arg), ranks(lmp), batch(new Batch())
+{
+  const int dim = domain->dimension;
+  Options options = declare(dim);
+  read_options(lmp, options, narg, arg, 3);
+  points = MPMPoints::get(atom);
+  if (!points)
+    error->all(FLERR,
+               "Fix mpm/mesh requires material points: use atom_style mpm, or hybrid with mpm");
+  if (!atom->tag_enable)
+    error->all(FLERR,
+               "Fix mpm/mesh tells points from each other by their IDs: remove atom_modify id no");
+  try {
+    mesh =
+        std::make_unique<BackgroundMesh>(read_whole_mesh(lmp, file, "Fix mpm/mesh", 3), dim, part);
+    forces = std::make_unique<MPMMeshForces>(lmp, *mesh, conditions);
+  } catch (const std::runtime_error &e) {
+    error->all(FLERR, 3, "Fix mpm/mesh: {}: {}", file, e.what());
+  }
+  shortest = std::numeric_limits<double>::max();
+  for (const auto &one : mesh->cells) shortest = std::min(shortest, one.height);
+  sums.resize(mesh->nodes.size());
+  before.resize(mesh->nodes.size());
+  after.resize(mesh->nodes.size());
+  if (musl) mapped.resize(mesh->nodes.size());
+  follows = total && forces->has_pressure();
+  if (follows) positions = mesh->nodes;
+  if (comm->me == 0)
+    utils::logmesg(lmp,
+                   "Fix mpm/mesh {}: {} cells, {} nodes, the smallest height of a cell is {:.6g}\n",
+                   id, mesh->cells.size(), mesh->nodes.size(), shortest);
+
+  state.declare(cell, "mpm/mesh:cell");
+  if (total)
+    state.declare(X, "mpm/mesh:X", 3, [this](int i, double *row) {
+      std::copy_n(atom->x[i], 3, row);
+    });
+  if (transfer == APIC) state.declare(C, "mpm/mesh:C", 9);
+
+  time_integrate = 1;
+  dynamic_group_allow = 0;
+  scalar_flag = vector_flag = 1;
+  size_vector = 4 + 3 * (int) forces->size();
+  global_freq = 1;
+  extscalar = extvector = 1;
+  restart_global = 1;
+  keep_arrays();
+}
+
+FixMPMMesh::~FixMPMMesh() = default;
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMMesh::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh requires run_style verlet");
+  if (update->whichflag == 2)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh cannot be used with minimize: minimize before the fix is defined");
+  if (domain->triclinic)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh requires an orthogonal box");
+  for (int d = 0; d < mesh->dim; d++)
+    if (domain->periodicity[d])
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/mesh has no periodic images of its mesh: use boundary f, s, or m along {}",
+          (char) ('x' + d));
+  for (const auto *other : find_fixes<MPMPhysics>(lmp)) {
+    const auto *ifix = dynamic_cast<const Fix *>(other);
+    if (modify->get_fix_by_style("^mpm$").empty())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix {} {} acts on points of a fix mpm only, not on those of fix mpm/mesh {}: remove it",
+          ifix->style, ifix->id, id);
+  }
+
+  points = MPMPoints::get(atom);
+  materials = find_fixes<FixMPMMaterial>(lmp);
+  int nhistory = 1;
+  for (const auto *material : materials) nhistory = std::max(nhistory, material->nhistory);
+  history.resize((std::size_t) nhistory * BATCH);
+  kernels = BatchKernels::select(mesh->dim);
+  bool can_run = kernels != nullptr;
+  for (auto *material : materials)
+    can_run = can_run &&
+        material->material->configure(nullptr, force->mvv2e * force->nktv2p, force->nktv2p);
+  if (!can_run)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Kernels named by the environment variable MPM_ISA cannot run on this CPU or were "
+               "not compiled");
+  forces->init(fmt::format("fix mpm/mesh {}", id));
+
+  // points need no ghosts, see FixMPM::init()
+
+  const double nothing = 1.0e-8 * shortest;
+  if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
+  if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
+  atom->sortfreq = 0;
+}
+
+bool FixMPMMesh::is_point(int i) const
+{
+  return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
+}
+
+const double *FixMPMMesh::position(int i) const
+{
+  return total ? X[i] : atom->x[i];
+}
+
+FixMPMMaterial *FixMPMMesh::material_of(int i) const
+{
+  for (auto *material : materials)
+    if (atom->mask[i] & material->groupbit) return material;
+  return nullptr;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMMesh::setup_pre_neighbor()
+{
+  refuse_other_integrators(lmp, *this);
+  check_points();
+  pre_neighbor();
+  give_initial_stress();
+}
+
+void FixMPMMesh::check_points()
+{
+  bigint mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i)) continue;
+    mine++;
+    if (!material_of(i))
+      error->one(FLERR, Error::NOLASTLINE,
+                 "Material point {} of fix mpm/mesh {} has no material: define a fix mpm/material "
+                 "for its group",
+                 atom->tag[i], id);
+    for (int d = 0; d < mesh->dim; d++)
+      if (!std::isfinite(atom->v[i][d]) || !std::isfinite(atom->x[i][d]))
+        error->one(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/mesh: point {} has a position or velocity that is not a number",
+                   atom->tag[i]);
+    if (mesh->dim == 2 && atom->v[i][2] != 0.0)
+      error->one(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/mesh: point {} has a velocity along z in 2d: use fix enforce2d, or set "
+                 "it to zero",
+                 atom->tag[i]);
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all == 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh {} has no material points in its group: make some with create_points",
+               id);
+}
+
+/** Points without any stress get the pressure of their equation of state, as those of fix mpm. */
+void FixMPMMesh::give_initial_stress()
+{
+  for_batches([&](const int *list, int n, const FixMPMMaterial *material) {
+    load_state(list, n, material);
+    batch->time = elapsed_time(*update);
+    material->material->initial_stress(*batch);
+    for (int p = 0; p < n; p++) {
+      double *const tau = points->tau[list[p]];
+      const bool none = std::all_of(tau, tau + 6, [](double s) {
+        return s == 0.0;
+      });
+      for (int c = 0; c < 6 && none; c++) tau[c] = batch->J[p] * batch->stress[c][p];
+    }
+  });
+}
+
+void FixMPMMesh::setup(int)
+{
+  if (!(update->dt > 0.0))
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh requires a positive time step: {}",
+               update->dt);
+  steps = 0;
+}
+
+/* ----------------------------------------------------------------------
+   after exchange and borders: sums go over points in the order of their IDs, which does not depend on what was before
+------------------------------------------------------------------------- */
+
+void FixMPMMesh::pre_neighbor()
+{
+  order.clear();
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_point(i)) order.push_back(i);
+  std::sort(order.begin(), order.end(), [this](int a, int b) {
+    return atom->tag[a] < atom->tag[b];
+  });
+  places.resize(atom->nlocal);
+  for (const int i : order) places[i].cell = (int) cell[i] - 1;
+  find_places();
+  find_ranks();
+}
+
+/** Cells of all points. */
+void FixMPMMesh::find_places()
+{
+  const int ncell = (int) mesh->cells.size();
+  for (const int i : order) {
+    auto &place = places[i];
+    const int hint = place.cell < ncell ? place.cell : -1;
+    mesh->find(position(i), hint, place);
+    if (place.cell < 0 || place.outside > OUTSIDE)
+      error->one(FLERR,
+                 "Point {} of fix mpm/mesh {} is outside of the mesh at step {}: position {:.6g} "
+                 "{:.6g} {:.6g}, "
+                 "velocity {:.6g} {:.6g} {:.6g}; use a larger mesh, or conditions at its rim",
+                 atom->tag[i], id, update->ntimestep, atom->x[i][0], atom->x[i][1], atom->x[i][2],
+                 atom->v[i][0], atom->v[i][1], atom->v[i][2]);
+    cell[i] = place.cell + 1;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   nodes of cells with points, and, as points go to others, of those around these
+------------------------------------------------------------------------- */
+
+void FixMPMMesh::find_ranks()
+{
+  std::vector<char> wanted(mesh->nodes.size(), 0), with_points(mesh->cells.size(), 0);
+  for (const int i : order) with_points[places[i].cell] = 1;
+  for (std::size_t c = 0; c < mesh->cells.size(); c++)
+    if (with_points[c])
+      for (int k = 0; k < mesh->cells[c].nnode; k++) wanted[mesh->cells[c].node[k]] = 1;
+  if (!total) {
+    const auto touched = wanted;
+    for (const auto &one : mesh->cells) {
+      const bool near = std::any_of(one.node, one.node + one.nnode, [&](int node) {
+        return touched[node];
+      });
+      for (int k = 0; k < one.nnode && near; k++) wanted[one.node[k]] = 1;
+    }
+  }
+  if (follows) share_positions();
+  has_node.swap(wanted);
+  ranks.find(has_node);
+  if (!follows) return;
+  std::vector<int> lowest(mesh->cells.size(), comm->nprocs);
+  for (std::size_t c = 0; c < lowest.size(); c++)
+    if (with_points[c]) lowest[c] = comm->me;
+  MPI_Allreduce(MPI_IN_PLACE, lowest.data(), (int) lowest.size(), MPI_INT, MPI_MIN, world);
+  counts_cell.resize(lowest.size());
+  for (std::size_t c = 0; c < lowest.size(); c++) counts_cell[c] = lowest[c] == comm->me;
+}
+
+/** Those of all nodes to all ranks. */
+void FixMPMMesh::share_positions()
+{
+  if (ranks.first.empty()) return;    // nothing has moved
+  std::vector<double> moved(3 * positions.size(), 0.0);
+  for (const int node : ranks.nodes)
+    for (int d = 0; d < 3 && ranks.first[node]; d++)
+      moved[3 * node + d] = positions[node][d] - mesh->nodes[node][d];
+  MPI_Allreduce(MPI_IN_PLACE, moved.data(), (int) moved.size(), MPI_DOUBLE, MPI_SUM, world);
+  for (std::size_t k = 0; k < moved.size(); k++)
+    positions[k / 3][k % 3] = mesh->nodes[k / 3][k % 3] + moved[k];
+}
+
+/** Are there points in cells whose nodes this rank has not? Collective. */
+bool FixMPMMesh::lacks_nodes() const
+{
+  int mine = 0, any;
+  for (const int i : order) {
+    const auto &one = mesh->cells[places[i].cell];
+    for (int k = 0; k < one.nnode; k++) mine |= !has_node[one.node[k]];
+  }
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  return any != 0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMMesh::initial_integrate(int)
+{
+  if (!total) {
+    find_places();
+    if (lacks_nodes()) find_ranks();
+  }
+  check_dt();
+  forces->evaluate();
+  forces->clear_sums();
+  if (follows) forces->follow(counts_cell, positions, ranks);
+  points_to_nodes();
+  find_velocities();
+  nodes_to_points();
+  if (musl) map_back();
+  move_and_strain();
+  steps++;
+}
+
+/* ----------------------------------------------------------------------
+   In the total frame forces are of the first Piola-Kirchhoff stress tau F^-T on gradients in the reference configuration
+------------------------------------------------------------------------- */
+
+void FixMPMMesh::points_to_nodes()
+{
+  for (const int node : ranks.nodes) sums[node] = {};
+  const int dim = mesh->dim;
+  const double unit = 1.0 / force->nktv2p;
+  for (const int i : order) {
+    const auto &place = places[i];
+    const auto &one = mesh->cells[place.cell];
+    const double *const t = points->tau[i], *const f = atom->f[i], *const v = atom->v[i];
+    const double m = atom->rmass[i], V = unit * atom->vfrac[i];
+    double P[9] = {t[0], t[3], t[4], t[3], t[1], t[5], t[4], t[5], t[2]};
+    if (total) {
+      const double *const F = points->F[i];
+      const double cofactors[9] = MPM_COFACTORS(F), inv = 1.0 / dot(F, cofactors);
+      double product[9];
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+          product[3 * a + b] = 0.0;
+          for (int c = 0; c < 3; c++)
+            product[3 * a + b] += P[3 * a + c] * inv * cofactors[3 * c + b];
+        }
+      std::copy_n(product, 9, P);
+    }
+    for (int k = 0; k < one.nnode; k++) {
+      Node &node = sums[one.node[k]];
+      const double w = m * place.N[k], *const g = place.g[k];
+      double u[3] = {v[0], v[1], v[2]};
+      if (C) {
+        double r[3];
+        for (int d = 0; d < 3; d++) r[d] = mesh->nodes[one.node[k]][d] - position(i)[d];
+        for (int d = 0; d < dim; d++)
+          for (int e = 0; e < dim; e++) u[d] += C[i][3 * d + e] * r[e];
+      }
+      node.mass += w;
+      for (int d = 0; d < dim; d++) {
+        node.momentum[d] += w * u[d];
+        node.load[d] += place.N[k] * f[d];
+        node.force[d] -= V * dot(P + 3 * d, g);
+      }
+    }
+  }
+  ranks.sum(&sums[0].mass, WIDTH);
+}
+
+/* ----------------------------------------------------------------------
+   The work of a force is that at the mean of the velocities before and after the step, which is what it does to the kinetic
+   energy of the node
+------------------------------------------------------------------------- */
+
+void FixMPMMesh::find_velocities()
+{
+  const int dim = mesh->dim;
+  const double dt = update->dt, impulse = dt * force->ftm2v;
+  for (const int node : ranks.nodes) {
+    Node &mine = sums[node];
+    before[node] = after[node] = {0.0, 0.0, 0.0};
+    if (!(mine.mass > 0.0)) continue;
+    const bool counts = ranks.first[node];
+    forces->add_load(node, counts, mine.load);
+    MeshVector &v = after[node];
+    for (int d = 0; d < dim; d++) {
+      before[node][d] = mine.momentum[d] / mine.mass;
+      v[d] = before[node][d] + impulse * (mine.force[d] + mine.load[d]) / mine.mass;
+    }
+    const MeshVector free = v;
+    forces->constrain(node, counts ? mine.mass / impulse : 0.0, v.data());
+    for (int d = 0; d < dim && counts; d++)
+      load_work += 0.5 * (before[node][d] + v[d]) *
+          (dt * mine.load[d] + mine.mass * (v[d] - free[d]) / force->ftm2v);
+  }
+}
+
+/** Velocities of points. */
+void FixMPMMesh::nodes_to_points()
+{
+  const int dim = mesh->dim;
+  for (const int i : order) {
+    const auto &place = places[i];
+    const auto &one = mesh->cells[place.cell];
+    double v[3] = {0.0, 0.0, 0.0}, change[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < one.nnode; k++) {
+      const double N = place.N[k], *const a = after[one.node[k]].data(),
+                   *const b = before[one.node[k]].data();
+      for (int d = 0; d < dim; d++) {
+        v[d] += N * a[d];
+        change[d] += N * (a[d] - b[d]);
+      }
+    }
+    const double share = transfer == FLIP ? flip : 0.0;
+    for (int d = 0; d < dim; d++)
+      atom->v[i][d] = share * (atom->v[i][d] + change[d]) + (1.0 - share) * v[d];
+  }
+}
+
+/** MUSL: the velocities of points, once more on the nodes, for the strain. */
+void FixMPMMesh::map_back()
+{
+  const int dim = mesh->dim;
+  for (const int node : ranks.nodes) mapped[node] = {0.0, 0.0, 0.0};
+  for (const int i : order) {
+    const auto &place = places[i];
+    const auto &one = mesh->cells[place.cell];
+    for (int k = 0; k < one.nnode; k++) {
+      double u[3] = {atom->v[i][0], atom->v[i][1], atom->v[i][2]}, r[3];
+      if (C) {
+        for (int d = 0; d < 3; d++) r[d] = mesh->nodes[one.node[k]][d] - position(i)[d];
+        for (int d = 0; d < dim; d++)
+          for (int e = 0; e < dim; e++) u[d] += C[i][3 * d + e] * r[e];
+      }
+      for (int d = 0; d < dim; d++) mapped[one.node[k]][d] += atom->rmass[i] * place.N[k] * u[d];
+    }
+  }
+  ranks.sum(mapped[0].data(), 3);
+  for (const int node : ranks.nodes) {
+    const double m = sums[node].mass;
+    if (!(m > 0.0)) continue;
+    for (double &v : mapped[node]) v /= m;
+    forces->constrain(node, 0.0, mapped[node].data());
+  }
+}
+
+/* ----------------------------------------------------------------------
+   In the updated frame points move with the velocities that strain them. Nodes that points barely reach can have any velocity
+   after the momentum equation, whose gradient would be that of the points: it is that of the mapped velocities, too. In the total frame forces do not depend on where
+   points are
+------------------------------------------------------------------------- */
+
+template <class Visit> void FixMPMMesh::for_batches(Visit visit) const
+{
+  for (auto *material : materials) {
+    int list[BATCH], n = 0;
+    for (const int i : order) {
+      if (material_of(i) != material) continue;
+      list[n++] = i;
+      if (n < BATCH) continue;
+      visit(list, n, material);
+      n = 0;
+    }
+    if (n) visit(list, n, material);
+  }
+}
+
+void FixMPMMesh::move_and_strain()
+{
+  const int dim = mesh->dim, nL = dim * dim;
+  const double dt = update->dt;
+  const auto &strains = musl ? mapped : after;
+  const auto &moves = musl && !total ? mapped : after;
+  if (follows)
+    for (const int node : ranks.nodes)
+      for (int d = 0; d < dim; d++) positions[node][d] += dt * strains[node][d];
+  Batch &b = *batch;
+  for_batches([&](const int *list, int n, FixMPMMaterial *material) {
+    double L[9 * BATCH] = {}, F[9 * BATCH], tau[6 * BATCH], vol0[BATCH];
+    for (int p = 0; p < n; p++) {
+      const int i = list[p];
+      const auto &place = places[i];
+      const auto &one = mesh->cells[place.cell];
+      for (int k = 0; k < one.nnode; k++) {
+        const auto &u = strains[one.node[k]], &v = moves[one.node[k]];
+        for (int d = 0; d < dim; d++) {
+          atom->x[i][d] += dt * place.N[k] * v[d];
+          for (int e = 0; e < dim; e++) L[nL * p + dim * e + d] += u[d] * place.g[k][e];
+        }
+      }
+      for (int d = 0; d < dim && C; d++)
+        for (int e = 0; e < dim; e++) C[i][3 * d + e] = L[nL * p + dim * e + d];
+      std::copy_n(points->F[i], 9, F + 9 * p);
+      std::copy_n(points->tau[i], 6, tau + 6 * p);
+      vol0[p] = atom->vfrac[i];
+    }
+    b.n = n;
+    b.h = shortest;
+    b.time = elapsed_time(*update);
+    b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
+    (total ? kernels->load_total : kernels->load)(b, n, dt, L, F, tau, vol0, nullptr);
+    for (int k = 0; k < material->nhistory; k++)
+      for (int p = 0; p < n; p++) b.history[k][p] = material->history[list[p]][k];
+    material->update_batch(b, *kernels);
+    if (!total && !material->material->uses_F()) kernels->forget_shape(b);
+    const int bad = kernels->store(b, F, tau);
+    for (int p = 0; p < n; p++) {
+      const int i = list[p];
+      if (bad && !(b.J[p] > 0.0))
+        error->one(FLERR,
+                   "Point {} of fix mpm/mesh {} has a deformation gradient of determinant {} at "
+                   "step {}: position {:.6g} "
+                   "{:.6g} {:.6g}, velocity {:.6g} {:.6g} {:.6g}; use a smaller time step, or a "
+                   "finer mesh",
+                   atom->tag[i], id, b.J[p], update->ntimestep, atom->x[i][0], atom->x[i][1],
+                   atom->x[i][2], atom->v[i][0], atom->v[i][1], atom->v[i][2]);
+      std::copy_n(F + 9 * p, 9, points->F[i]);
+      std::copy_n(tau + 6 * p, 6, points->tau[i]);
+      for (int k = 0; k < material->nhistory; k++) material->history[i][k] = b.history[k][p];
+    }
+  });
+}
+
+void FixMPMMesh::load_state(const int *list, int n, const FixMPMMaterial *material) const
+{
+  Batch &b = *batch;
+  b.n = n;
+  b.dt = update->dt;
+  b.h = shortest;
+  b.history = reinterpret_cast<double(*)[BATCH]>(const_cast<double *>(history.data()));
+  for (int p = 0; p < n; p++) {
+    const int i = list[p];
+    for (int c = 0; c < 9; c++) b.F[c][p] = points->F[i][c];
+    b.J[p] = points->jacobian(i);
+    for (int c = 0; c < 6; c++) b.stress[c][p] = points->tau[i][c] / b.J[p];
+    b.vol0[p] = atom->vfrac[i];
+    for (int k = 0; k < material->nhistory; k++) b.history[k][p] = material->history[i][k];
+  }
+}
+
+/* ----------------------------------------------------------------------
+   h/(c + |v|) with the height of the cell; in the total frame it shrinks with the smallest stretch, and points stay in their
+   cells
+------------------------------------------------------------------------- */
+
+double FixMPMMesh::stable_dt(tagint &tag) const
+{
+  double smallest = std::numeric_limits<double>::max(), c[BATCH];
+  tag = 0;
+  for_batches([&](const int *list, int n, const FixMPMMaterial *material) {
+    load_state(list, n, material);
+    material->material->wave_speed(*batch, c);
+    for (int p = 0; p < n; p++) {
+      const int i = list[p];
+      double h = mesh->cells[places[i].cell].height, speed = c[p];
+      if (total) {
+        const double *const F = points->F[i];
+        const double cofactors[9] = MPM_COFACTORS(F), inv = 1.0 / dot(F, cofactors);
+        double rows[3][3];
+        for (int k = 0; k < 9; k++) rows[k / 3][k % 3] = inv * cofactors[k];
+        h /= std::sqrt(ElementRule::of(ElementType::TRIANGLE).largest_eigenvalue(rows));
+      } else {
+        speed += std::sqrt(dot(atom->v[i], atom->v[i]));
+      }
+      const double dt = speed > 0.0 ? h / speed : std::numeric_limits<double>::max();
+      if (std::isnan(smallest) || dt >= smallest) continue;    // NaN does not pass unseen
+      smallest = dt;
+      tag = atom->tag[i];
+    }
+  });
+  return smallest;
+}
+
+void FixMPMMesh::check_dt()
+{
+  if (steps % CHECK_EVERY) return;
+  tagint tag;
+  const double limit = stable_dt(tag);
+  if (!(update->dt <= limit))
+    error->one(FLERR,
+               "Time step {:.6g} is above the limit {:.6g} of fix mpm/mesh {} at step {}, height "
+               "of a cell over the speed of "
+               "waves and of point {}; use timestep, fix mpm/dt, or a mesh without small cells",
+               update->dt, limit, id, update->ntimestep, tag);
+}
+
+/* ----------------------------------------------------------------------
+   scalar: number of points; vector: kinetic and stored energy, work of forces from outside, points that are outside of
+   the mesh by less than OUTSIDE; forces of the conditions on the body
+------------------------------------------------------------------------- */
+
+double FixMPMMesh::compute_scalar()
+{
+  double n = 0.0, all;
+  for (int i = 0; i < atom->nlocal; i++) n += is_point(i);
+  MPI_Allreduce(&n, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMPMMesh::compute_vector(int k)
+{
+  double mine = 0.0, all;
+  if (k == 0) {
+    for (const int i : order)
+      mine += 0.5 * force->mvv2e * atom->rmass[i] * dot(atom->v[i], atom->v[i]);
+  } else if (k == 1) {
+    double energy[BATCH];
+    for_batches([&](const int *list, int n, const FixMPMMaterial *material) {
+      load_state(list, n, material);
+      material->material->stored_energy(*batch, energy);
+      for (int p = 0; p < n; p++) mine += atom->vfrac[list[p]] * energy[p] / force->nktv2p;
+    });
+  } else if (k == 2) {
+    mine = load_work;
+  } else if (k == 3) {
+    for (const int i : order) mine += places[i].outside > 0.0;
+  } else {
+    mine = forces->sum((k - 4) / 3, (k - 4) % 3);
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+void FixMPMMesh::write_restart(FILE *fp)
+{
+  std::vector<double> totals = {load_work};
+  std::vector<double> same;
+  if (follows) {
+    share_positions();
+    for (const auto &x : positions) same.insert(same.end(), x.begin(), x.end());
+  }
+  write_totals(fp, world, totals, same);
+  load_work = totals[0];
+}
+
+void FixMPMMesh::restart(char *buf)
+{
+  const auto *list = (const double *) buf;
+  load_work = comm->me == 0 ? list[0] : 0.0;
+  for (auto &x : positions) {
+    std::copy_n(list + 1, 3, x.data());
+    list += 3;
+  }
+}
+
+double FixMPMMesh::memory_usage()
+{
+  return FixMPMState::memory_usage() + ranks.memory_usage() +
+      (double) (places.capacity() * sizeof(BackgroundMesh::Place) + sums.capacity() * sizeof(Node) +
+                (before.capacity() + after.capacity() + mapped.capacity()) * sizeof(MeshVector));
+}

@@ -1,0 +1,135 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/mesh,FixMPMMesh);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_MESH_H
+#define LMP_FIX_MPM_MESH_H
+
+#include "declare/option.h"
+#include "mesh/background_mesh.h"
+#include "mpm_mesh_conditions.h"
+#include "mpm_mesh_ranks.h"
+#include "mpm_state.h"
+#include "mpm_step_limit.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+struct Batch;
+struct BatchKernels;
+}    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+class FixMPMMaterial;
+struct MPMPoints;
+
+struct MPMMeshOptions {
+  enum Transfer { FLIP, APIC };
+
+  std::string file, part;
+  bool total = false;    ///< nodes belong to the reference configuration
+  bool musl = true;      ///< strain by velocities that were mapped back
+  Transfer transfer = FLIP;
+  double flip = 0.99;    ///< share of FLIP, the rest is PIC
+  std::vector<MPMMeshCondition> conditions;
+
+  MPM_NS::Options declare(int dim);
+
+ private:
+  MPMMeshCondition next;
+};
+
+/** Material points on a mesh of linear elements of any shape (V.P. Nguyen, A. de Vaucorbeil, S. Bordas, The Material Point
+ *  Method, Springer 2023, chapter 5), in place of the lattice of a fix mpm. The whole step is in initial_integrate(), as
+ *  there. */
+class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptions {
+ public:
+  FixMPMMesh(class LAMMPS *, int, char **);
+  ~FixMPMMesh() override;
+  int setmask() override { return FixConst::INITIAL_INTEGRATE | FixConst::PRE_NEIGHBOR; }
+  void init() override;
+  void setup_pre_neighbor() override;
+  void setup(int) override;
+  void initial_integrate(int) override;
+  void pre_neighbor() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+  double stable_dt(tagint &tag) const override;
+
+ private:
+  /** Sums of points at a node. */
+  struct Node {
+    double mass, momentum[3], force[3], load[3];    // load: those forces that are from outside
+  };
+  static constexpr int WIDTH = 10;    // reals of these
+
+  std::unique_ptr<MPM_NS::BackgroundMesh> mesh;
+  MPMMeshRanks ranks;
+  std::unique_ptr<MPMMeshForces> forces;
+  double shortest;    // height of the smallest cell, for artificial viscosity
+
+  // of points
+
+  double *cell = nullptr;    // number of its cell + 1, 0: not known
+  MPMRows X;                 // place in the reference configuration, in the total frame
+  MPMRows C;                 // velocity gradient of APIC, row-major [9]
+  std::vector<MPM_NS::BackgroundMesh::Place> places;
+  std::vector<int> order;    // of points of this rank: by ID
+
+  // of nodes
+
+  std::vector<char> has_node;    // on this rank
+  std::vector<Node> sums;
+  std::vector<MPM_NS::MeshVector> before, after, mapped;    // velocities
+
+  // where nodes of the reference configuration have gone, for a pressure that follows
+
+  bool follows = false;
+  std::vector<MPM_NS::MeshVector> positions;
+  std::vector<char> counts_cell;    // [cell] is this the first rank with points in it?
+
+  MPMPoints *points = nullptr;
+  std::vector<FixMPMMaterial *> materials;
+  const MPM_NS::BatchKernels *kernels = nullptr;
+  std::unique_ptr<MPM_NS::Batch> batch;
+  std::vector<double> history;    // [variable][BATCH]
+  double load_work = 0.0;         // of forces from outside, on nodes of this rank
+  bigint steps = 0;
+
+  bool is_point(int i) const;
+  const double *position(int i) const;
+  FixMPMMaterial *material_of(int i) const;
+  void check_points();
+  void find_places();
+  void find_ranks();
+  bool lacks_nodes() const;
+  void share_positions();
+  void points_to_nodes();
+  void find_velocities();
+  void map_back();
+  void nodes_to_points();
+  void move_and_strain();
+  void give_initial_stress();
+  void check_dt();
+  template <class Visit> void for_batches(Visit) const;
+  void load_state(const int *list, int n, const FixMPMMaterial *) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

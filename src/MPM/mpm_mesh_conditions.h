@@ -1,0 +1,98 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_MESH_CONDITIONS_H
+#define LMP_MPM_MESH_CONDITIONS_H
+
+#include "declare/option.h"
+#include "mesh/background_mesh.h"
+#include "pointers.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+using MeshVector = std::array<double, 3>;
+}    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+
+/** What a physical group of a mesh does to its nodes. */
+struct MPMMeshCondition {
+  enum Kind {
+    VELOCITY,    ///< velocity along axes, NULL: free
+    SLIP,        ///< no velocity along the normals of its sides
+    PRESSURE,    ///< on its sides, which can follow the body
+    TRACTION     ///< force per area on its sides, as they are in the file
+  } kind = VELOCITY;
+  std::string group;
+  MPM_NS::NumberOrVariable value[3];
+};
+
+/** Conditions on nodes and loads on sides of a mesh. */
+class MPMMeshForces : protected Pointers {
+ public:
+  MPMMeshForces(class LAMMPS *, const MPM_NS::BackgroundMesh &,
+                const std::vector<MPMMeshCondition> &);
+
+  /** Start of a run: variables. */
+  void init(const std::string &user);
+  /** Values of this step, on all ranks. */
+  void evaluate();
+  bool empty() const { return list.empty(); }
+  std::size_t size() const { return list.size(); }
+
+  /** Is there a pressure? */
+  bool has_pressure() const { return npressure > 0; }
+  /** Pressure acts on sides whose nodes have gone to these positions; cells: those whose sides this rank looks at. Collective. */
+  void follow(const std::vector<char> &cells, const std::vector<MPM_NS::MeshVector> &positions,
+              class MPMMeshRanks &ranks);
+
+  /** Force of all loads on a node [force]. Counts it for the output. */
+  void add_load(int node, bool count, double *force);
+
+  /** Velocity v of a node as its conditions want it. The force on the body, with this mass per time, counts for the output;
+   *  0: it does not. */
+  void constrain(int node, double mass_per_time, double *v);
+
+  /** Sums for the output begin anew. */
+  void clear_sums();
+  /** Force on the body of condition k, along axis d, of nodes that this rank counted. */
+  double sum(int k, int d) const { return list[k].sum[d]; }
+
+ private:
+  struct Active {
+    MPMMeshCondition given;
+    double value[3];
+    MPM_NS::MeshVector sum;
+    int number;    // of those with a pressure
+    std::vector<MPM_NS::BackgroundMesh::Face> sides;
+  };
+  struct OfNode {
+    int condition;
+    std::vector<MPM_NS::MeshVector> normals;    // of SLIP: unit vectors at right angles
+    MPM_NS::MeshVector normal;    // of sides with loads: outward, with the size of the area
+    double area;
+  };
+  const MPM_NS::BackgroundMesh &mesh;
+  std::vector<Active> list;
+  int npressure = 0;
+  std::vector<double> normals;    // [node][pressure][3]
+  std::vector<int> place;         // [node] in of_nodes, -1: none
+  std::vector<std::vector<OfNode>>
+      of_nodes;    // first SLIP, then others, in the order of the input
+  bool varies = false;
+
+  OfNode &add(int node, int condition);
+  void add_slip(int condition);
+  void add_sides(int condition);
+};
+
+}    // namespace LAMMPS_NS
+#endif

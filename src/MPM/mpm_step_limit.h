@@ -1,0 +1,28 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_STEP_LIMIT_H
+#define LMP_MPM_STEP_LIMIT_H
+
+#include "lmptype.h"
+
+namespace LAMMPS_NS {
+
+/** A fix that moves material points, and that fix mpm/dt must ask for the largest time step. */
+class MPMStepLimit {
+ public:
+  /** That of the points of this rank, or the largest number that there is. tag: of the point that limits it, 0: none
+   *  does. */
+  virtual double stable_dt(tagint &tag) const = 0;
+
+ protected:
+  ~MPMStepLimit() = default;    // owned and deleted as a Fix
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,377 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 600
+
+// Fix mpm/mesh: points on a mesh of triangles, quadrangles, tetrahedra, or hexahedra. Case S2 of the benchmarks, and Lame's
+// solution of a thick tube.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+enum Kind { TRIANGLES, QUADS, TETRAHEDRA, HEXAHEDRA };
+
+/** A mesh file of Gmsh: elements of a block of cells, and its six faces, mapped into space. */
+std::string gmsh(Kind kind, const std::array<int, 3> &n,
+                 const std::function<std::array<double, 3>(double, double, double)> &map)
+{
+  const bool solid = kind >= TETRAHEDRA;
+  const int nz = solid ? n[2] : 0;
+  std::string nodes, elements;
+  int count = 0;
+  const auto number = [&](int i, int j, int k) {
+    return (k * (n[1] + 1) + j) * (n[0] + 1) + i + 1;
+  };
+  for (int k = 0; k <= nz; k++)
+    for (int j = 0; j <= n[1]; j++)
+      for (int i = 0; i <= n[0]; i++) {
+        const auto x = map((double) i / n[0], (double) j / n[1], nz ? (double) k / nz : 0.0);
+        nodes += strprintf("%d %.17g %.17g %.17g\n", number(i, j, k), x[0], x[1], x[2]);
+      }
+  const auto add = [&](int type, int group, const std::vector<int> &node) {
+    elements += strprintf("%d %d 2 %d 1", ++count, type, group);
+    for (const int one : node) elements += strprintf(" %d", one);
+    elements += "\n";
+  };
+  static const int tetrahedra[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
+                                       {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+  for (int k = 0; k < std::max(1, nz); k++)
+    for (int j = 0; j < n[1]; j++)
+      for (int i = 0; i < n[0]; i++) {
+        const std::vector<int> q = {number(i, j, k), number(i + 1, j, k), number(i + 1, j + 1, k),
+                                    number(i, j + 1, k)};
+        if (!solid) {
+          if (kind == QUADS)
+            add(3, 1, q);
+          else if ((i + j) % 2) {
+            add(2, 1, {q[0], q[1], q[2]});
+            add(2, 1, {q[0], q[2], q[3]});
+          } else {
+            add(2, 1, {q[0], q[1], q[3]});
+            add(2, 1, {q[1], q[2], q[3]});
+          }
+          if (i == 0) add(1, 2, {q[0], q[3]});
+          if (i == n[0] - 1) add(1, 3, {q[1], q[2]});
+          if (j == 0) add(1, 4, {q[0], q[1]});
+          if (j == n[1] - 1) add(1, 5, {q[3], q[2]});
+          continue;
+        }
+        std::vector<int> h = q;
+        for (const int node : q) h.push_back(node + (n[0] + 1) * (n[1] + 1));
+        if (kind == HEXAHEDRA)
+          add(5, 1, h);
+        else
+          for (const auto &t : tetrahedra) add(4, 1, {h[t[0]], h[t[1]], h[t[2]], h[t[3]]});
+        const auto side = [&](bool there, int group, int a, int b, int c, int d) {
+          if (!there) return;
+          if (kind == HEXAHEDRA) return add(3, group, {h[a], h[b], h[c], h[d]});
+          add(2, group, {h[a], h[b], h[c]});    // a-c is the diagonal of the tetrahedra
+          add(2, group, {h[a], h[c], h[d]});
+        };
+        side(i == 0, 2, 0, 3, 7, 4);
+        side(i == n[0] - 1, 3, 6, 2, 1, 5);
+        side(j == 0, 4, 0, 1, 5, 4);
+        side(j == n[1] - 1, 5, 6, 7, 3, 2);
+        side(k == 0, 6, 0, 1, 2, 3);
+        side(k == nz - 1, 7, 6, 5, 4, 7);
+      }
+  const int d = solid ? 3 : 2;
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" +
+      strprintf("$PhysicalNames\n7\n%d 1 \"body\"\n%d 2 \"xlo\"\n%d 3 \"xhi\"\n%d 4 \"ylo\"\n%d 5 "
+                "\"yhi\"\n2 6 \"zlo\"\n2 7 \"zhi\"\n$EndPhysicalNames\n",
+                d, d - 1, d - 1, d - 1, d - 1);
+  return text + strprintf("$Nodes\n%d\n", number(n[0], n[1], nz)) + nodes +
+      strprintf("$EndNodes\n$Elements\n%d\n", count) + elements + "$EndElements\n";
+}
+
+/** Quarter of a tube from radius 1 to 2: faces xlo and xhi are the bore and the outside. */
+std::string tube(Kind kind, int n)
+{
+  return gmsh(kind, {n, 3 * n / 2, 0}, [](double s, double t, double) {
+    const double r = pow(2.0, s), phi = 0.5 * PI * t;
+    return std::array<double, 3>{t < 1.0 ? r * cos(phi) : 0.0, r * sin(phi), 0.0};
+  });
+}
+
+/** A bar of 4 x 1 x 1. */
+std::string bar(Kind kind, int n)
+{
+  return gmsh(kind, {4 * n, n, n}, [](double x, double y, double z) {
+    return std::array<double, 3>{4.0 * x, y, z};
+  });
+}
+
+/** A grid around these bodies. */
+std::string surroundings(Kind kind, int n)
+{
+  return gmsh(kind, {7 * n, 7 * n, 7 * n}, [](double x, double y, double z) {
+    return std::array<double, 3>{7.0 * x - 1.0, 7.0 * y - 1.0, 7.0 * z - 1.0};
+  });
+}
+
+std::string scene(int dim, const std::string &file, const std::string &material,
+                  const std::string &options, int halve = 1, const std::string &grid = "")
+{
+  return box(dim, "lj", "f f f", "-1 6 -1 6 -1 6", 1, 0.1) + "create_points 1 elements " + file +
+      " halve " + std::to_string(halve) + "\nfix m all mpm/material density 1 " + material +
+      "\nfix g all mpm/mesh " + (grid.empty() ? file : grid) + " " + options + "\n";
+}
+
+double entry(Scene &run, int k)
+{
+  return run.lmp->modify->get_fix_by_id("g")->compute_vector(k - 1);
+}
+
+}    // namespace
+
+// Lame's solution of a tube under pressure: order 2, both frames
+SERIAL_TEST(MeshGrid, TubeUnderPressure)
+{
+  const double p = 1e-5, E = 1.0, nu = 0.3;
+  for (const Kind kind : {TRIANGLES, QUADS})
+    for (const std::string frame : {"total", "updated"}) {
+      double error[2];
+      for (const int n : {6, 12}) {
+        const ScratchFile file("tube.msh", tube(kind, n));
+        Scene run(scene(2, file.name, "linear 1 0.3",
+                        "frame " + frame + " slip ylo slip yhi pressure xlo 1e-5"));
+        const auto start = run.gather();
+        run.commands("fix v all viscous " + strprintf("%.17g", 3.3 / start.size()) +
+                     "\nfix d all mpm/dt 0.5 until 60\nrun 100000\n");
+        const auto end = run.gather();
+        double square = 0.0, all = 0.0;
+        for (std::size_t k = 0; k < start.size(); k++) {
+          const double *const X = start[k].x, r = hypot(X[0], X[1]);
+          const double u = (1 + nu) / E * p / 3.0 * ((1 - 2 * nu) * r + 4.0 / r);
+          for (int d = 0; d < 2; d++) {
+            square += pow(end[k].x[d] - X[d] - u * X[d] / r, 2);
+            all += pow(u * X[d] / r, 2);
+          }
+        }
+        error[n == 12] =
+            measured(strprintf("error with %d cells, %s", n, frame.c_str()), sqrt(square / all));
+        // what holds the quarter is the pressure on the bore
+        EXPECT_NEAR(entry(run, 6), -p, 1e-4 * p);
+        EXPECT_NEAR(entry(run, 8), -p, 1e-4 * p);
+      }
+      EXPECT_LT(error[1], 0.005);
+      EXPECT_GT(log2(error[0] / error[1]), 1.7);
+    }
+}
+
+// S2: pressure that follows at finite strain
+SERIAL_TEST(MeshGrid, TubeAtFiniteStrain)
+{
+  const double exact[2][3] = {{0.2, 1.183161, 2.120533}, {0.4, 1.502870, 2.347360}};
+  for (const auto &[p, a, b] : exact)
+    for (const Kind kind : {TRIANGLES, QUADS}) {
+      const ScratchFile file("tube.msh", tube(kind, 10));
+      Scene run(scene(2, file.name, "neohookean 2.6 0.3",
+                      "frame total slip ylo slip yhi pressure xlo v_p", 0)
+                    .insert(0, strprintf("variable p equal %g*(1-exp(-time/4))\n", p)));
+      const auto start = run.gather();
+      run.commands("fix v all viscous 0.02\nfix d all mpm/dt 0.5 until 60\nrun 100000\n");
+      const auto end = run.gather();
+
+      // points do not lie on the surfaces: a and b from the area of their circles, which is linear next to these
+
+      double low[4] = {0.0}, high[4] = {0.0};    // of the fits of r^2 by R^2: sums of x, y, xx, xy
+      int n[2] = {0, 0};
+      for (std::size_t k = 0; k < start.size(); k++) {
+        const double R = pow(start[k].x[0], 2) + pow(start[k].x[1], 2),
+                     r = pow(end[k].x[0], 2) + pow(end[k].x[1], 2);
+        double *const s = R < 1.3 ? low : R > 3.2 ? high : nullptr;
+        if (!s) continue;
+        n[s == high]++;
+        s[0] += R;
+        s[1] += r;
+        s[2] += R * R;
+        s[3] += R * r;
+      }
+      const auto at = [](const double *s, int m, double R) {
+        const double slope = (m * s[3] - s[0] * s[1]) / (m * s[2] - s[0] * s[0]);
+        return sqrt(s[1] / m + slope * (R - s[0] / m));
+      };
+      EXPECT_NEAR(measured("a", at(low, n[0], 1.0)) / a, 1.0, 0.01);
+      EXPECT_NEAR(measured("b", at(high, n[1], 4.0)) / b, 1.0, 0.01);
+    }
+}
+
+// A bar that is pulled by its ends has one stress everywhere. Linear functions have its strain exactly on any mesh; the forces of
+// points in bent quadrangles and hexahedra are those of a midpoint rule
+SERIAL_TEST(MeshGrid, PatchOfAnyCells)
+{
+  for (const Kind kind : {TRIANGLES, QUADS, TETRAHEDRA, HEXAHEDRA}) {
+    const int dim = kind < TETRAHEDRA ? 2 : 3;
+    const auto distorted = gmsh(kind, {6, 3, 3}, [&](double x, double y, double z) {
+      const double bump = 0.1 * sin(PI * x) * sin(PI * y) * (dim == 3 ? sin(PI * z) : 1.0);
+      return std::array<double, 3>{2.0 * x + bump, y + 0.3 * bump, dim == 3 ? z - 0.2 * bump : 0.0};
+    });
+    const ScratchFile file("patch.msh", distorted);
+    const bool exact = kind == TRIANGLES || kind == TETRAHEDRA;
+    double worst[3] = {0.0, 0.0, 0.0};
+    for (int halve = 1; halve < (exact ? 2 : 3); halve++) {
+      Scene run(scene(dim, file.name, "neohookean 1 0.3",
+                      "frame total slip xlo slip ylo traction xhi 0.05 0" +
+                          std::string(dim == 3 ? " 0 slip zlo" : ""),
+                      halve));
+      const double damping = 2.0 / run.gather().size();
+      run.commands(strprintf(
+          "fix v all viscous %.17g\nfix d all mpm/dt 0.5 until 100\nrun 100000\n", damping));
+      const auto all = run.gather();
+      for (const auto &s : all) {
+        auto &most = worst[halve];
+        const double J = MPMPoints::det(s.F);
+        most = std::max(most, std::fabs(J * s.stress[0] / s.F[0] / 0.05 - 1.0));
+        for (int c = 1; c < (dim == 3 ? 6 : 2); c++)
+          most = std::max(most, std::fabs(s.stress[c]) / 0.05);
+        for (int c = 0; c < 9; c++) most = std::max(most, std::fabs(s.F[c] - all[0].F[c]) / 0.05);
+      }
+      measured("stress that is not that of the ends", worst[halve]);
+      EXPECT_NEAR(entry(run, 11), 0.05, 1e-14);    // of the end
+    }
+    if (exact)
+      EXPECT_LT(worst[1], 1e-8) << kind;
+    else {
+      EXPECT_LT(worst[1], 0.011) << kind;
+      EXPECT_GT(worst[1] / worst[2], 3.0) << kind;
+    }
+  }
+}
+
+/** Of all points. */
+static std::array<double, 2> momentum(Scene &run)
+{
+  std::array<double, 2> p = {0.0, 0.0};
+  const Atom *atom = run.lmp->atom;
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 2; d++) p[d] += atom->rmass[i] * atom->v[i][d];
+  return p;
+}
+
+// A bar that swings keeps its energy, and what a force does to it is in the work
+SERIAL_TEST(MeshGrid, EnergyAndMomentum)
+{
+  for (const std::string frame : {"total", "updated"})
+    for (const std::string transfer : {"flip 1", "apic"}) {
+      const ScratchFile file("bar.msh", bar(TRIANGLES, 3)),
+          grid("grid.msh", surroundings(TRIANGLES, 3));
+      Scene run(
+          scene(2, file.name, "neohookean 1 0.3", "frame " + frame + " transfer " + transfer, 1,
+                frame == "total" ? "" : grid.name) +
+          "velocity all set 0.1 0.1 0\nfix f all addforce 0 1e-4 0\nvariable v atom 0.05*(x-2)^2\n"
+          "velocity all set NULL v_v NULL sum yes\nfix d all mpm/dt 0.2 until 10\n");
+      const auto p0 = momentum(run);
+      run.commands("run 0\n");
+      const double before = entry(run, 1);
+      run.commands("run 10000\n");
+      const double now = entry(run, 1) + entry(run, 2), work = entry(run, 3);
+      measured("energy that is lost", (before + work - now) / before);
+      EXPECT_NEAR(before + work - now, 0.0, 0.03 * before);
+      const auto p1 = momentum(run);
+      EXPECT_NEAR(p1[0], p0[0], 1e-12);
+      EXPECT_NEAR(p1[1], p0[1] + 10.0 * 1e-4 * run.gather().size(), 1e-11);
+    }
+}
+
+// A fluid that spins between curved walls keeps to its circles: it feels no force but that towards the center, m v^2/r
+SERIAL_TEST(MeshGrid, SlipAlongACurve)
+{
+  const auto ring = gmsh(QUADS, {6, 48, 0}, [](double s, double t, double) {
+    const double phi = 0.5 * PI * t, r = 1.0 + 0.5 * s;
+    return std::array<double, 3>{t < 1.0 ? r * cos(phi) : 0.0, r * sin(phi), 0.0};
+  });
+  const ScratchFile file("ring.msh", ring);
+  Scene run(scene(2, file.name, "linear 1 0.3", "frame total transfer flip 1 slip xlo slip xhi") +
+            "variable vx atom -0.01*y\nvariable vy atom 0.01*x\nvelocity all set v_vx v_vy NULL\n"
+            "timestep 0.005\n");
+  double spin[2];
+  for (int turn = 0; turn < 2; turn++) {
+    spin[turn] = 0.0;
+    const Atom *atom = run.lmp->atom;
+    for (int i = 0; i < atom->nlocal; i++)
+      spin[turn] +=
+          atom->rmass[i] * (atom->x[i][0] * atom->v[i][1] - atom->x[i][1] * atom->v[i][0]);
+    if (turn == 0) run.commands("run 400\n");    // 0.02 of the radius
+  }
+  // walls push along their normals only, which are right to the second order of the angle of a side
+  EXPECT_NEAR(spin[1] / spin[0], 1.0, 2e-3);
+}
+
+// Sides of one group that meet at a right angle hold their corner along both normals
+SERIAL_TEST(MeshGrid, SlipInACorner)
+{
+  auto text = bar(QUADS, 2);
+  for (std::size_t at = 0; (at = text.find(" 1 2 4 1 ", at)) != std::string::npos; at++)
+    text.replace(at, 9, " 1 2 2 1 ");    // ylo is a part of xlo
+  const ScratchFile file("corner.msh", text);
+  Scene run(scene(2, file.name, "neohookean 1 0.3", "frame total transfer flip 1 slip xlo") +
+            "velocity all set -0.2 -0.1 0\ntimestep 0.01\nrun 1\n");
+  for (const auto &s : run.gather())
+    if (s.x[0] < 0.15 && s.x[1] < 0.15) {
+      // a fourth of the way into the cell: its corner has no velocity, two nodes one along their wall
+      EXPECT_NEAR(s.v[0], -0.2 * 0.25, 1e-12);
+      EXPECT_NEAR(s.v[1], -0.1 * 0.25, 1e-12);
+    }
+}
+
+TEST(MeshGrid, RanksAndRestart)
+{
+  for (const bool total : {true, false})
+    for (const Kind kind : {TRIANGLES, HEXAHEDRA}) {
+      const int dim = kind == TRIANGLES ? 2 : 3;
+      const std::string mesh = kind == TRIANGLES ? tube(kind, 8) : bar(kind, 3);
+      const ScratchFile file("ranks.msh", mesh), grid("grid.msh", surroundings(kind, 2));
+      const std::string name = total ? file.name : grid.name;
+      const std::string options = total
+          ? "frame total slip ylo pressure xlo v_p"
+          : "transfer apic slip ylo traction xlo v_p 0" + std::string(dim == 3 ? " 0" : "");
+      const std::string variable = "variable p equal 0.02*sin(time)\n";
+      const std::string others = "fix v all viscous 1e-4\ntimestep 0.01\n";
+      const std::string fixes =
+          "fix m all mpm/material density 1 neohookean 1 0.3\nfix g all mpm/mesh " + name + " " +
+          options + "\n" + others;
+      const std::string first = variable +
+          scene(dim, file.name, "neohookean 1 0.3", options, 1, name) +
+          "velocity all set 0.05 0.1 0\n" + others;
+      Twins(first, 60, variable + fixes, 60, 1e-11);
+      OnRanks balanced(first, "run 120\n", "fix b all balance 20 1.0 shift xy 5 1.1\n");
+      EXPECT_LT(measured("difference with balance", balanced.difference()), 1e-11);
+    }
+}
+
+SERIAL_TEST(MeshGrid, BadInput)
+{
+  const ScratchFile file("bad.msh", tube(TRIANGLES, 4));
+  const std::string good = box(2, "lj", "f f f", "-1 6 -1 6 -1 6", 1, 0.1) +
+      "create_points 1 elements " + file.name +
+      "\nfix m all mpm/material density 1 neohookean 1 0.3\ntimestep 0.01\n";
+  const std::string fix = "fix g all mpm/mesh " + file.name + " ";
+  expect_refused(
+      good,
+      {{"fix g all mpm/mesh", "Illegal fix mpm/mesh command: missing argument"},
+       {"fix g all mpm/mesh none.msh", "none.msh"},
+       {fix + "part core", "no elements in a physical group or set 'core'"},
+       {fix + "slip body", "is not the side of a cell"},
+       {fix + "slip top", "no elements in a physical group or set 'top'"},
+       {fix + "velocity xlo 1", "velocity"},
+       {fix + "pressure xlo v_none\nrun 1", "Variable none for fix mpm/mesh g does not exist"},
+       {fix + "pressure xlo NULL", "NULL"},
+       {fix + "frame lagrangian", "frame"},
+       {fix + "transfer flip 2", "transfer flip"},
+       {fix + "scheme usf", "scheme"},
+       {fix + "frame total\nunfix m\nrun 1", "has no material"},
+       {fix + "\nfix n all nve\nrun 1", "are also integrated by fix n"},
+       {fix + "\ndisplace_atoms all move 3 0 0\nrun 1", "is outside of the mesh"},
+       {fix + "\ntimestep 10\nrun 1", "is above the limit"},
+       {fix + "\ngroup none empty\nunfix g\nfix g none mpm/mesh " + file.name + "\nrun 1",
+        "no material points"},
+       {fix + "\nmin_style cg\nminimize 0 0 1 1", "cannot be used with minimize"}});
+  expect_error(replaced(good, "boundary f f p", "boundary p f p") + fix + "\nrun 1\n",
+               "has no periodic images of its mesh: use boundary f, s, or m along x");
+}
