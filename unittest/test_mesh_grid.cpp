@@ -337,9 +337,10 @@ TEST(MeshGrid, RanksAndRestart)
           "fix m all mpm/material density 1 neohookean 1 0.3\nfix g all mpm/mesh " + name + " " +
           options + "\n" + others;
       const std::string first = variable +
-          scene(dim, file.name, "neohookean 1 0.3", options, 1, name) +
-          "velocity all set 0.05 0.1 0\n" + others;
-      Twins(first, 60, variable + fixes, 60, 1e-11);
+          replaced(scene(dim, file.name, "neohookean 1 0.3", options, 1, name), "-1 6 -1 6",
+                   "-0.5 4.5 -0.9 2.9") +
+          "velocity all set 0.05 0.1 0\nvelocity all ramp vx 0.05 -0.05 x 0 4 sum yes\n" + others;
+      Twins(first, 60, "neighbor 0.1 bin\n" + variable + fixes, 60, 1e-11);
       OnRanks balanced(first, "run 120\n", "fix b all balance 20 1.0 shift xy 5 1.1\n");
       EXPECT_LT(measured("difference with balance", balanced.difference()), 1e-11);
     }

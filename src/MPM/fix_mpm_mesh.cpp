@@ -357,14 +357,16 @@ void FixMPMMesh::find_ranks()
 /** Those of all nodes to all ranks. */
 void FixMPMMesh::share_positions()
 {
-  if (ranks.first.empty()) return;    // nothing has moved
-  std::vector<double> moved(3 * positions.size(), 0.0);
-  for (const int node : ranks.nodes)
-    for (int d = 0; d < 3 && ranks.first[node]; d++)
-      moved[3 * node + d] = positions[node][d] - mesh->nodes[node][d];
-  MPI_Allreduce(MPI_IN_PLACE, moved.data(), (int) moved.size(), MPI_DOUBLE, MPI_SUM, world);
-  for (std::size_t k = 0; k < moved.size(); k++)
-    positions[k / 3][k % 3] = mesh->nodes[k / 3][k % 3] + moved[k];
+  if (ranks.first.empty()) return;                         // nothing has moved
+  std::vector<double> known(4 * positions.size(), 0.0);    // and does any rank know it?
+  for (const int node : ranks.nodes) {
+    if (!ranks.first[node]) continue;
+    std::copy_n(positions[node].data(), 3, &known[4 * (std::size_t) node]);
+    known[4 * (std::size_t) node + 3] = 1.0;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, known.data(), (int) known.size(), MPI_DOUBLE, MPI_SUM, world);
+  for (std::size_t node = 0; node < positions.size(); node++)
+    if (known[4 * node + 3] > 0.0) std::copy_n(&known[4 * node], 3, positions[node].data());
 }
 
 /** Are there points in cells whose nodes this rank has not? Collective. */
