@@ -343,6 +343,10 @@ TEST(MeshGrid, RanksAndRestart)
       Twins(first, 60, "neighbor 0.1 bin\n" + variable + fixes, 60, 1e-11);
       OnRanks balanced(first, "run 120\n", "fix b all balance 20 1.0 shift xy 5 1.1\n");
       EXPECT_LT(measured("difference with balance", balanced.difference()), 1e-11);
+      for (int k = 1; k < 11; k++) {
+        const double one = entry(balanced.serial, k);
+        EXPECT_NEAR(entry(balanced.parallel, k), one, 1e-11 + 1e-9 * std::fabs(one)) << k;
+      }
     }
 }
 
