@@ -145,4 +145,9 @@ def test_tables_of_convergence():
     assert result.code == 0, result.output
 
 
+def test_table_of_flow():
+    result = mt.run([sys.executable, os.path.join(mt.ROOT, "bench", "run_flow.py"), "--check"])
+    assert result.code == 0, result.output
+
+
 mt.main(globals())

@@ -445,6 +445,29 @@ SERIAL_TEST(Drop, InFlight)
     }
 }
 
+// two points that fly and spin by more than two in a step: what they tell faces far from them must not end the run, nor push them
+SERIAL_TEST(Drop, TwoPointsSpin)
+{
+  for (const char *options : {"", "reflect 0.5", "spread 0"})
+    for (const double offset : {0.0, 0.0037, 0.0074, 0.0111, 0.0148}) {
+      Scene run(
+          plane("si", "p p", "0 1 0 1", 1, 0.02) +
+          "region d block 0.51 0.53 0.51 0.52 INF INF\ncreate_points 1 region d spacing 0.01\n"
+          "variable u atom -10*(y-0.515)\nvariable v atom 10*(x-0.52)\n"
+          "velocity all set v_u v_v 0\n" +
+          strprintf("displace_atoms all move %g %g 0\n", offset, 0.7 * offset) +
+          "fix w all mpm/incompressible 0.02 1000 " + options +
+          "\nfix dt all mpm/dt 0.8 every 1\nrun 20\n");
+      double v[2] = {0.0, 0.0}, fastest = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        for (int d = 0; d < 2; d++) v[d] += 0.5 * run.v()[i][d];
+        fastest = std::max(fastest, std::hypot(run.v()[i][0], run.v()[i][1]));
+      }
+      EXPECT_LT(measured("velocity of the middle", std::hypot(v[0], v[1])), 1e-12) << options;
+      EXPECT_LT(fastest, 10 * 0.005 * (1 + 1e-9)) << options;
+    }
+}
+
 // in all units: weight of a tank, fall of a drop
 SERIAL_TEST(Units, PressureAndForce)
 {

@@ -9,6 +9,7 @@
 #include "fix_mpm_incompressible.h"
 
 #include "mpm_flow_air.h"
+#include "mpm_flow_bodies.h"
 #include "mpm_flow_pressure.h"
 #include "mpm_flow_regions.h"
 #include "mpm_flow_stress.h"
@@ -248,7 +249,17 @@ void FixMPMIncompressible::init()
                "Fix mpm/incompressible requires a box of constant size and shape: remove the fix "
                "that changes it");
   cells.check_box(style);
-  if (regions) regions->init(fmt::format("Fix {} {}", style, id));
+  if (regions) {
+    regions->init(fmt::format("Fix {} {}", style, id));
+    bodies = std::make_unique<MPMFlowBodies>(lmp, cells, *regions, density);
+    bodies->init();
+    if (!bodies->any()) bodies.reset();
+    pressure->bodies = bodies.get();
+    if (bodies && reflect > 0.0)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix {} {}: reflect cannot be used with bodies of fix mpm/rigid: remove it", style,
+                 id);
+  }
   forces_known = false;
 
   // points need no ghosts, see FixMPM::init()
@@ -419,6 +430,17 @@ const std::vector<double> *FixMPMIncompressible::surface_psi() const
   return curved ? &at_surface : nullptr;
 }
 
+/** Force per mass by all fix gravity, in units of forces. */
+void FixMPMIncompressible::weight(double *g) const
+{
+  MathExtra::zero3(g);
+  for (auto *gravity : modify->get_fix_by_style("^gravity")) {
+    int width;
+    const auto *const of_fix = (const double *) gravity->extract("gvec", width);
+    for (int d = 0; d < cells.lattice.dim; d++) g[d] += of_fix[d];
+  }
+}
+
 MPMFlowPoints FixMPMIncompressible::points_now(double dt) const
 {
   return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt};
@@ -464,6 +486,7 @@ void FixMPMIncompressible::initial_integrate(int)
   check_speed();
 
   if (spread > 0.0) find_shift();
+  if (bodies) bodies->move(dt);
 
   const MPMFlowUpdate update_points = {flip,
                                        flip > 0.0 ? old.data() : nullptr,
@@ -499,6 +522,12 @@ void FixMPMIncompressible::find_flow(double duration)
                  style, id, update->dt, most);
     curved->find(share, duration * acceleration_of_stress() * tension, at_surface);
   }
+  if (bodies) {
+    double g[3];
+    weight(g);
+    MathExtra::scale3(force->ftm2v, g);
+    bodies->begin(duration, g, *pressure);
+  }
   const auto report = pressure->project(star.data(), velocity.data(), known.data(),
                                         {tolerance, rounding / h, most_iterations}, surface_psi());
   if (!report.converged())
@@ -506,6 +535,7 @@ void FixMPMIncompressible::find_flow(double duration)
         FLERR, Error::NOLASTLINE,
         "Fix {} {}: the pressure {} at step {}; allow more iterations, or a larger tolerance",
         style, id, report.describe(), update->ntimestep);
+  if (bodies) bodies->end(pressure->psi.data());
   if (stress) find_stress(duration, rounding);
   go_on_into_air();
   last.iterations = report.iterations;
@@ -677,6 +707,11 @@ void FixMPMIncompressible::check_speed() const
              style, id, update->ntimestep, all[0], MPMFlowLattice::MOST_MOTION);
 }
 
+double FixMPMIncompressible::spacing_around(const std::string &region) const
+{
+  return std::count(region_ids.begin(), region_ids.end(), region) ? h : 0.0;
+}
+
 /* ---------------------------------------------------------------------- */
 
 double FixMPMIncompressible::stable_dt(tagint &tag) const
@@ -691,16 +726,12 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   // At the start of a run there are no forces. Those at the end of the last run count by the limit that they gave, also if
   // it was the run that has written the restart file; at the start of the first one there is the weight
 
-  double weight[3] = {0.0, 0.0, 0.0};
+  double g[3] = {0.0, 0.0, 0.0};
   if (!forces_known && limit_before > 0.0)
     dt = std::min(dt, limit_before);
   else if (!forces_known)
-    for (auto *gravity : modify->get_fix_by_style("^gravity")) {
-      int width;
-      const auto *const g = (const double *) gravity->extract("gvec", width);
-      for (int d = 0; d < cells.lattice.dim; d++) weight[d] += g[d];
-    }
-  const double least = FIRST_FALL * MathExtra::len3(weight) * force->ftm2v;
+    weight(g);
+  const double least = FIRST_FALL * MathExtra::len3(g) * force->ftm2v;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
     double square = 0.0, force_square = 0.0;

@@ -26,6 +26,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 
 namespace LAMMPS_NS {
 class MPMFlowAir;
+class MPMFlowBodies;
 class MPMFlowPressure;
 class MPMFlowRegions;
 class MPMFlowStress;
@@ -82,6 +83,8 @@ class FixMPMIncompressible :
   /** Time in which a point of this rank passes one spacing with the velocity and the acceleration that it has, or one half of
    *  what viscosity allows; no less than that of points without motion. tag: that of the point, 0: viscosity. */
   double stable_dt(tagint &tag) const override;
+  /** Node spacing of a flow for which a region is solid; 0: it is not. */
+  double spacing_around(const std::string &region) const;
 
  private:
   MPMFlowLattice cells;
@@ -91,7 +94,8 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowStress> stress;        // implicit viscosity; null: none
   std::unique_ptr<MPMFlowTension> curved;       // with surface tension; null: none
   std::unique_ptr<MPMFlowRegions> regions;      // null: none
-  MPMRows gradient;                             // [n][dim*dim] dv_c/dx_d of points, with apic
+  std::unique_ptr<MPMFlowBodies> bodies;    // of regions; null: these move by themselves, or not
+  MPMRows gradient;                         // [n][dim*dim] dv_c/dx_d of points, with apic
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
       potentials, viscous_velocity;
 
@@ -109,6 +113,7 @@ class FixMPMIncompressible :
   } last;    // of the last step; filled, wet, walls, and regions of this rank
 
   double acceleration_of_stress() const;
+  void weight(double *g) const;
   const std::vector<double> *surface_psi() const;
   MPMFlowPoints points_now(double dt) const;
   void check_points();

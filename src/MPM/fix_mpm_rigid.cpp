@@ -26,6 +26,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_incompressible.h"
 #include "force.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
@@ -33,6 +34,8 @@
 #include "mpm_field.h"
 #include "mpm_image.h"
 #include "mpm_options.h"
+#include "mpm_physics.h"
+#include "mpm_region_body.h"
 #include "region_mpm_mesh.h"
 #include "update.h"
 
@@ -101,25 +104,63 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
   if (heat.heats()) heating = std::make_unique<MPMFrictionHeat>(lmp, heat);
-  auto *region = dynamic_cast<RegMPMMesh *>(domain->get_region_by_id(region_id));
-  if (!region)
-    error->all(FLERR, 3, "Fix mpm/rigid needs a region of style mpm/mesh: {}", region_id);
-  if (domain->dimension == 2)
-    error->all(FLERR,
-               "Fix mpm/rigid requires 3d, as surfaces are of triangles: in 2d, move a region with "
-               "fix mpm/boundary, or use a thin 3d box that is periodic");
-  region->need_distance();
-  mesh = &region->surface_mesh();
-  const double density = by_mass ? amount / mesh->volume : amount;
-  mass = density * mesh->volume;
+  const int dim = domain->dimension;
+  auto *const any = domain->get_region_by_id(region_id);
+  if (!any) error->all(FLERR, 3, "Fix mpm/rigid region {} does not exist", region_id);
+  double volume, lo[3], hi[3];
   constexpr int VOIGT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-  for (int d = 0; d < 3; d++) {
-    x[d] = mesh->center[d];
-    for (int e = 0; e < 3; e++) {
-      Q[d][e] = d == e;
-      body_inertia[d][e] = density * mesh->inertia[VOIGT[d][e]];
+  if (auto *region = dim == 3 ? dynamic_cast<RegMPMMesh *>(any) : nullptr) {
+    region->need_distance();
+    mesh = &region->surface_mesh();
+    volume = mesh->volume;
+    for (int d = 0; d < 3; d++) {
+      first[d] = mesh->center[d];
+      lo[d] = mesh->lo[d];
+      hi[d] = mesh->hi[d];
+      for (int e = 0; e < 3; e++) body_inertia[d][e] = mesh->inertia[VOIGT[d][e]];
+    }
+  } else {
+    if (any->dynamic_check() || !any->interior || any->openflag ||
+        !MPMRegionBody::is_bounded(*any, dim))
+      error->all(
+          FLERR, 3,
+          "Fix mpm/rigid needs a region of style mpm/mesh: {}; in a flow of fix mpm/incompressible "
+          "also another one that is bounded, at rest, with side in, and without open faces",
+          region_id);
+    any->init();
+    const MPMRegionBody shape(*any, dim);
+    if (!(shape.volume > 0.0))
+      error->all(FLERR, 3, "Region {} of fix mpm/rigid is empty", region_id);
+    volume = shape.volume;
+    for (int d = 0; d < 3; d++) {
+      first[d] = shape.center[d];
+      lo[d] = shape.lo[d];
+      hi[d] = shape.hi[d];
+      for (int e = 0; e < 3; e++) body_inertia[d][e] = shape.inertia[d][e];
     }
   }
+  double far[3];
+  for (int d = 0; d < 3; d++) far[d] = std::max(hi[d] - first[d], first[d] - lo[d]);
+  farthest = MathExtra::len3(far);
+  const double density = by_mass ? amount / volume : amount;
+  mass = density * volume;
+  for (int d = 0; d < 3; d++) {
+    x[d] = first[d];
+    for (int e = 0; e < 3; e++) {
+      Q[d][e] = d == e;
+      body_inertia[d][e] *= density;
+    }
+  }
+  if (dim == 2) {
+    if (v[2] != 0.0 || omega[0] != 0.0 || omega[1] != 0.0 || fixed[2] || fixed[3] || fixed[4])
+      error->all(FLERR,
+                 "Fix mpm/rigid {}: in 2d a body moves in the plane: leave out what is about z, "
+                 "and rotations "
+                 "but that about z",
+                 id);
+    fixed[2] = fixed[3] = fixed[4] = true;
+  }
+  hold();
   MathExtra::matvec(body_inertia, omega, L);
   spin();
 
@@ -138,22 +179,52 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
 
 void FixMPMRigid::init()
 {
-  auto *region = dynamic_cast<RegMPMMesh *>(domain->get_region_by_id(region_id));
-  if (!region || region->dynamic_check() || !region->interior)
+  auto *const any = domain->get_region_by_id(region_id);
+  auto *const region = dynamic_cast<RegMPMMesh *>(any);
+  const bool flows = spacing_of_flow() > 0.0;
+  if (!any || any->dynamic_check() || !any->interior || (mesh && !region))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/rigid {} needs its region {} at rest and with side in: the fix moves a "
                "copy of it",
                id, region_id);
-  region->need_distance();
-  mesh = &region->surface_mesh();
+  if (mesh) {
+    region->need_distance();
+    mesh = &region->surface_mesh();
+  } else if (!flows) {
+    if (domain->dimension == 2)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/rigid {} requires 3d, as surfaces are of triangles: in 2d, move a region with "
+          "fix mpm/boundary, use a thin 3d box that is periodic, or a flow of fix "
+          "mpm/incompressible that has region {}",
+          id, region_id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/rigid {} needs a region of style mpm/mesh: {}; others are bodies in a flow of fix "
+        "mpm/incompressible that has this region",
+        id, region_id);
+  }
   for (const auto *other : modify->get_fix_by_style("^mpm/rigid$"))
     if (other != this && dynamic_cast<const FixMPMRigid *>(other)->region_id == region_id)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/rigid {} and {} have the same region {}: they would be two bodies in the "
                  "same place, which do not feel each other",
                  id, other->id, region_id);
-  require_field(lmp, *this);
   const auto fields = MPMField::all(lmp);
+  if (flows) {
+    if (kind != SLIP || friction > 0.0)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/rigid {}: a body in a flow of fix mpm/incompressible has no friction and does "
+          "not part from it: use slip",
+          id);
+    if (!fields.empty())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/rigid {} is a body in a flow of fix mpm/incompressible, and cannot touch "
+                 "points of fix mpm {}: remove one of them",
+                 id, fields[0]->id());
+  } else
+    require_field(lmp, *this);
   for (const auto *field : fields)
     refuse_field(lmp, *this, *field,
                  {{field->options.total, "frame total",
@@ -218,19 +289,10 @@ void FixMPMRigid::load_impulse(double dt)
   });
 }
 
-/** Of a sphere about the center. */
-double FixMPMRigid::radius() const
-{
-  double far[3];
-  for (int d = 0; d < 3; d++)
-    far[d] = std::max(mesh->hi[d] - mesh->center[d], mesh->center[d] - mesh->lo[d]);
-  return MathExtra::len3(far);
-}
-
 /** Of the fastest point of the body. */
 double FixMPMRigid::speed() const
 {
-  return MathExtra::len3(v) + radius() * MathExtra::len3(omega);
+  return MathExtra::len3(v) + farthest * MathExtra::len3(omega);
 }
 
 double FixMPMRigid::stable_dt() const
@@ -241,7 +303,19 @@ double FixMPMRigid::stable_dt() const
     h = std::min(h, field->lattice.h);
     every = field->options.every;
   }
+  const double of_flow = spacing_of_flow();
+  if (of_flow > 0.0) h = of_flow;
   return h / (speed() * every);
+}
+
+/** Zero: the body is in none. */
+double FixMPMRigid::spacing_of_flow() const
+{
+  for (const auto *flow : find_fixes<FixMPMIncompressible>(lmp)) {
+    const double h = flow->spacing_around(region_id);
+    if (h > 0.0) return h;
+  }
+  return 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -274,7 +348,6 @@ void FixMPMRigid::check_motion(double dt) const
 void FixMPMRigid::find_contacts()
 {
   contacts.clear();
-  const double radius = FixMPMRigid::radius();
   int place = -1;
   for (auto *field : MPMField::all(lmp)) {
     place++;
@@ -287,7 +360,7 @@ void FixMPMRigid::find_contacts()
       field->grid.node_position(first, at);
       for (int d = 0; d < 3; d++) at[d] += half - x[d];
       nearest_image(*domain, at);
-      if (MathExtra::len3(at) > radius + 1.8 * half) continue;
+      if (MathExtra::len3(at) > farthest + 1.8 * half) continue;
       for (int n = 0; n < NODES_PER_BLOCK; n++) {
         if (block.alias >> n & 1) continue;
         Contact c;
@@ -511,10 +584,7 @@ void FixMPMRigid::act(double dt, Stage stage)
   if (stage == STEP) {
     dt_last = dt;
     load_impulse(dt);
-    for (int d = 0; d < 3; d++) {
-      if (fixed[d]) v[d] = 0.0;
-      if (fixed[3 + d]) L[d] = 0.0;
-    }
+    hold();
     find_contacts();
     if (heating) heating->begin_step();
     solve();
@@ -533,6 +603,70 @@ void FixMPMRigid::act(double dt, Stage stage)
     const double normal = MathExtra::dot3(w, c.n);
     for (int d = 0; d < 3; d++) c.record[d] += kind == STICK ? w[d] : normal * c.n[d];
   }
+}
+
+/** Nothing moves along what is held. */
+void FixMPMRigid::hold()
+{
+  for (int d = 0; d < 3; d++) {
+    if (fixed[d]) v[d] = 0.0;
+    if (fixed[3 + d]) L[d] = 0.0;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   in a flow
+------------------------------------------------------------------------- */
+
+void FixMPMRigid::motion(double *center, double *velocity, double *angular) const
+{
+  MathExtra::copy3(x, center);
+  MathExtra::copy3(v, velocity);
+  MathExtra::copy3(omega, angular);
+}
+
+void FixMPMRigid::place_in_region(const double *at, double *place) const
+{
+  double r[3];
+  MathExtra::sub3(at, x, r);
+  nearest_image(*domain, r);
+  MathExtra::transpose_matvec(Q, r, place);
+  for (int d = 0; d < 3; d++) place[d] += first[d];
+}
+
+void FixMPMRigid::predict(double duration, double *u, double *inverse)
+{
+  const MPMRigidMotion before = *this;
+  load_impulse(duration);
+  hold();
+  spin();
+  MathExtra::copy3(v, u);
+  MathExtra::copy3(omega, u + 3);
+  std::fill_n(inverse, 36, 0.0);
+  for (int d = 0; d < 3; d++) {
+    if (!fixed[d]) inverse[7 * d] = 1.0 / mass;
+    if (fixed[3 + d]) continue;
+    double unit[3] = {0.0, 0.0, 0.0};
+    unit[d] = 1.0;
+    MathExtra::copy3(unit, L);
+    spin();
+    for (int e = 0; e < 3; e++) inverse[6 * (3 + e) + 3 + d] = omega[e];
+  }
+  static_cast<MPMRigidMotion &>(*this) = before;
+}
+
+void FixMPMRigid::go_on(double dt, const double *impulse_of_flow)
+{
+  dt_last = dt;
+  std::copy_n(impulse_of_flow, 6, impulse);
+  load_impulse(dt);
+  hold();
+  for (int d = 0; d < 3; d++) {
+    if (!fixed[d]) v[d] += impulse[d] / mass;
+    if (!fixed[3 + d]) L[d] += impulse[3 + d];
+  }
+  move(dt);
+  check_motion(dt);
 }
 
 /* ----------------------------------------------------------------------

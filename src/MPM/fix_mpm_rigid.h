@@ -17,6 +17,7 @@ FixStyle(mpm/rigid,FixMPMRigid);
 
 #include "declare/option.h"
 #include "fix.h"
+#include "math_extra.h"
 #include "mpm_friction_heat.h"
 #include "mpm_node_action.h"
 
@@ -61,7 +62,10 @@ struct MPMRigidOptions : MPMRigidMotion {
 
 /** A free rigid body with the shape of a region mpm/mesh, in contact with the material at the nodes
  *  inside of it. Body and nodes take opposite impulses, found together, so that light bodies are as
- *  stable as heavy ones, and momentum and angular momentum are kept to round-off. */
+ *  stable as heavy ones, and momentum and angular momentum are kept to round-off.
+ *
+ *  In a flow of fix mpm/incompressible, for which its region is solid, it has the shape of any region that is bounded, also in 2d,
+ *  and that fix moves it together with the pressure, see MPMFlowBodies. */
 class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
@@ -80,6 +84,20 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   /** Largest time step: no point of the body crosses a cell. */
   double stable_dt() const;
 
+  // for flows
+
+  bool has_region(const std::string &id) const { return id == region_id; }
+  /** Center, velocity, and angular velocity. */
+  void motion(double *center, double *velocity, double *angular) const;
+  /** Where the region, which is at rest, has a place of the body. */
+  void place_in_region(const double *x, double *place) const;
+  void turn_to_space(const double *n, double *turned) const { MathExtra::matvec(Q, n, turned); }
+  /** Velocity and angular velocity u[6] after the loads of a duration; inverse: [6][6] what an impulse and its moment about the
+   *  center change of them. The body stays as it is. */
+  void predict(double duration, double *u, double *inverse);
+  /** A step with its loads and this impulse [6] of the flow. */
+  void go_on(double dt, const double *impulse_of_flow);
+
  private:
   struct Contact {    // a node inside of the body
     enum State { APART, SLIDES, STICKS };
@@ -97,9 +115,10 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
     void relative_velocity(const double *u, double *w) const;
   };
 
-  const MPM_NS::SurfaceMesh *mesh;
+  const MPM_NS::SurfaceMesh *mesh = nullptr;    // null: the region is of another style, in a flow
+  double first[3], farthest;                    // center in the region, and radius about it
   double mass;
-  double body_inertia[3][3];    // about the center, in the frame of the mesh
+  double body_inertia[3][3];    // about the center, in the frame of the region
   std::vector<Contact> contacts;
   std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
 
@@ -109,8 +128,9 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   void solve();
   void heat_node(const Contact &, double normal_impulse, const double *u);
   void move(double dt);
-  double radius() const;
   double speed() const;
+  double spacing_of_flow() const;
+  void hold();
   void check_motion(double dt) const;
   void inertia(double out[3][3]) const;
   void spin();

@@ -8,6 +8,7 @@
 
 #include "mpm_flow_pressure.h"
 
+#include "mpm_flow_bodies.h"
 #include "mpm_flow_regions.h"
 
 #include "lammps.h"
@@ -169,6 +170,7 @@ void MPMFlowPressure::apply(const double *x, double *y)
       if (one.near[s] >= 0) sum -= one.weight[s] * x[one.near[s]];
     y[number] = sum;
   }
+  if (bodies && screen == 0.0) bodies->add(x, y);    // points that spread do not push them
   cells.publish(y, 1);
 }
 

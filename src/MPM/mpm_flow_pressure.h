@@ -18,6 +18,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMFlowBodies;
 class MPMFlowRegions;
 
 /** The pressure that makes a flow free of divergence: the Poisson equation on the cells that are wet.
@@ -39,6 +40,8 @@ class MPMFlowPressure : public MPMNodeSystem {
 
   /** Regions that are solid; null: none. */
   const MPMFlowRegions *regions = nullptr;
+  /** Rigid bodies that the pressure moves; null: none. */
+  const MPMFlowBodies *bodies = nullptr;
 
   /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
   void find_wet(const std::vector<double> &share);

@@ -8,7 +8,10 @@
 
 #include "mpm_flow_regions.h"
 
+#include "fix_mpm_rigid.h"
+#include "mpm_image.h"
 #include "mpm_options.h"
+#include "mpm_physics.h"
 
 #include "comm.h"
 #include "domain.h"
@@ -98,7 +101,7 @@ MPMFlowRegions::MPMFlowRegions(LAMMPS *lmp, const MPMFlowLattice &cells,
 
 void MPMFlowRegions::init(const std::string &name)
 {
-  any_moves = false;
+  any_moves = any_bodies = false;
   for (int w = 0; w < n(); w++) {
     auto &wall = walls[w];
     wall.id = ids[w];
@@ -120,7 +123,11 @@ void MPMFlowRegions::init(const std::string &name)
                  "{} cannot use region {}: a union or intersection must not move; give each "
                  "member as a region of its own",
                  name, wall.id);
-    any_moves = any_moves || wall.moves;
+    wall.body = nullptr;
+    for (auto *fix : find_fixes<FixMPMRigid>(lmp))
+      if (fix->has_region(wall.id)) wall.body = fix;
+    any_bodies = any_bodies || wall.body;
+    any_moves = any_moves || wall.moves || wall.body;
   }
   known = false;
 }
@@ -130,8 +137,11 @@ void MPMFlowRegions::start_run()
   evaluate_in_step(lmp, any_moves, [&] {
     for (auto &wall : walls) wall.region->prematch();
   });
-  for (auto &wall : walls)
+  for (int w = 0; w < n(); w++) {
+    auto &wall = walls[w];
     for (int k = 0; k < 4; k++) wall.before[k] = *motion_of(wall.region)[k];
+    if (wall.body) wall.body->motion(wall.center, wall.shift, wall.spin);
+  }
   known = false;
 }
 
@@ -144,7 +154,7 @@ void MPMFlowRegions::find(double duration)
   // others may have looked at regions since the last step
 
   for (auto &wall : walls) {
-    if (!wall.moves) continue;
+    if (!wall.moves) continue;    // those of bodies are at rest
     if (duration > 0.0)
       evaluate_in_step(lmp, true, [&] {
         wall.region->prematch();
@@ -181,7 +191,7 @@ double MPMFlowRegions::distance(const double *x, double far, int &nearest) const
   double least = far;
   nearest = 0;
   for (int w = 0; w < n(); w++) {
-    const double d = walls[w].surface->distance(x, far);
+    const double d = distance_from(walls[w], x, far);
     if (d < least) {
       least = d;
       nearest = w;
@@ -190,18 +200,81 @@ double MPMFlowRegions::distance(const double *x, double far, int &nearest) const
   return std::max(-far, least);
 }
 
+double MPMFlowRegions::distance_from(const Wall &wall, const double *x, double far) const
+{
+  if (!wall.body) return wall.surface->distance(x, far);
+  double place[3];
+  wall.body->place_in_region(x, place);
+  return wall.surface->distance(place, far);
+}
+
 void MPMFlowRegions::normal_at(int wall, const double *x, double *n) const
 {
   const double h = cells.lattice.h;
-  walls[wall].surface->normal(x, FAR * h, 1.0e-4 * h, n);
+  const auto *const body = walls[wall].body;
+  if (!body) return walls[wall].surface->normal(x, FAR * h, 1.0e-4 * h, n);
+  double place[3], there[3];
+  body->place_in_region(x, place);
+  walls[wall].surface->normal(place, FAR * h, 1.0e-4 * h, there);
+  body->turn_to_space(there, n);
 }
 
 void MPMFlowRegions::velocity_at(int wall, const double *x, double *v) const
 {
   double arm[3], turn[3];
   MathExtra::sub3(x, walls[wall].center, arm);
+  if (walls[wall].body) nearest_image(*domain, arm);
   MathExtra::cross3(walls[wall].spin, arm, turn);
   MathExtra::add3(walls[wall].shift, turn, v);
+}
+
+void MPMFlowRegions::face_middle(int64_t cell, int axis, double *x) const
+{
+  int index[3];
+  double offset[3] = {0.5, 0.5, 0.5};
+  offset[axis] = 0.0;
+  cells.grid.node_index(cells.grid.blocks[cell / NODES_PER_BLOCK], cell % NODES_PER_BLOCK, index);
+  place(index, offset, x);
+}
+
+double MPMFlowRegions::closed_by(int wall, int64_t cell, int axis, double *arm) const
+{
+  const int64_t face = cell * dim + axis;
+  if (body_faces[face] != wall) return 0.0;
+  double x[3];
+  face_middle(cell, axis, x);
+  MathExtra::sub3(x, walls[wall].center, arm);
+  nearest_image(*domain, arm);
+  return 1.0 - shares[face];
+}
+
+void MPMFlowRegions::find_wall(int wall, const MPMFlowLattice::Cell &cell, double *way) const
+{
+  constexpr double middle[3] = {0.5, 0.5, 0.5};
+  const double far = FAR * cells.lattice.h;
+  double x[3], normal[3];
+  place(cell.index, middle, x);
+  normal_at(wall, x, normal);
+  const double d = distance_from(walls[wall], x, far);
+  for (int k = 0; k < 3; k++) way[k] = -d * normal[k];
+}
+
+void MPMFlowRegions::set_velocity(int w, const double *u)
+{
+  auto &wall = walls[w];
+  double old[3];
+  wall.body->motion(wall.center, old, old);
+  std::copy_n(u, 3, wall.shift);
+  std::copy_n(u + 3, 3, wall.spin);
+  double x[3], v[3];
+  for (int64_t face = 0; face < (int64_t) body_faces.size(); face++) {
+    if (body_faces[face] != w) continue;
+    face_middle(face / dim, face % dim, x);
+    velocity_at(w, x, v);
+    fluxes[face] = (1.0 - shares[face]) * v[face % dim];
+  }
+  for (auto &held : helds)
+    if (held.wall == w) velocity_at(w, held.x, held.velocity);
 }
 
 /** offset: from the lower corner of a cell, in spacings. */
@@ -229,6 +302,7 @@ void MPMFlowRegions::find_shares()
   rooms.assign(size, 1.0);
   levels.assign(size, far);
   if (any_moves) fluxes.assign(size * dim, 0.0);
+  if (any_bodies) body_faces.assign(size * dim, -1);
   constexpr double middle[3] = {0.5, 0.5, 0.5};
   for (int64_t number = 0; number < size; number++) {
     int index[3];
@@ -280,15 +354,16 @@ void MPMFlowRegions::find_shares()
           }
       rooms[number] = sum;
     }
-    if (!any_moves || !walls[nearest].moves) continue;
-    for (int d = 0; d < dim; d++) {
-      double offset[3] = {0.5, 0.5, 0.5}, y[3], v[3];
-      offset[d] = 0.0;
-      place(index, offset, y);
+    for (int d = 0; any_moves && d < dim; d++) {
+      const int64_t face = number * dim + d;
+      if (shares[face] == 1.0) continue;
+      double y[3], v[3];
       int wall;
+      face_middle(number, d, y);
       distance(y, far, wall);
       velocity_at(wall, y, v);
-      fluxes[number * dim + d] = (1.0 - shares[number * dim + d]) * v[d];
+      fluxes[face] = (1.0 - shares[face]) * v[d];
+      if (walls[wall].body) body_faces[face] = wall;
     }
   }
   speed = 0.0;
@@ -331,11 +406,13 @@ void MPMFlowRegions::find_cuts()
       double offset[3] = {0.5, 0.5, 0.5};
       offset[d] = 0.0;
       place(cell.index, offset, x);
-      Held held = {k, d, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-      int wall;
-      distance(x, far, wall);
-      normal_at(wall, x, held.normal);
-      velocity_at(wall, x, held.velocity);
+      Held held = {};
+      held.cell = k;
+      held.axis = d;
+      std::copy_n(x, 3, held.x);
+      distance(x, far, held.wall);
+      normal_at(held.wall, x, held.normal);
+      velocity_at(held.wall, x, held.velocity);
       helds.push_back(held);
     }
   }
@@ -598,8 +675,8 @@ void MPMFlowRegions::extrapolate(std::vector<double> &psi, const std::vector<dou
 
 double MPMFlowRegions::memory_usage() const
 {
-  double bytes =
-      cuts.capacity() * sizeof(Cut) + helds.capacity() * sizeof(Held) + closed.capacity();
+  double bytes = cuts.capacity() * sizeof(Cut) + helds.capacity() * sizeof(Held) +
+      closed.capacity() + body_faces.capacity() * sizeof(int);
   for (const auto *list : {&shares, &rooms, &fluxes, &levels})
     bytes += list->capacity() * sizeof(double);
   return bytes;

@@ -17,9 +17,10 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class FixMPMRigid;
 class Region;
 
-/** Regions whose inside is solid to a flow, fixed or with a rigid motion of their own. Cells are cut: a face lets through what its
+/** Regions whose inside is solid to a flow, fixed, with a rigid motion of their own, or with that of a fix mpm/rigid. Cells are cut: a face lets through what its
  *  open share is, and through the rest goes the wall (Y.T. Ng, C. Min, F. Gibou, J. Comput. Phys. 228 (2009) 8807). Shares are
  *  those of the linear functions of the distances at the corners of a cell, exact for planes.
  *
@@ -36,6 +37,15 @@ class MPMFlowRegions : protected Pointers {
   /** Motion in this step, and what is open where it begins. duration 0: without motion. */
   void find(double duration);
   int n() const { return walls.size(); }
+
+  /** The rigid body that has this region; null: none. */
+  FixMPMRigid *body(int wall) const { return walls[wall].body; }
+  /** Share of the lower face of a cell along an axis that is closed by a body, and its middle from the center of that body. */
+  double closed_by(int wall, int64_t cell, int axis, double *arm) const;
+  /** From the middle of a cell to the surface of a wall. */
+  void find_wall(int wall, const MPMFlowLattice::Cell &, double *way) const;
+  /** A body has this velocity and angular velocity now. */
+  void set_velocity(int wall, const double *u);
 
   /** Open share of the lower face of a cell along an axis, 0 to 1. */
   double open(int64_t cell, int axis) const { return shares[cell * dim + axis]; }
@@ -77,6 +87,7 @@ class MPMFlowRegions : protected Pointers {
     std::string id;
     Region *region = nullptr;
     std::unique_ptr<MPMRegionSurface> surface;
+    FixMPMRigid *body = nullptr;    // that the region is the shape of; null: none
     bool moves = false;
     double before[4];    // shift and angle at the start of the step
     double shift[3] = {}, spin[3] = {},
@@ -87,8 +98,8 @@ class MPMFlowRegions : protected Pointers {
     double area[3];    // of the wall, into it
   };
   struct Held {    // closed face near a wall
-    int cell, axis;
-    double normal[3], velocity[3];
+    int cell, axis, wall;
+    double x[3], normal[3], velocity[3];
   };
 
   const MPMFlowLattice &cells;
@@ -97,15 +108,19 @@ class MPMFlowRegions : protected Pointers {
   std::vector<Wall> walls;
   std::vector<double> shares, rooms, fluxes;
   std::vector<char> closed;
+  std::vector<int>
+      body_faces;    // [cell][dim] wall of the body that closes a face, or -1; with bodies
   std::vector<Cut> cuts;
   std::vector<Held> helds;
   bigint nbuild = -1;
-  bool any_moves = false, known = false, told_of_thin = false;
+  bool any_moves = false, any_bodies = false, known = false, told_of_thin = false;
   double speed = 0.0;
   std::vector<double> levels;    // distances in the middle of cells, at most far
   mutable std::vector<double> changed, slopes, values;
 
   double distance(const double *x, double far, int &nearest) const;
+  double distance_from(const Wall &, const double *x, double far) const;
+  void face_middle(int64_t cell, int axis, double *x) const;
   void normal_at(int wall, const double *x, double *n) const;
   void velocity_at(int wall, const double *x, double *v) const;
   void place(const int *index, const double *offset, double *x) const;

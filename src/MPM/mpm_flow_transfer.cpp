@@ -18,6 +18,9 @@ using namespace MPM_NS;
 
 // points are kept that far inside of walls, in spacings: no rounding takes them out of the box
 static constexpr double INSIDE = 1.0e-6;
+// most that the velocity of a point changes over a spacing, in spacings per step: what flows changes by less, but points
+// that splash can come to have any gradient, by which they would tell faces that are up to 1.5 spacings away any velocity
+static constexpr double STEEPEST = 0.75;
 
 namespace {
 /** Numbers of the cells that a place reaches. */
@@ -88,6 +91,18 @@ template <int dim> struct Places {
   }
 };
 
+/** Factor for velocity gradients G [distance/time over a spacing] that are steeper than that in a step of duration dt. */
+template <int dim> double limit_of(const double *G, double inv_h, double dt)
+{
+  double most = 0.0;
+  for (int c = 0; c < dim; c++) {
+    double sum = 0.0;
+    for (int d = 0; d < dim; d++) sum += std::fabs(G[dim * c + d]);
+    most = std::max(most, sum * inv_h * dt);
+  }
+  return most > STEEPEST ? STEEPEST / most : 1.0;
+}
+
 template <int dim>
 void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<double> &sums)
 {
@@ -107,8 +122,11 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
       const double *const f = points.f[i];
       double v[dim], G[dim * dim] = {};
       for (int c = 0; c < dim; c++) v[c] = points.v[i][c];
-      if (points.gradient)
+      if (points.gradient) {
         for (int e = 0; e < dim * dim; e++) G[e] = points.gradient[i][e] * h;
+        const double limit = limit_of<dim>(G, places.inv_h, points.dt);
+        for (int e = 0; e < dim * dim; e++) G[e] *= limit;
+      }
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
         double *const to = sums.data() + number * width;
         for (int c = 0; c < dim; c++) {

@@ -1,0 +1,201 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// Bodies of fix mpm/rigid in a flow of fix mpm/incompressible: they fall, rise, float, and heel.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** Entries of the vector of fix mpm/rigid. */
+enum { CENTER = 0, VELOCITY = 3, OMEGA = 6, FORCE = 9, MATRIX = 15 };
+
+double body(Scene &run, int k)
+{
+  return run.fix("body")->compute_vector(k);
+}
+
+/** A cylinder or sphere of radius 0.2 in a container of radius 0.47 that is full, released under gravity. */
+std::string gap(int dim, int n, double density, const char *units, double g, double g_body)
+{
+  const char *const center = dim == 3 ? "0.503 0.511 0.49" : "0.503 0.511 0";
+  return box(dim, units, dim == 3 ? "f f f" : "f f", dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1,
+             0.02) +
+      strprintf("region out sphere %s 0.47 side out\nregion in sphere %s 0.2\n", center, center) +
+      strprintf("region a sphere %s 0.2 side out\nregion b sphere %s 0.47\n", center, center) +
+      "region fluid intersect 2 a b\n" +
+      strprintf("create_points 1 region fluid spacing %.17g\n", 0.5 / n) +
+      strprintf("fix body all mpm/rigid in density %g slip gravity 0 %.17g 0\n", density, -g_body) +
+      strprintf("fix w all mpm/incompressible %.17g 1000 spread 0 tolerance 1e-10 region out "
+                "region in\n",
+                1.0 / n) +
+      strprintf("fix g all gravity %.17g vector 0 -1 0\n", g);
+}
+
+/** Water 0.4 deep in a tank of 2 x 0.8, with a box of 0.4 x 0.2 of half its density about a place that is no node. */
+std::string boat(double h, double density, double y, const std::string &options)
+{
+  const auto hull = strprintf("block 0.8137 1.2137 %.17g %.17g INF INF", y - 0.1, y + 0.1);
+  return plane("si", "f f", "0 2 0 0.8", 1, 0.5 * h) + "region hull " + hull + "\nregion dry " +
+      hull +
+      " side out\nregion low block INF INF INF 0.4 INF INF\nregion fluid intersect 2 low dry\n" +
+      strprintf("create_points 1 region fluid spacing %.17g\n", 0.5 * h) +
+      strprintf("fix body all mpm/rigid hull density %g slip gravity 0 -9.81 0 ", density) +
+      options + strprintf("\nfix w all mpm/incompressible %.17g 1000 region hull\n", h) +
+      "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.01\n";
+}
+
+}    // namespace
+
+// what is lighter or heavier than water sets this in motion, too: the mass of a body and its added mass, which for a light one is
+// all that there is
+SERIAL_TEST(Body, IsReleased)
+{
+  constexpr double a = 0.2, b = 0.47, g = 9.81;
+  for (const int dim : {2, 3})
+    for (const double density : {1.0, 500.0, 7800.0}) {
+      const double a3 = a * a * a, b3 = b * b * b;
+      const double added = dim == 3 ? 500.0 * (b3 + 2.0 * a3) / (b3 - a3)
+                                    : 1000.0 * (b * b + a * a) / (b * b - a * a);
+      const double exact = (1000.0 - density) / (density + added) * g;
+      Scene run(gap(dim, dim == 2 ? 40 : 20, density, "si", g, g) + "timestep 1e-4\nrun 10\n");
+      EXPECT_NEAR(measured(strprintf("%dd, density %g: acceleration over theory", dim, density),
+                           body(run, VELOCITY + 1) / (1e-3 * exact)),
+                  1.0, dim == 2 ? 0.01 : 0.03);
+      EXPECT_LT(std::fabs(body(run, VELOCITY) / (1e-3 * g)), 0.01);
+    }
+}
+
+// in all units: the same motion, and the force that belongs to it
+SERIAL_TEST(Units, IsReleased)
+{
+  constexpr double a = 0.2, b = 0.47, g = 0.02;
+  for (const char *units : {"si", "metal", "real", "lj"}) {
+    Scene probe(plane(units, "f f", "0 1 0 1", 1, 0.02));
+    const double now = g * probe.lmp->force->ftm2v, dt = 1e-3 / std::sqrt(now);
+    Scene run(gap(2, 20, 500.0, units, g, now) + strprintf("timestep %.17g\nrun 10\n", dt));
+    const double exact = 500.0 / (500.0 + 1000.0 * (b * b + a * a) / (b * b - a * a)) * now;
+    EXPECT_NEAR(body(run, VELOCITY + 1) / (10 * dt * exact), 1.0, 0.02) << units;
+    const double mass = 500.0 * PI * a * a;
+    EXPECT_NEAR(body(run, FORCE + 1) / (mass * (g + exact / probe.lmp->force->ftm2v)), 1.0, 0.02)
+        << units;
+  }
+}
+
+// Archimedes: it goes down as far as its weight is that of the water, with 1.5 and 3 cells in its depth, and nothing moves it then
+SERIAL_TEST(Boat, Floats)
+{
+  for (const double h : {0.04, 0.02}) {
+    const double depth = 0.06, level = (0.8 - 0.4 * (0.4 - 0.3337) + 0.4 * depth) / 2.0;
+    Scene run(boat(h, 300.0, 0.4337, "hold x rz") + "run 200\n");
+    double sum = 0.0;
+    int n = 0;
+    run.each_step([&](double **) {
+      sum += body(run, CENTER + 1);
+      n++;
+    });
+    run.commands("run 200\n");
+    EXPECT_NEAR(measured("depth over theory", (level - (sum / n - 0.1)) / depth), 1.0, 0.02);
+  }
+}
+
+// A torque heels it until the water rights it as far: m g (GM + tan^2/2 BM) sin of a box, with GM = BM + KB - KG
+SERIAL_TEST(Boat, Heels)
+{
+  constexpr double angle = 0.1, B = 0.4, depth = 0.1, BM = B * B / (12.0 * depth);
+  const double righting = 1000.0 * 9.81 * B * depth * std::sin(angle) *
+      (BM + 0.5 * depth - 0.1 + 0.5 * BM * std::pow(std::tan(angle), 2));
+  Scene run("variable M equal " + strprintf("%.17g*(time<3)*(1-cos(PI*time/3))/2", righting) +
+            strprintf("+%.17g*(time>=3)\n", righting) +
+            boat(0.05, 500.0, 0.413, "torque 0 0 v_M hold x") + "run 400\n");
+  double sum = 0.0;
+  int n = 0;
+  run.each_step([&](double **) {
+    sum += std::asin(body(run, MATRIX + 3));
+    n++;
+  });
+  run.commands("run 200\n");
+  EXPECT_NEAR(measured("angle over theory", sum / n / angle), 1.0, 0.05);
+}
+
+// a body that is dropped on water with a spin, on four ranks, and from restart files
+TEST(Body, RanksAndRestart)
+{
+  for (const int dim : {2, 3}) {
+    const double h = dim == 2 ? 0.05 : 0.1;
+    const std::string shape = dim == 2 ? "block 0.3313 0.7092 0.4127 0.6319 INF INF"
+                                       : "block 0.3313 0.7092 0.4127 0.6319 0.0711 0.3077";
+    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
+                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+        "region dry " + shape + " side out\nregion water block INF INF INF 0.53 INF INF\n" +
+        "region fluid intersect 2 water dry\n" +
+        strprintf("create_points 1 region fluid spacing %g\n", 0.5 * h);
+    const auto fixes = "region shape " + shape +
+        "\nfix body all mpm/rigid shape density 400 slip " +
+        "gravity 0 -9.81 0 velocity 0.1 0 0 omega 0 0 0.7\n" +
+        strprintf("fix w all mpm/incompressible %g 1000 ", h) +
+        "region shape tolerance 1e-12\nfix g all gravity 9.81 vector 0 -1 0\ntimestep 0.004\n";
+    OnRanks run(scene + fixes, "run 20\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
+    EXPECT_LT(measured("difference", run.difference()), 1e-9);
+    for (int k = 0; k < 9; k++)
+      EXPECT_NEAR(run.parallel.fix("body")->compute_vector(k),
+                  run.serial.fix("body")->compute_vector(k), 1e-9);
+    Continued again(scene + fixes, 12, "neighbor 0.02 bin\n" + fixes, 20);
+    EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+    for (int k = 0; k < 9; k++)
+      EXPECT_EQ(again.whole.fix("body")->compute_vector(k),
+                again.again.fix("body")->compute_vector(k));
+  }
+}
+
+// no point comes into a body, wherever this goes
+SERIAL_TEST(Body, KeepsPointsOut)
+{
+  Scene run(boat(0.025, 300.0, 0.413, "omega 0 0 4"));
+  int inside = 0;
+  run.each_step([&](double **) {
+    const double c = body(run, MATRIX), s = body(run, MATRIX + 3);
+    for (int i = 0; i < run.n(); i++) {
+      const double dx = run.x()[i][0] - body(run, CENTER),
+                   dy = run.x()[i][1] - body(run, CENTER + 1);
+      if (std::fabs(c * dx + s * dy) < 0.2 && std::fabs(c * dy - s * dx) < 0.1) inside++;
+    }
+  });
+  run.commands("run 100\n");
+  EXPECT_EQ(inside, 0);
+  EXPECT_GT(std::fabs(body(run, MATRIX + 3)), 0.01);
+}
+
+SERIAL_TEST(Body, BadInput)
+{
+  const auto plain = plane("si", "f f", "0 1 0 1", 1, 0.02) +
+      "region s sphere 0.51 0.51 0 0.001\ncreate_points 1 box spacing 0.05\n";
+  const std::string flow = "fix w all mpm/incompressible 0.1 1000 region s",
+                    rigid = "fix body all mpm/rigid s density 500 ";
+  expect_refused(
+      plain,
+      {{rigid + "stick\n" + flow, "no friction and does not part from it: use slip"},
+       {rigid + "separate\n" + flow, "use slip"},
+       {rigid + "slip friction 0.2\n" + flow, "use slip"},
+       {rigid + "slip\n" + flow + " reflect 0.5", "reflect cannot be used with bodies"},
+       {rigid + "slip\nfix w all mpm/incompressible 0.1 1000", "requires 3d"},
+       {rigid + "slip velocity 0 0 1\n" + flow, "in 2d"},
+       {rigid + "slip omega 1 0 0\n" + flow, "in 2d"},
+       {rigid + "slip hold z\n" + flow, "in 2d"},
+       {"fix body all mpm/rigid none density 500 slip\n" + flow, "region none does not exist"},
+       {"region p plane 0.5 0.1 0 0 -1 0\nfix body all mpm/rigid p density 500 slip\n" + flow,
+        "that is bounded"},
+       {"region q sphere 0.5 0.5 0 0.1 side out\nfix body all mpm/rigid q density 500 slip\n" +
+            flow,
+        "with side in"},
+       {"variable d equal 0.0\nregion q sphere 0.5 0.5 0 0.1 move v_d NULL NULL\nfix body all "
+        "mpm/rigid q density 500 slip\n" +
+            flow,
+        "at rest"}},
+      "timestep 0.001\nrun 1\n");
+}
