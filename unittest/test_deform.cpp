@@ -282,6 +282,32 @@ TEST(Cell, RanksAndRestart)
   }
 }
 
+// a cell that has yielded is unloaded with fix_modify: what remains is the strain without that of the stress, and what the sides have got
+SERIAL_TEST(Cell, Unloads)
+{
+  Scene run(cell(3, "lj", "density 1 eos linear 100 strength j2 40 0.5") +
+            "variable e equal 0.02*0.5*(1-cos(PI*time/40))\n"
+            "fix cell all mpm/deform x strain v_e y stress 0 z stress 0\n"
+            "fix dt all mpm/dt 0.5 until 40\nrun 10000\n");
+  const double E = 9 * 100.0 * 40.0 / (3 * 100.0 + 40.0), loaded = mean_F(run, XX) - 1.0;
+  EXPECT_NEAR(loaded, 0.02, 1e-12);
+  EXPECT_NEAR(measured("stress over strength", mean_stress(run, XX) / 0.5), 1.0, 1e-3);
+  run.commands("fix_modify cell x stress 0\nfix dt all mpm/dt 0.5 until 80\nrun 10000\n");
+  EXPECT_NEAR(mean_stress(run, XX), 0.0, 1e-4);
+  EXPECT_NEAR(measured("strain that is gone over stress/E",
+                       std::log((1.0 + loaded) / mean_F(run, XX)) / (0.5 / E)),
+              1.0, 5e-3);
+  // the plastic strain has no volume
+  EXPECT_NEAR(mean_F(run, XX) * mean_F(run, YY) * mean_F(run, ZZ), 1.0, 1e-5);
+  EXPECT_THAT(run.error("fix_modify cell x rate 1\n"), ::testing::HasSubstr("must be one of"));
+  const auto told =
+      lines_that_say(cell(2, "lj", "density 1 linear 1 0.3") +
+                         "fix cell all mpm/deform x erate 1e-3\ntimestep 0.1\nrun 10\n"
+                         "unfix cell\nfix cell all mpm/deform x erate 1e-3\nrun 1\n",
+                     "strained already");
+  EXPECT_EQ(told.size(), 1u);
+}
+
 // units of stress and work
 SERIAL_TEST(Cell, Units)
 {

@@ -54,6 +54,7 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+static constexpr double STRAINED = 1.0e-6;    // mean strain that is more than round-off
 static constexpr const char *PART_NAME[6] = {"x", "y", "z", "xy", "xz", "yz"};
 
 /* ----------------------------------------------------------------------
@@ -103,6 +104,16 @@ FixMPMDeform::FixMPMDeform(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
   extvector = 0;
   restart_global = 1;
   dynamic_group_allow = 1;
+}
+
+/** Components in another way from now on: what the cell has, stays. */
+int FixMPMDeform::modify_param(int narg, char **arg)
+{
+  Options options = declare(domain->dimension);
+  if (narg == 0 || !options.has(arg[0])) return 0;
+  for (int k = 0; k < NPART; k++)
+    if (drive[k] != STRESS) past.speed[k] = past.lack[k] = past.way[k] = past.time[k] = 0.0;
+  return read_options(lmp, options, narg, arg, 0);
 }
 
 FixMPMDeform::~FixMPMDeform()
@@ -213,6 +224,7 @@ double FixMPMDeform::stress(int part) const
 void FixMPMDeform::find_motion()
 {
   if (past.known == 0.0) {
+    warn_of_strain();
     find_stress();
     past.known = 1.0;
   }
@@ -275,6 +287,28 @@ void FixMPMDeform::find_motion()
                  F * domain->prd[k], PART_NAME[k], update->ntimestep);
   }
   for (int c = 0; c < 9; c++) rate[c] = (next[c] - past.F[c]) / dt;
+}
+
+/** Is there a mean deformation that this fix does not know of? */
+void FixMPMDeform::warn_of_strain() const
+{
+  double mine[10] = {}, all[10], most = 0.0;
+  for (const auto *field : fields)
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i)) continue;
+      mine[9] += atom->vfrac[i];
+      for (int c = 0; c < 9; c++)
+        mine[c] += atom->vfrac[i] * (field->points->F[i][c] - (c % 4 == 0 ? 1.0 : 0.0));
+    }
+  MPI_Allreduce(mine, all, 10, MPI_DOUBLE, MPI_SUM, world);
+  for (int c = 0; c < 9; c++) most = std::max(most, std::fabs(all[c]));
+  if (most > STRAINED * all[9] && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/deform {}: points are strained already, by {:.3g} on average, which the mean "
+        "deformation does not count: define this fix before their first run, and use fix_modify "
+        "to go on in another way",
+        id, most / all[9]);
 }
 
 /** Mean stress of the points, tau and P = tau F^-T. */

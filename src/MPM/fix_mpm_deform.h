@@ -44,6 +44,7 @@ class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
   ~FixMPMDeform() override;
   int setmask() override { return 0; }
   void init() override;
+  int modify_param(int, char **) override;
   double compute_scalar() override { return past.work; }
   double compute_vector(int) override;
   void write_restart(FILE *) override;
@@ -77,6 +78,7 @@ class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
   double length(int axis) const;
   double stress(int part) const;
   void refuse_combinations() const;
+  void warn_of_strain() const;
   void find_motion();
   void find_stress();
   void end_motion();
