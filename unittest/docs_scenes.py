@@ -178,6 +178,9 @@ def scene_for(lines):
             before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
+    if "mpm/deform" in text:
+        head = head.replace("f f f", "p p p")
+        grid = grid.replace("\n", " frame total\n")
     if "mpm/incompressible" in text:    # has a lattice of its own, and no materials
         grid = ""
     mixture = "mpm/mixture" in text and not makes_points

@@ -657,6 +657,115 @@ TEST(Rotation, AFullTurnKeepsTheRadius)
   EXPECT_LT(measured("drift of the position", off), 1.0e-10);
 }
 
+// the same in the total frame, whose nodes know the material and not where it is, about an axis that moves along
+TEST(Rotation, TotalFrame)
+{
+  for (const char *options : {"", "scheme musl transfer flip 0.9 shape linear"}) {
+    Scene run(
+        space("lj", "f f f", "0 10 0 10 0 10", 1, 0.5) +
+        body("sphere 6.5 5 5 1.4", "density 1.0 neohookean 10.0 0.3",
+             std::string("1.0 frame total ") + options) +
+        "region all block INF INF INF INF INF INF\nvariable rate equal 2*PI/4.0\n"
+        "variable u equal 0.3*time\n"
+        "fix w all mpm/boundary region all stick displacement v_u 0 0 rotate 5 5 5 0 0 1 v_rate\n"
+        "timestep 0.02\nrun 0\n");
+    const auto before = run.gather();
+    run.commands("run 50\n");
+    // a quarter of a turn: F is the rotation
+    const double quarter[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+    for (const auto &s : run.gather())
+      for (int c = 0; c < 9; c++) EXPECT_NEAR(s.F[c], quarter[c], 1e-10);
+    run.commands("run 150\n");
+    const auto after = run.gather();
+    ASSERT_EQ(before.size(), after.size());
+    // after a turn all points have the same displacement: that of the motion x' = u' + w x (x - o) from x = 0 on
+    double off = 0.0;
+    for (std::size_t k = 0; k < after.size(); k++)
+      for (int d = 0; d < 3; d++)
+        off = std::max(off,
+                       std::fabs(after[k].x[d] - before[k].x[d] - after[0].x[d] + before[0].x[d]));
+    EXPECT_LT(measured("off after one turn", off), 1.0e-10);
+  }
+}
+
+// displacement by a variable is exact at the end of each step, also when that changes, in both frames
+TEST(Motion, Displacement)
+{
+  for (const char *frame : {"updated", "total"}) {
+    const auto scene = space("lj", "f f f", "0 10 0 10 0 10", 1, 0.5) +
+        body("block 4 6 4 6 4 6", "density 1.0 neohookean 10.0 0.3",
+             std::string("1.0 frame ") + frame) +
+        "region all block INF INF INF INF INF INF\nvariable u equal 0.5*sin(2*time)\n"
+        "variable w equal -0.2*time^2\n"
+        "fix w all mpm/boundary region all stick displacement v_u NULL v_w\n"
+        "compute e all mpm/energy\nthermo_style custom step c_e\n";
+    Scene run(scene + "timestep 0.02\nrun 0\n");
+    const auto before = run.gather();
+    for (const double dt : {0.02, 0.013, 0.031})
+      run.commands(strprintf("timestep %g\nrun 20\n", dt));
+    const double t = 20 * (0.02 + 0.013 + 0.031);
+    const auto after = run.gather();
+    for (std::size_t k = 0; k < after.size(); k++) {
+      EXPECT_NEAR(after[k].x[0] - before[k].x[0], 0.5 * sin(2 * t), 1e-11);
+      EXPECT_NEAR(after[k].x[1] - before[k].x[1], 0.0, 1e-11);
+      EXPECT_NEAR(after[k].x[2] - before[k].x[2], -0.2 * t * t, 1e-11);
+    }
+    // reaction: mass times acceleration, of the means over the last two steps; work: what the ledger has
+    const double dt = 0.031, u[3] = {sin(2 * t), sin(2 * (t - dt)), sin(2 * (t - 2 * dt))};
+    EXPECT_NEAR(run.fix_vector("w", 6)[0], -8.0 * 0.5 * (u[0] - 2 * u[1] + u[2]) / (dt * dt), 1e-9);
+    EXPECT_NEAR(run.fix_vector("w", 6)[2], 8.0 * 0.4, 1e-9);
+    // torque about the origin, of the middle of the body at the start of the step
+    const double *const f = run.fix_vector("w", 6), x = 5.0 + 0.5 * u[1],
+                        z = 5.0 - 0.2 * (t - dt) * (t - dt);
+    EXPECT_NEAR(f[3], 5.0 * f[2], 1e-9);
+    EXPECT_NEAR(f[4], z * f[0] - x * f[2], 1e-9) << frame;
+    EXPECT_NEAR(f[5], -5.0 * f[0], 1e-9);
+    const double *const e = run.compute_vector();
+    EXPECT_NEAR(e[6], run.fix("w")->compute_scalar(), 1e-12);
+    EXPECT_NEAR(e[10], 0.0, 1e-12);
+  }
+}
+
+// a bar is twisted by the motion of its end, given in three ways: the same torque, that of the theory, and its work is what the bar stores
+TEST(Torsion, ReactionAndWork)
+{
+  // 8 long with a section of 2 x 2, G = 1: G J angle/length with J = 0.1406 a^4
+  const double angle = 0.2, theory = 0.1406 * 16.0 * angle / 8.0;
+  const struct {
+    const char *frame, *motion;
+  } cases[] = {{"total", "fix w all mpm/boundary region end stick rotate 0 5 5 1 0 0 v_rate\n"},
+               {"updated", "fix w all mpm/boundary region end stick rotate 0 5 5 1 0 0 v_rate\n"},
+               {"updated", "fix w all mpm/boundary region turning stick\n"}};
+  std::vector<double> torques;
+  for (const auto &c : cases) {
+    Scene run(space("lj", "f f f", "0 12 0 10 0 10", 1, 0.3) +
+              body("block 1 11 4 6 4 6", "density 1.0 neohookean 2.5 0.25",
+                   std::string("0.5 transfer apic frame ") + c.frame) +
+              // smoothly within 400, in which a wave runs to and fro 25 times
+              strprintf("variable angle equal %g*0.5*(1-cos(PI*time/400))\n"
+                        "variable rate equal %g*0.5*PI/400*sin(PI*time/400)\n",
+                        angle, angle) +
+              "region start block 0 2 INF INF INF INF\nregion end block 10 12 INF INF INF INF\n"
+              "region turning block 10 12 INF INF INF INF rotate v_angle 0 5 5 1 0 0\n"
+              "fix hold all mpm/boundary region start stick\n" +
+              c.motion +
+              "compute e all mpm/energy\nthermo_style custom step c_e\n"
+              "fix dt all mpm/dt 0.6 until 400\nrun 100000\n");
+    const double *const f = run.fix_vector("w", 6);
+    const double moved =
+        f[3] - (5.0 * f[2] - 5.0 * f[1]);    // about the axis, by the bar on the wall
+    torques.push_back(-moved);
+    const double work = run.fix("w")->compute_scalar();
+    EXPECT_NEAR(measured("torque over theory", -moved / theory), 1.0, 0.06) << c.frame << c.motion;
+    const double *const e = run.compute_vector();
+    EXPECT_NEAR(e[6] / work, 1.0, 1e-9);
+    EXPECT_NEAR(measured("stored energy over work", e[1] / work), 1.0, 0.02);
+    EXPECT_NEAR(measured("work over that of the torque", work / (-0.5 * moved * angle)), 1.0, 0.02);
+    EXPECT_LT(std::fabs(e[10]), 1e-10 * work);
+  }
+  for (const double torque : torques) EXPECT_NEAR(torque / torques[0], 1.0, 0.02);
+}
+
 // FLIP: material at a wall gains what the wall gains
 TEST(Motion, FlipFollowsTheWalls)
 {
@@ -1155,6 +1264,7 @@ static const WallsCase decomposition_cases[] = {
     {"transfer flip 1.0 scheme musl",
      "xlo ylo stick velocity v_speed 0 0 rotate 1 2 0 0 0 1 v_speed"},
     {"", "xlo ylo separate friction 0.3"},
+    {"frame total", "xlo ylo stick displacement v_speed 0 0 rotate 1 2 0 0 0 1 v_speed"},
     {"transfer flip 0.95", "xlo ylo slip friction 0.2 velocity v_speed 0 0"},
     {"", "xlo ylo slip", "region ramp slip friction 0.2"},
     {"", "xlo ylo slip", "region tool separate friction 0.2"},
@@ -1408,6 +1518,11 @@ timestep 0.001
        {"fix w all mpm/boundary ylo stick velocity 0 v_no 0\nrun 0", "does not exist"},
        {"fix w all mpm/boundary ylo stick velocity 0 v_text 0\nrun 0", "not equal-style"},
        {"fix w all mpm/boundary ylo stick rotate 0 0 0 0 0 0 1", "non-zero length"},
+       {"fix w all mpm/boundary ylo stick velocity 0 0 0 displacement 0 0 0", "one of them"},
+       {"fix w all mpm/boundary ylo slip displacement NULL 0 0", "allows NULL only"},
+       {"fix w all mpm/boundary ylo stick displacement NULL NULL NULL",
+        "leaves all components free"},
+       {"fix w all mpm/boundary ylo stick displacement v_no 0 0\nrun 0", "does not exist"},
        {"fix w all mpm/boundary ylo stick rotate 0 0 0 1 0 0 1", "along z in 2d"},
        {"fix w all mpm/boundary ylo stick rotate 0 0 0 0 0 1", "issing"},
        {"fix w all mpm/boundary ylo stick colour red", "Unknown fix mpm/boundary keyword"},

@@ -501,6 +501,42 @@ fix dt all mpm/dt 0.5 max 0.01
   EXPECT_EQ((double) runs.parallel.lmp->atom->natoms, (double) rest.size());
 }
 
+// water that has left a tank through a hole in its floor has the speed of the height that it has lost, but for what transfers
+// take where the flow turns round the edges of the hole (benchmark S5)
+SERIAL_TEST(Drain, SpeedOfTheHeight)
+{
+  Scene run(plane("si", "f f", "0 0.8 -0.3 0.7", 1, 0.01) + R"(
+fix grid all mpm 0.0125 transfer aflip 0.99
+fix m all mpm/material density 1000 eos tait 6e4 7
+region tank block 0 0.8 0 0.5 INF INF
+create_points 1 region tank ppc 2
+region slab block -1 2 -0.05 0 INF INF
+region hole block 0.35 0.45 INF INF INF INF side out
+region floor intersect 2 slab hole
+fix floor all mpm/boundary region floor slip
+fix walls all mpm/boundary xlo xhi slip
+fix g all gravity 9.81 vector 0 -1 0
+region drain block INF INF INF -0.2 INF INF
+fix out all mpm/absorb region drain
+fix dt all mpm/dt 0.4 until 0.3
+run 20000
+)");
+  const auto level = [&run]() {
+    double top = 0.0;
+    for (const auto &s : run.gather()) top = std::max(top, s.x[1]);
+    return top;
+  };
+  const double *out = run.fix_vector("out", 8);
+  const double mass = out[1], kinetic = out[5], before = level();
+  run.commands("fix dt all mpm/dt 0.4 until 0.4\nrun 20000\n");
+  out = run.fix_vector("out", 8);
+  const double height = 0.5 * (before + level()) + 0.2;
+  EXPECT_GT(out[1] - mass, 10.0);
+  const double speed = std::sqrt((out[5] - kinetic) / ((out[1] - mass) * 9.81 * height));
+  EXPECT_LT(measured("speed over that of the height", speed), 1.0);
+  EXPECT_GT(speed, 0.95);
+}
+
 // mistakes are told, with the remedy
 TEST(BadInput, IsRefused)
 {

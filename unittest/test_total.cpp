@@ -380,7 +380,7 @@ TEST(TotalInput, IsRefused)
   const Mistake cases[] = {
       {head + "fix grid all mpm 1.0 frame other\n", "must be one of updated total"},
       {total + "fix w all mpm/boundary zlo separate\nrun 1\n", "frame total"},
-      {total + "fix w all mpm/boundary zlo stick rotate 0 0 0 0 0 1 1\nrun 1\n", "frame total"},
+      {total + "fix w all mpm/boundary zlo slip rotate 0 0 0 0 0 1 1\nrun 1\n", "frame total"},
       {total +
            "variable d equal ramp(0,1)\nregion r block 0 8 0 8 0 1 move v_d NULL NULL\n"
            "fix w all mpm/boundary region r stick\nrun 1\n",

@@ -519,7 +519,7 @@ SERIAL_TEST(Traction, TellsOfLostPoints)
 {
   for (const char *load :
        {"mpm/traction region end pressure 1", "mpm/traction points 1 1 0 0 pressure 1",
-        "mpm/absorbing region end 30 20"}) {
+        "mpm/dashpot region end 30 20"}) {
     const auto said =
         lines_that_say(bar("", 0.4, "", "") + "fix load all " + load +
                            "\ntimestep 1e-5\nrun 1\nrun 1\nregion part block 0.9 1.1 0 0.2 0 0.2\n"

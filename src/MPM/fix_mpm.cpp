@@ -113,7 +113,7 @@ void FixMPM::init()
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR,
                "Fix mpm requires a box of constant size and shape: remove the fix that "
-               "changes it");
+               "changes it, or use fix mpm/deform to strain a periodic cell");
   if (comm->me == 0)
     for (const auto &text : MPMFieldOptions(field->options).declare(3).warnings())
       error->warning(FLERR, text);

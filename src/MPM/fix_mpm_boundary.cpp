@@ -125,6 +125,16 @@ Options MPMBoundaryOptions::declare(int dim)
                    "velocity of the wall, can be variables (see below); with *stick*, NULL leaves "
                    "a component free",
                    true)});
+  o.add("displacement",
+        {variables(velocity, 3, "ux uy uz", "distance",
+                   "displacement of the wall since this fix was defined, instead of its velocity; "
+                   "can be variables; with "
+                   "*stick*, NULL leaves a component free",
+                   true)})
+      .then([this] {
+        by_displacement = true;
+      })
+      .standard("none");
   o.add("rotate",
         {numbers(center, 3, "ox oy oz", ANY_NUMBER, "distance", "a point on the axis of rotation"),
          numbers(axis, 3, "ax ay az", ANY_NUMBER, "", "direction of the axis"),
@@ -142,6 +152,11 @@ Options MPMBoundaryOptions::declare(int dim)
          "leaves all components free"},
         {dim == 2 && (!velocity[2].variable.empty() || velocity[2].value != 0.0), "velocity",
          "must have the component 0 along z in 2d: {velocity}"},
+        {kind != STICK && !all_given(), "displacement", "allows NULL only with kind stick"},
+        {!velocity[0].given && !velocity[1].given && (dim == 2 || !velocity[2].given),
+         "displacement", "leaves all components free"},
+        {dim == 2 && (!velocity[2].variable.empty() || velocity[2].value != 0.0), "displacement",
+         "must have the component 0 along z in 2d: {displacement}"},
         {MathExtra::len3(axis) == 0.0, "rotate", "needs an axis of non-zero length"},
         {dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0), "rotate", "needs an axis along z in 2d"},
         {!all_given(), "rotate", "prescribes all components of the velocity"}};
@@ -186,6 +201,9 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
 
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, iarg);
+  if (options.given("velocity") && options.given("displacement"))
+    error->all(FLERR, options.where("displacement"),
+               "Fix mpm/boundary takes a velocity or a displacement: use one of them");
   const double length = MathExtra::len3(axis);
   for (int d = 0; d < 3 && rotating(); d++) axis[d] /= length;
 
@@ -194,10 +212,12 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
     if (!region)
       error->all(FLERR, 4, "Region {} for fix mpm/boundary does not exist: define it before",
                  region_id);
-    if ((options.given("rotate") || options.given("velocity")) && region->dynamic)
+    const bool driven = options.given("rotate") || options.given("velocity") ||
+        options.given("displacement");
+    if (driven && region->dynamic)
       error->all(FLERR,
                  "Fix mpm/boundary takes the velocity of region {} from its own motion: "
-                 "drop velocity and rotate, or the motion of the region",
+                 "drop velocity, displacement, and rotate, or the motion of the region",
                  region_id);
   }
 
@@ -246,25 +266,34 @@ void FixMPMBoundary::init()
 
   require_field(lmp, *this);
   const auto fields = MPMField::all(lmp);
-  const bool moves = std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
-    return !v.variable.empty() || v.value != 0.0;
-  });
+  const bool moves = rotating() ||
+      std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
+                       return !v.variable.empty() || v.value != 0.0;
+                     });
   nodes.clear();    // listed with the topology
   for (auto *field : fields) {
     if (!acts_on(*field)) continue;
     nodes.push_back({field, faces_on_lattice(*field), {}, {}, {}, {}});
     const std::string keeps = "its nodes keep to the same material wherever it goes: instead of ";
-    refuse_field(lmp, *this, *field,
-                 {{field->options.total && kind == SEPARATE, "frame total",
-                   keeps + "separate, use fix wall/gran or a pair style"},
-                  {field->options.total && (rotating() || region_moves()), "frame total",
-                   keeps + (rotating() ? "rotate" : "a moving region") +
-                       ", use stick velocity with variables"},
-                  {field->options.most_distorted > 0.0 && moves, "reference update",
-                   "the material that a wall with velocity holds would leave it with the first "
-                   "update: use reference fixed"},
-                  {field->options.stress_before() && decides(), "scheme usf and usavg",
-                   "separate and friction need the contact before it is known: use usl or musl"}});
+    refuse_field(
+        lmp, *this, *field,
+        {{field->options.total && kind == SEPARATE, "frame total",
+          keeps + "separate, use fix wall/gran or a pair style"},
+         {field->options.total && region_moves(), "frame total",
+          keeps + "a moving region, use stick velocity with variables, displacement, or rotate"},
+         {field->options.total && rotating() && kind != STICK, "frame total",
+          keeps + "slip on a wall that turns, use stick"},
+         {field->options.total && rotating() && field->options.stress_before(),
+          "scheme usf and usavg", "they ask for the rotation of the step before: use usl or musl"},
+         {field->options.total != nodes[0].field->options.total && rotating(), "frame total",
+          "the wall also turns fields of frame updated, whose nodes are elsewhere: use a fix "
+          "mpm/boundary with "
+          "keyword field for each"},
+         {field->options.most_distorted > 0.0 && moves, "reference update",
+          "the material that a wall with velocity holds would leave it with the first "
+          "update: use reference fixed"},
+         {field->options.stress_before() && decides(), "scheme usf and usavg",
+          "separate and friction need the contact before it is known: use usl or musl"}});
   }
   if (nodes.empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
@@ -1019,6 +1048,24 @@ void FixMPMBoundary::Wall::rotate(double angle, const double *u, const double *o
 }
 
 /* ----------------------------------------------------------------------
+   in the total frame, of nodes that have come from X to x = X + T X + m: s + G (x - o) as s + G (m - o) + (G + G T) X
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::Wall::refer()
+{
+  if (uniform) return;
+  double product[3][3];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      shift[i] += gradient[i][j] * (moved[j] - origin[j]);
+      product[i][j] = gradient[i][j];
+      for (int k = 0; k < 3; k++) product[i][j] += gradient[i][k] * turned[k][j];
+    }
+  std::copy_n(product[0], 9, gradient[0]);
+  std::fill_n(origin, 3, 0.0);
+}
+
+/* ----------------------------------------------------------------------
    velocity that the material now at x, at the end of the step, has had in it. It came from y,
    x = y + dt (s + G (y - o)): with R = 1 + dt G, s + G R^T (x - o - dt s), G R^T = -G^T.
 ------------------------------------------------------------------------- */
@@ -1105,9 +1152,22 @@ void FixMPMBoundary::update_motion(double dt)
 
   evaluate_in_step(lmp, variables, [&] {
     if (region_moves()) region->prematch();
-    for (int d = 0; d < 3; d++) wall.shift[d] = evaluate(lmp, velocity[d]);
+    for (int d = 0; d < 3; d++) {
+      const double value = evaluate(lmp, velocity[d]);
+      wall.shift[d] = by_displacement ? (value - past.displaced[d]) / dt : value;
+      past.displaced[d] = value;
+    }
     if (rotating()) wall.rotate(evaluate(lmp, rate) * dt, axis, center, dt);
   });
+  if (nodes[0].field->options.total) {
+    std::copy_n(past.turned[0], 9, wall.turned[0]);
+    MathExtra::copy3(past.moved, wall.moved);
+    wall.refer();
+    for (int i = 0; i < 3; i++) {
+      past.moved[i] += dt * wall.shift[i];
+      for (int j = 0; j < 3; j++) past.turned[i][j] += dt * wall.gradient[i][j];
+    }
+  }
   if (region_moves()) {
     const auto motion = motion_of(region);
     for (int d = 0; d < 3; d++) wall.shift[d] = (*motion[d] - old[d]) / dt;
@@ -1523,8 +1583,9 @@ void FixMPMBoundary::count_moment(const Grid &grid, int64_t node, const double *
 
 void FixMPMBoundary::add_moment(const Grid &grid, int64_t node, const double *push)
 {
-  double x[3], moment[3];
-  grid.node_position(node, x);
+  double X[3], x[3], moment[3];
+  grid.node_position(node, X);
+  for (int i = 0; i < 3; i++) x[i] = X[i] + wall.moved[i] + MathExtra::dot3(wall.turned[i], X);
   MathExtra::cross3(x, push, moment);
   for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
 }

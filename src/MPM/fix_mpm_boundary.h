@@ -43,6 +43,7 @@ struct MPMBoundaryOptions {
   Kind kind = STICK;
   double friction = 0.0;
   MPM_NS::NumberOrVariable velocity[3], rate;    ///< of those not given, material is free
+  bool by_displacement = false;                  ///< what is in velocity is a displacement
   double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
   std::string field_id;                                             ///< empty: all fields
   MPMFrictionHeatOptions heat;
@@ -217,8 +218,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     double shift[3], gradient[3][3], origin[3];
     double before[3];    // velocity in the last step
     bool uniform;
+    double turned[3][3], moved[3];    // nodes of the total frame at X are at X + turned X + moved
 
     void rotate(double angle, const double *axis, const double *center, double dt);
+    void refer();
     Wall at_end_of_step(double dt) const;
     void velocity(const MPMField &, int64_t node, double *v) const;
     void velocity(const double *x, double *v) const;
@@ -230,11 +233,13 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     double limit[3];    // of old velocities relative to the wall, where these are constrained, too
     bool hold[3];       // are these?
   };
-  struct Past {          // of the steps before, as restart files keep it, without padding
-    double work;         // on the body, this rank's share; in files that of all, as energy
-    double shift[3];     // velocity of the wall in the last step, when it does not turn
-    double region[4];    // shift and angle of the region at the end of the last step
-    int64_t acted;       // there was a last step
+  struct Past {             // of the steps before, as restart files keep it, without padding
+    double work;            // on the body, this rank's share; in files that of all, as energy
+    double shift[3];        // velocity of the wall in the last step, when it does not turn
+    double region[4];       // shift and angle of the region at the end of the last step
+    double displaced[3];    // what the displacement was by then
+    double turned[3][3], moved[3];    // as in Wall, by then
+    int64_t acted;                    // there was a last step
   };
 
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)

@@ -44,6 +44,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  bool ends_runs() const { return stops; }
 
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;

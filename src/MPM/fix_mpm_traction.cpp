@@ -83,14 +83,7 @@ Options MPMTractionOptions::declare(int dim)
         has_pressure = true;
       })
       .standard("none");
-  o.add("spacing",
-        {number(spacing, "s", POSITIVE, "distance",
-                "of the layers of points along the normal of the region")})
-      .standard("cube root of the volume of a point, in 2d square root of its area");
-  o.add("area",
-        {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
-                "area of the surface of the region, if it is known: shares of points are scaled")})
-      .standard("the sum of the shares of points");
+  MPMFace::declare(o, spacing, area);
   o.refuse([=] {
     const bool of_region = surface == REGION;
     return OptionRules{
@@ -214,16 +207,10 @@ void FixMPMTraction::define()
       }
   }
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
-  if (all[1] == 0.0 && surface == REGION)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/traction {} finds no points of group {} below the surface of region {}: the "
-        "body must be inside of the region, next to its surface",
-        id, group->names[igroup], region);
-  if (all[1] == 0.0)
+  if (all[1] == 0.0 && !face)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/traction {} has no points in group {}", id,
                group->names[igroup]);
-  if (face) face->check("Fix mpm/traction " + std::string(id), area > 0.0);
+  if (face) face->check("Fix mpm/traction " + std::string(id), igroup, area > 0.0);
   const double scale = given > 0.0 ? given / all[0] : 1.0;
   for (int i = 0; i < atom->nlocal; i++) {
     rows[i][AREA] *= scale;

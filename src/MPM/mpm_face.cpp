@@ -16,12 +16,14 @@
 #include "atom.h"
 #include "comm.h"
 #include "error.h"
+#include "group.h"
 #include "region.h"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
+using namespace MPM_NS;
 
 static constexpr double DEEPEST = 3.0;    // point with a share
 
@@ -29,6 +31,19 @@ static constexpr double DEEPEST = 3.0;    // point with a share
 // layers below a plane; and what is told of these
 static constexpr double TOO_DEEP = 0.25, TOO_DEEP_CURVED = 0.6;
 static constexpr double TOO_UNEQUAL = 0.05, UNEQUAL = 0.01;
+
+void MPMFace::declare(Options &o, double &spacing, double &area)
+{
+  using namespace option;
+  o.add("spacing",
+        {number(spacing, "s", POSITIVE, "distance",
+                "of the layers of points along the normal of the region")})
+      .standard("cube root of the volume of a point, in 2d square root of its area");
+  o.add("area",
+        {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
+                "area of the surface of the region, if it is known: shares of points are scaled")})
+      .standard("the sum of the shares of points");
+}
 
 MPMFace::MPMFace(LAMMPS *lmp, Region *region, double spacing) :
     Pointers(lmp), region(region), spacing(spacing)
@@ -101,13 +116,19 @@ MPMFace::Judgement MPMFace::judge() const
           all[1] / area, std::fabs((all[6] - all[7]) / area)};
 }
 
-void MPMFace::check(const std::string &user, bool area_known) const
+void MPMFace::check(const std::string &user, int igroup, bool area_known) const
 {
-  double total;
-  MPI_Allreduce(sums, &total, 1, MPI_DOUBLE, MPI_SUM, world);
+  double all[3];    // as in sums
+  MPI_Allreduce(sums, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  if (all[2] == 0.0)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "{} finds no points of group {} below the surface of region {}: the body must be inside "
+        "of the region, next to its surface",
+        user, group->names[igroup], region->id);
   const Judgement layers = judge();
   const double unequal = layers.flat && !area_known ? layers.unequal : 0.0;
-  if (!(total > 0.0) || unequal > TOO_UNEQUAL ||
+  if (!(all[0] > 0.0) || unequal > TOO_UNEQUAL ||
       std::fabs(layers.depth) > (layers.flat ? TOO_DEEP : TOO_DEEP_CURVED))
     error->all(
         FLERR, Error::NOLASTLINE,

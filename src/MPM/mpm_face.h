@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_FACE_H
 #define LMP_MPM_FACE_H
 
+#include "declare/option.h"
 #include "pointers.h"
 
 #include <functional>
@@ -34,6 +35,9 @@ class Region;
  */
 class MPMFace : protected Pointers {
  public:
+  /** Adds the keywords spacing and area to the options of a style that has a load on a surface; 0: not given. */
+  static void declare(MPM_NS::Options &, double &spacing, double &area);
+
   /** spacing: of the layers; 0: that of points in a cube, the cube root of their volume. */
   MPMFace(class LAMMPS *, Region *, double spacing);
 
@@ -63,9 +67,10 @@ class MPMFace : protected Pointers {
   /** Collective. Below a plane, depth and unequal are zero where there are at least three layers at that distance; below a surface of
    *  radius R the depth is 11/3 s/R, as deeper layers of a ball are smaller. */
   Judgement judge() const;
-  /** Collective. Stops with an error, or warns, where these are not what they should be; area_known: sums of shares do not
-   *  matter. user: what looks for the surface, for example fix mpm/traction load. */
-  void check(const std::string &user, bool area_known) const;
+  /** Collective. Stops with an error where there are no points at all, and with one or a warning where layers are not what they
+   *  should be; area_known: sums of shares do not matter. user: what looks for the surface, for example fix mpm/traction load,
+   *  in which group. */
+  void check(const std::string &user, int igroup, bool area_known) const;
 
   /** Add to the Kirchhoff stress tau [6] of a point what a traction T on a surface with the unit normal n has besides forces:
    *  share is W, in units of the stress, times J over the present area of the surface for that of T. */

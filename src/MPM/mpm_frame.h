@@ -13,6 +13,8 @@
 #include "mpm_field.h"
 #include "mpm_rows.h"
 
+#include <algorithm>
+
 namespace LAMMPS_NS {
 
 /** The configuration that the nodes belong to, and how points strain in it. This class is the updated
@@ -66,6 +68,16 @@ class MPMFrame : protected Pointers {
   }
   /** Gradients at the start of a step from those of another time in it, see mpm_frame.cpp. */
   virtual void shift_gradients(int n, double shift, double *L) const;
+  /** [9], row-major: rate of a deformation gradient that all points have besides what they get of the nodes; null: there is none.
+   *  Set by the init_physics() of who gives it (fix mpm/deform), of a total frame alone. */
+  const double *mean_rate = nullptr;
+  /** Does it strain them in this step? */
+  bool strains_on_average() const
+  {
+    return mean_rate && std::any_of(mean_rate, mean_rate + 9, [](double r) {
+             return r != 0.0;
+           });
+  }
   /** L is not yet what the laws need: gradients must go through refer_gradients(). */
   virtual bool refers() const { return false; }
   virtual void refer_gradients(int /*first*/, int /*n*/, double * /*L*/) const {}

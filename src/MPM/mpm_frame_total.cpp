@@ -132,13 +132,16 @@ static void multiply(int dim, double *A, const double *M)
 
 /* ----------------------------------------------------------------------
    gradients with respect to X, column-major, of the points first ... become those with respect to
-   the undeformed body: L <- L R
+   the undeformed body: L <- L R, with the mean motion that nodes do not have
 ------------------------------------------------------------------------- */
 
 void MPMFrameTotal::refer_gradients(int first, int n, double *L) const
 {
   const int dim = field.lattice.dim;
   for (int p = 0; p < n && R; p++) multiply(dim, L + dim * dim * p, R[first + p]);
+  for (int p = 0; p < n && mean_rate; p++, L += dim * dim)
+    for (int c = 0; c < dim; c++)
+      for (int r = 0; r < dim; r++) L[dim * c + r] += mean_rate[3 * r + c];
 }
 
 /** The change of volume of I + A = (F + dt L) F^-1. */

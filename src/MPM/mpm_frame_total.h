@@ -30,7 +30,7 @@ class MPMFrameTotal : public MPMFrame {
   bool changes_forces() const override { return true; }
   void forces(MPM_NS::PointRows &, int first, int n, ForceRows &) const override;
   void shift_gradients(int, double, double *) const override {}
-  bool refers() const override { return (bool) R; }
+  bool refers() const override { return R || mean_rate; }
   void refer_gradients(int first, int n, double *L) const override;
   double volume_change(int i, const double *L, double dt) const override;
   void lattice_F(int i, double F[3][3]) const override;

@@ -17,10 +17,11 @@
 #include "create_points.h"
 #include "create_points_image.h"
 #include "fix_mpm_absorb.h"
-#include "fix_mpm_absorbing.h"
 #include "fix_mpm_airbag.h"
 #include "fix_mpm_boundary.h"
 #include "fix_mpm_contact.h"
+#include "fix_mpm_dashpot.h"
+#include "fix_mpm_deform.h"
 #include "fix_mpm_dt.h"
 #include "fix_mpm_elements.h"
 #include "fix_mpm_emit.h"
@@ -75,7 +76,8 @@ std::map<std::string, std::string> files()
   add("fix_mpm_relax", MPMRelaxOptions().declare());
   add("fix_mpm_rigid", MPMRigidOptions().declare());
   add("fix_mpm_surface", MPMSurfaceOptions().declare());
-  add("fix_mpm_absorbing", MPMAbsorbingOptions().declare(3));
+  add("fix_mpm_dashpot", MPMDashpotOptions().declare(3));
+  add("fix_mpm_deform", MPMDeformOptions().declare(3));
   add("fix_mpm_traction", MPMTractionOptions().declare(3));
   add("fix_mpm_emit", MPMEmitOptions().declare(3));
   add("fix_mpm_absorb", MPMAbsorbOptions().declare());

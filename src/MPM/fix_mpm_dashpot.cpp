@@ -33,7 +33,7 @@
    a constant velocity. What nodes next to the surface lack in the first step so as not to be accelerated is a part of the support, too, at the marks.
 ------------------------------------------------------------------------- */
 
-#include "fix_mpm_absorbing.h"
+#include "fix_mpm_dashpot.h"
 
 #include "math/matrix.h"
 #include "mpm_face.h"
@@ -49,7 +49,6 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
-#include "group.h"
 #include "modify.h"
 
 #include <algorithm>
@@ -66,13 +65,13 @@ static constexpr int DEPTH =
     3;    // cells below the surface whose nodes count for what the support lacks
 
 /* ----------------------------------------------------------------------
-   fix ID group mpm/absorbing region REG cp cs keyword values ...
+   fix ID group mpm/dashpot region REG cp cs keyword values ...
 ------------------------------------------------------------------------- */
 
-Options MPMAbsorbingOptions::declare(int dim)
+Options MPMDashpotOptions::declare(int dim)
 {
   using namespace option;
-  Options o("fix mpm/absorbing");
+  Options o("fix mpm/dashpot");
   o.argument(word(surface, {{"region", REGION, "", {text(region, "REG", "")}}}, "surface"));
   o.argument(number(speed_p, "cp", POSITIVE, "velocity", ""));
   o.argument(number(speed_s, "cs", NOT_NEGATIVE, "velocity", ""));
@@ -91,14 +90,7 @@ Options MPMAbsorbingOptions::declare(int dim)
         {number(relax, "tau", POSITIVE, "time",
                 "springs besides the dashpots, of stiffness rho c/tau for each area")})
       .standard("none");
-  o.add("spacing",
-        {number(spacing, "s", POSITIVE, "distance",
-                "of the layers of points along the normal of the region")})
-      .standard("cube root of the volume of a point, in 2d square root of its area");
-  o.add("area",
-        {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
-                "area of the surface of the region, if it is known: shares of points are scaled")})
-      .standard("the sum of the shares of points");
+  MPMFace::declare(o, spacing, area);
   o.refuse([=] {
     return OptionRules{{speed_s >= speed_p, "",
                         "has a speed of shear waves that is not below that of pressure waves"},
@@ -108,7 +100,7 @@ Options MPMAbsorbingOptions::declare(int dim)
   return o;
 }
 
-FixMPMAbsorbing::FixMPMAbsorbing(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
+FixMPMDashpot::FixMPMDashpot(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
@@ -122,25 +114,24 @@ FixMPMAbsorbing::FixMPMAbsorbing(LAMMPS *lmp, int narg, char **arg) : FixMPMStat
   keep_arrays();
 }
 
-void FixMPMAbsorbing::init()
+void FixMPMDashpot::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/absorbing {} needs a fix mpm", id);
-  for (auto &v : incoming) find_variable(lmp, v, "fix mpm/absorbing " + std::string(id));
+  require_field(lmp, *this);
+  for (auto &v : incoming) find_variable(lmp, v, "fix mpm/dashpot " + std::string(id));
   if (!defined && !domain->get_region_by_id(region))
-    error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/absorbing {} does not exist",
-               region, id);
+    error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/dashpot {} does not exist", region,
+               id);
   static const char *const WATER[] = {"pore", "mixture", "incompressible"};
   for (const char *style : WATER)
     if (!modify->get_fix_by_style(std::string("^mpm/") + style + "$").empty())
       error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/absorbing {} takes waves of one material, and there is a fix mpm/{}: use "
+                 "Fix mpm/dashpot {} takes waves of one material, and there is a fix mpm/{}: use "
                  "faces further away, or soil without water",
                  id, style);
 }
 
 /** The nodes are those of this run. */
-void FixMPMAbsorbing::init_physics(MPMPlan &plan)
+void FixMPMDashpot::init_physics(MPMPlan &plan)
 {
   bodies.clear();
   for (auto *field : plan.fields) {
@@ -157,7 +148,7 @@ void FixMPMAbsorbing::init_physics(MPMPlan &plan)
   }
 }
 
-FixMPMAbsorbing::Body &FixMPMAbsorbing::body_of(const MPMField &field)
+FixMPMDashpot::Body &FixMPMDashpot::body_of(const MPMField &field)
 {
   return *std::find_if(bodies.begin(), bodies.end(), [&](const Body &body) {
     return body.field == &field;
@@ -168,7 +159,7 @@ FixMPMAbsorbing::Body &FixMPMAbsorbing::body_of(const MPMField &field)
    what this run starts with: the surface, where points are now, and the stress that it bears
 ------------------------------------------------------------------------- */
 
-void FixMPMAbsorbing::setup(int vflag)
+void FixMPMDashpot::setup(int vflag)
 {
   if (!defined) define();
   post_run();
@@ -176,14 +167,14 @@ void FixMPMAbsorbing::setup(int vflag)
 }
 
 /** Have points of the surface been deleted? */
-void FixMPMAbsorbing::post_run()
+void FixMPMDashpot::post_run()
 {
   int here = 0;
   for (int i = 0; i < atom->nlocal; i++) here += rows[i][SHARE] != 0.0 || rows[i][AREA] != 0.0;
-  MPMFace::note_lost(lmp, "Fix mpm/absorbing " + std::string(id), here, known);
+  MPMFace::note_lost(lmp, "Fix mpm/dashpot " + std::string(id), here, known);
 }
 
-void FixMPMAbsorbing::define()
+void FixMPMDashpot::define()
 {
   const auto *const points = MPMPoints::get(atom);
   double mine[2] = {0.0, 0.0}, all[2];    // area, points with a share
@@ -214,13 +205,7 @@ void FixMPMAbsorbing::define()
     });
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(&most, &most_of_all, 1, MPI_DOUBLE, MPI_MAX, world);
-  if (all[1] == 0.0)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/absorbing {} finds no points of group {} below the surface of region {}: the "
-        "body must be inside of the region, next to its surface",
-        id, group->names[igroup], region);
-  face.check("Fix mpm/absorbing " + std::string(id), area > 0.0);
+  face.check("Fix mpm/dashpot " + std::string(id), igroup, area > 0.0);
   const double scale = area > 0.0 ? area / all[0] : 1.0;
   for (int i = 0; i < atom->nlocal; i++)
     for (const int k : {(int) AREA, (int) SHARE, (int) STRESS}) rows[i][k] *= scale;
@@ -228,7 +213,7 @@ void FixMPMAbsorbing::define()
   defined = true;
   for (auto &body : bodies) body.field->map->valid = false;    // marks may need other blocks
   if (comm->me == 0)
-    utils::logmesg(lmp, "Fix mpm/absorbing {}: area {:.8g} of {:.0f} points\n", id, all[0] * scale,
+    utils::logmesg(lmp, "Fix mpm/dashpot {}: area {:.8g} of {:.0f} points\n", id, all[0] * scale,
                    all[1]);
 }
 
@@ -236,7 +221,7 @@ void FixMPMAbsorbing::define()
    blocks around marks: points of other ranks may be the only ones that reach these
 ------------------------------------------------------------------------- */
 
-template <class F> void FixMPMAbsorbing::visit_marks(const Body &body, const F &f) const
+template <class F> void FixMPMDashpot::visit_marks(const Body &body, const F &f) const
 {
   const auto places = body.field->frame->places();
   for (const int i : body.points) {
@@ -247,7 +232,7 @@ template <class F> void FixMPMAbsorbing::visit_marks(const Body &body, const F &
   }
 }
 
-void FixMPMAbsorbing::extend_topology(MPMField &field)
+void FixMPMDashpot::extend_topology(MPMField &field)
 {
   Body &body = body_of(field);
   Grid &grid = field.grid;
@@ -276,7 +261,7 @@ void FixMPMAbsorbing::extend_topology(MPMField &field)
   body.blocks.erase(std::unique(body.blocks.begin(), body.blocks.end()), body.blocks.end());
 }
 
-bool FixMPMAbsorbing::looks_at_all(const MPMField &field, const Grid::Block &block) const
+bool FixMPMDashpot::looks_at_all(const MPMField &field, const Grid::Block &block) const
 {
   return std::any_of(bodies.begin(), bodies.end(), [&](const Body &body) {
     return body.field == &field &&
@@ -284,14 +269,14 @@ bool FixMPMAbsorbing::looks_at_all(const MPMField &field, const Grid::Block &blo
   });
 }
 
-void FixMPMAbsorbing::topology_changed(MPMField &field)
+void FixMPMDashpot::topology_changed(MPMField &field)
 {
   body_of(field).canonical = field.grid.canonical();
 }
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMAbsorbing::place_marks(Body &body)
+void FixMPMDashpot::place_marks(Body &body)
 {
   const MPMField &field = *body.field;
   const auto &lattice = field.lattice;
@@ -327,7 +312,7 @@ void FixMPMAbsorbing::place_marks(Body &body)
 }
 
 /** Calls f(point, node, function) for the nodes around the places of marks and below them, a cell after the other. */
-template <class F> void FixMPMAbsorbing::visit_below(const Body &body, const F &f) const
+template <class F> void FixMPMDashpot::visit_below(const Body &body, const F &f) const
 {
   const MPMField &field = *body.field;
   const auto &lattice = field.lattice;
@@ -358,10 +343,10 @@ template <class F> void FixMPMAbsorbing::visit_below(const Body &body, const F &
    fixes meet at an edge, the marks of all of them share, or else both would bear it
 ------------------------------------------------------------------------- */
 
-void FixMPMAbsorbing::complete_supports(double dt)
+void FixMPMDashpot::complete_supports(double dt)
 {
-  std::vector<FixMPMAbsorbing *> all;
-  for (auto *other : find_fixes<FixMPMAbsorbing>(lmp))
+  std::vector<FixMPMDashpot *> all;
+  for (auto *other : find_fixes<FixMPMDashpot>(lmp))
     if (other->fresh) all.push_back(other);
   for (std::size_t b = 0; b < bodies.size(); b++) {
     MPMField &field = *bodies[b].field;
@@ -387,7 +372,7 @@ void FixMPMAbsorbing::complete_supports(double dt)
    sums of A Z at the nodes: xx yy zz xy xz yz, over the mass rates of their velocities
 ------------------------------------------------------------------------- */
 
-void FixMPMAbsorbing::find_rates(Body &body)
+void FixMPMDashpot::find_rates(Body &body)
 {
   static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
   const int dim = body.field->lattice.dim;
@@ -410,7 +395,7 @@ void FixMPMAbsorbing::find_rates(Body &body)
    weights of the nodes of a mark, and a along its normal and in its plane. False where no node can take an impulse
 ------------------------------------------------------------------------- */
 
-bool FixMPMAbsorbing::weigh(Body &body, const Mark &mark, double dt, double *damping) const
+bool FixMPMDashpot::weigh(Body &body, const Mark &mark, double dt, double *damping) const
 {
   Grid &grid = body.field->grid;
   const int dim = grid.lattice.dim;
@@ -462,7 +447,7 @@ bool FixMPMAbsorbing::weigh(Body &body, const Mark &mark, double dt, double *dam
    impulses of the dashpots on the nodes
 ------------------------------------------------------------------------- */
 
-void FixMPMAbsorbing::push(Body &body, double dt)
+void FixMPMDashpot::push(Body &body, double dt)
 {
   Grid &grid = body.field->grid;
   const int dim = grid.lattice.dim;
@@ -517,7 +502,7 @@ void FixMPMAbsorbing::push(Body &body, double dt)
    Work of impulses is that of the mean of the old and the new velocity, as for forces
 ------------------------------------------------------------------------- */
 
-void FixMPMAbsorbing::apply(Body &body, double dt)
+void FixMPMDashpot::apply(Body &body, double dt)
 {
   Grid &grid = body.field->grid;
   auto &ledger = body.field->ledger;
@@ -549,7 +534,7 @@ void FixMPMAbsorbing::apply(Body &body, double dt)
               dt * body.nodes[k].weight * grid.record(body.nodes[k].number)[d];
 }
 
-void FixMPMAbsorbing::act(double dt, Stage stage)
+void FixMPMDashpot::act(double dt, Stage stage)
 {
   if (stage != STEP) return;
   std::fill_n(sums, 3, 0.0);
@@ -567,7 +552,7 @@ void FixMPMAbsorbing::act(double dt, Stage stage)
    the support, and waves that come in at this time, around which the velocities of nodes are half a step before and behind
 ------------------------------------------------------------------------- */
 
-void FixMPMAbsorbing::post_force(int)
+void FixMPMDashpot::post_force(int)
 {
   const bool any = std::any_of(incoming, incoming + 3, [](const NumberOrVariable &v) {
     return !v.variable.empty();
@@ -589,14 +574,14 @@ void FixMPMAbsorbing::post_force(int)
   }
 }
 
-bool FixMPMAbsorbing::adds_stress(const MPMField &, int first, int last) const
+bool FixMPMDashpot::adds_stress(const MPMField &, int first, int last) const
 {
   for (int i = first; i < last && supports; i++)
     if (rows[i][STRESS] != 0.0) return true;
   return false;
 }
 
-void FixMPMAbsorbing::add_stress(const MPMField &field, int first, int n, double *tau) const
+void FixMPMDashpot::add_stress(const MPMField &field, int first, int n, double *tau) const
 {
   for (int i = first; i < first + n && supports; i++, tau += 6) {
     const double *const row = rows[i];
@@ -608,14 +593,14 @@ void FixMPMAbsorbing::add_stress(const MPMField &field, int first, int n, double
 
 /* ---------------------------------------------------------------------- */
 
-double FixMPMAbsorbing::compute_scalar()
+double FixMPMDashpot::compute_scalar()
 {
   double all;
   MPI_Allreduce(&work, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all * force->mvv2e;
 }
 
-double FixMPMAbsorbing::compute_vector(int k)
+double FixMPMDashpot::compute_vector(int k)
 {
   if (!sums_known) MPI_Allreduce(sums, all_sums, NSUM, MPI_DOUBLE, MPI_SUM, world);
   sums_known = true;
@@ -623,7 +608,7 @@ double FixMPMAbsorbing::compute_vector(int k)
   return k < 6 ? all_sums[k] + all_sums[4 + k] : all_sums[k];
 }
 
-double FixMPMAbsorbing::memory_usage()
+double FixMPMDashpot::memory_usage()
 {
   double bytes = FixMPMState::memory_usage();
   for (const auto &body : bodies)
@@ -632,7 +617,7 @@ double FixMPMAbsorbing::memory_usage()
   return bytes;
 }
 
-void FixMPMAbsorbing::write_restart(FILE *fp)
+void FixMPMDashpot::write_restart(FILE *fp)
 {
   std::vector<double> totals = {work};
   write_totals(fp, world, totals,
@@ -640,7 +625,7 @@ void FixMPMAbsorbing::write_restart(FILE *fp)
   work = totals[0];
 }
 
-void FixMPMAbsorbing::restart(char *buf)
+void FixMPMDashpot::restart(char *buf)
 {
   const auto *const list = (const double *) buf;
   work = comm->me == 0 ? list[0] : 0.0;

@@ -8,12 +8,12 @@
 
 #ifdef FIX_CLASS
 // clang-format off
-FixStyle(mpm/absorbing,FixMPMAbsorbing);
+FixStyle(mpm/dashpot,FixMPMDashpot);
 // clang-format on
 #else
 
-#ifndef LMP_FIX_MPM_ABSORBING_H
-#define LMP_FIX_MPM_ABSORBING_H
+#ifndef LMP_FIX_MPM_DASHPOT_H
+#define LMP_FIX_MPM_DASHPOT_H
 
 #include "declare/option.h"
 #include "mpm_node_action.h"
@@ -26,7 +26,7 @@ FixStyle(mpm/absorbing,FixMPMAbsorbing);
 #include <vector>
 
 namespace LAMMPS_NS {
-struct MPMAbsorbingOptions {
+struct MPMDashpotOptions {
   enum Surface { REGION };
 
   Surface surface = REGION;
@@ -42,13 +42,13 @@ struct MPMAbsorbingOptions {
 
 /** Surfaces of bodies behind which the body goes on without end: dashpots take the waves that arrive (Lysmer and
  *  Kuhlemeyer), bring others in, and what the far side bears at the start is held. */
-class FixMPMAbsorbing :
+class FixMPMDashpot :
     public FixMPMState,
     public MPMNodeAction,
     public MPMPhysics,
-    private MPMAbsorbingOptions {
+    private MPMDashpotOptions {
  public:
-  FixMPMAbsorbing(class LAMMPS *, int, char **);
+  FixMPMDashpot(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::POST_FORCE; }
   void init() override;
   void setup(int) override;
