@@ -619,7 +619,7 @@ PARAMETER_TEST(
          {"PixelsAndSpacing", "1 image GRAY pixel 0.1 sites pixels spacing 1",
           "leave out sites pixels"},
          {"Unknown", "1 image GRAY pixel 0.1 blur 1", "blur"},
-         {"Style", "1 picture GRAY", "expected region, box, image, mesh, or elements"}})))
+         {"Style", "1 picture GRAY", "expected region, box, image, mesh, elements, or table"}})))
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const ScratchFile file("gray.pgm", pgm(Pixels(10, 9, 1, [](int i, int j, int) {

@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "atom_vec.h"
 #include "comm.h"
+#include "create_points_table.h"
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
@@ -83,6 +84,8 @@ void CreatePoints::command(int narg, char **arg)
   const bool mesh = strcmp(arg[1], "mesh") == 0 || strcmp(arg[1], "elements") == 0;
   if (mesh) {
     parse_mesh(narg, arg);
+  } else if (strcmp(arg[1], "table") == 0) {
+    parse_table(narg, arg);
   } else {
     if (strcmp(arg[1], "image") == 0)
       parse_image(narg, arg);
@@ -104,12 +107,13 @@ void CreatePoints::command(int narg, char **arg)
 
   const bigint natoms_previous = atom->natoms;
   const int nlocal_previous = atom->nlocal;
-  const bigint npoints = mesh ? make_mesh_points() : make_points();
+  const bigint npoints = mesh ? make_mesh_points() : table ? make_table_points() : make_points();
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
   set_domains(nlocal_previous);
   set_fields(nlocal_previous);
   if (mesh_fields) mesh_fields->set(nlocal_previous);
+  set_columns(nlocal_previous);
 
   bigint nblocal = atom->nlocal;
   MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -136,25 +140,25 @@ void CreatePoints::command(int narg, char **arg)
   MPI_Reduce(&made, &all_made, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   const std::string types = mesh_fields ? "type" + mesh_fields->types()
                                         : types_made(nlocal_previous);
-  const bool surface = cut || (image && image->surface);
+  const bool uneven = cut || table || (image && image->surface);
   if (comm->me == 0) {
     const bool flat = domain->dimension == 2;
     utils::logmesg(lmp, "Created {} material points of {}\n", npoints, types);
-    if (!mesh)
+    if (!mesh && !table)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
     if (fix && fix->options.axisymmetric)
       utils::logmesg(
           lmp, "  area = {:.8g} per {}, volume = {:.8g} in total (all around the axis)\n", volume,
-          cut           ? "whole cell of a point"
-              : surface ? "site"
-                        : "point",
+          cut          ? "whole cell of a point"
+              : uneven ? "site"
+                       : "point",
           all_made);
     else
       utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n",
-                     surface ? all_made / npoints : volume,
-                     mesh || surface ? "on average" : "per point",
-                     surface ? all_made : npoints * volume, flat ? " (per unit thickness)" : "");
+                     uneven ? all_made / npoints : volume,
+                     mesh || uneven ? "on average" : "per point",
+                     uneven ? all_made : npoints * volume, flat ? " (per unit thickness)" : "");
     utils::logmesg(lmp, "  create_points CPU = {:.3f} seconds\n", platform::walltime() - start);
   }
 }
@@ -231,9 +235,10 @@ void CreatePoints::parse(int narg, char **arg)
     region->prematch();
     iarg = 3;
   } else if (strcmp(arg[1], "box") != 0) {
-    error->all(FLERR, 1,
-               "Unknown create_points option {}: expected region, box, image, mesh, or elements",
-               arg[1]);
+    error->all(
+        FLERR, 1,
+        "Unknown create_points option {}: expected region, box, image, mesh, elements, or table",
+        arg[1]);
   }
 
   Options options = declare(domain->dimension, atom->radius_flag);

@@ -126,9 +126,13 @@ class CreatePoints : public Command, private CreatePointsOptions {
   std::vector<Corners> corners;    // and the domains of these; at last those of the points here
   std::unique_ptr<class MPMMeshFields> mesh_fields;    // of the points of a mesh, else null
 
+  std::unique_ptr<class CreatePointsTable> table;    // null: none
+  std::vector<double> table_rows;                    // of the points made here
+
   void parse(int, char **);
   void parse_mesh(int, char **);
   void parse_image(int, char **);
+  void parse_table(int, char **);
   void place_sites(const MPM_NS::Options &);
   void find_group(const MPM_NS::Options &, const std::string &name);
   void find_nodes(const MPM_NS::Mesh &, const MPMThinBody &, const char *file);
@@ -145,9 +149,11 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void check_overlap();
   bigint make_points();
   bigint make_mesh_points();
+  bigint make_table_points();
   void send_and_make(std::vector<Site> &);
   void set_domains(int first);
   void set_fields(int first);
+  void set_columns(int first);
   void look_at_image(const bigint *s, Site &) const;
   std::string types_made(int first) const;
   void make_point(Site);
