@@ -46,7 +46,8 @@ def solid(faces):
 
 TOOL, SCAN = solid(FACES), solid(FACES[:3])    # a tetrahedron, and one with a hole
 VARIABLES = {"down": "equal 1.0e-3", "T": "equal 300+step", "laser": "atom 1.0e6*x", "depth": "equal -0.1*step*dt",
-             "p": "equal 1.0e3*step", "damage": "atom id", "speed": "equal 0.1"}
+             "p": "equal 1.0e3*step", "damage": "atom id", "speed": "equal 0.1",
+             "px": "internal 0", "py": "internal 0", "pz": "internal 0", "n": "equal 1+(v_pz>0.02)"}
 COMPUTES = {"mine": "all property/atom vx vy"}
 FIXES = {"fine": "all mpm 0.01"}
 # a tetrahedron, for lines that read a mesh

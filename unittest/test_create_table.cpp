@@ -131,7 +131,7 @@ TEST(Dump, WhatIsMissingIsSaid)
 const std::string flat = plane("si", "f f", "0 1 0 1", 3) + "fix grid all mpm 0.1\n";
 
 struct Made {
-  double tag, type, x[3], v[3], volume, mass, stress;
+  double tag, type, x[3], v[3], volume, mass, stress, shear;
 };
 
 std::vector<Made> made_of(const std::string &text, const std::string &keywords,
@@ -144,8 +144,8 @@ std::vector<Made> made_of(const std::string &text, const std::string &keywords,
   std::vector<Made> mine(atom->nlocal);
   for (int i = 0; i < atom->nlocal; i++) {
     auto &p = mine[i];
-    p = {(double) atom->tag[i], (double) atom->type[i], {}, {}, atom->vfrac[i],
-         atom->rmass[i],        points->tau[i][3]};
+    p = {(double) atom->tag[i], (double) atom->type[i], {}, {}, atom->vfrac[i], atom->rmass[i],
+         points->tau[i][3],     points->F[i][1]};
     std::copy_n(atom->x[i], 3, p.x);
     std::copy_n(atom->v[i], 3, p.v);
   }
@@ -195,6 +195,7 @@ TEST(Text, StateOfADeformedPoint)
                               "");
   EXPECT_NEAR(points[0].volume, 0.01, 1e-17);
   EXPECT_NEAR(points[0].stress, 21.0, 1e-14);
+  EXPECT_EQ(points[0].shear, 0.5);
 }
 
 TEST(Text, IdsTypesAndPeriodicPlaces)

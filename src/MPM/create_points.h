@@ -44,7 +44,10 @@ struct CreatePointsOptions {
   double diameter = 0.0;    ///< 0: that of the volume
   double share = 1.0;       ///< of the volume of its site that a point has
   bool cut = false;         ///< points have the part of their cell that is in the region
-  std::string group_id;     ///< that the points join, empty: none
+  /** Equal-style variable: into how many points a site is divided along each axis; empty: it is one. And the variables of
+   *  style internal that have the place of the site then. */
+  std::string split, split_place[3];
+  std::string group_id;    ///< that the points join, empty: none
 
   void add_to(MPM_NS::Options &, int dimension);
   MPM_NS::OptionRules rules(bool has_radius) const;
@@ -110,6 +113,9 @@ class CreatePoints : public Command, private CreatePointsOptions {
   Range box[3];          // sites in the simulation box
   Range search[3];       // sites that can be in the region, also outside the box
   std::unique_ptr<class MPMRegionCut> region_cut;    // with keyword cut, else null
+  int split_variable = -1;                           // index, -1: none
+  int place_variable[3] = {-1, -1, -1};
+  mutable bigint beyond_box = 0;    // points of divided sites that would be outside of the box
 
   // of an image
 
@@ -165,6 +171,10 @@ class CreatePoints : public Command, private CreatePointsOptions {
   }
   double share_of(const bigint *s) const;
   double surface_share(const bigint *s) const;
+  void find_split(const MPM_NS::Options &);
+  void make_parts(const bigint *s, std::vector<Site> &) const;
+  int divisions(const bigint *s) const;
+  template <class F> int for_parts(const bigint *s, F &&visit) const;
   bool in_region(const bigint *s) const { return share_of(s) > 0.0; }
   bool cut_site(const bigint *s, Site &) const;
   void point_position(const bigint *s, double *x) const;
