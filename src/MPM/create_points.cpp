@@ -29,6 +29,7 @@
 #include "mpm_input.h"
 #include "mpm_mesh_fields.h"
 #include "mpm_options.h"
+#include "mpm_point_columns.h"
 #include "mpm_region_cut.h"
 #include "region.h"
 #include "transfer/cpdi.h"

@@ -119,14 +119,14 @@ class CreatePoints : public Command, private CreatePointsOptions {
 
   // of an image
 
-  struct Field {    // vector of fix property/atom that gets scale * gray value + offset
-    int index;
+  struct Field {    // what gets scale * gray value + offset
     double scale, offset;
   };
   std::unique_ptr<MPM_NS::ImageBody> image;    // null: none
   bool sites_on_pixels = false;
   std::vector<Field> fields;
-  std::vector<double> grays;    // of the points made here, for fields
+  std::unique_ptr<class MPMPointColumns> field_columns;    // what they are, null: there are none
+  std::vector<double> grays;                               // of the points made here, for fields
 
   std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
   std::vector<Corners> corners;    // and the domains of these; at last those of the points here
