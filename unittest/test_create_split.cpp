@@ -53,6 +53,18 @@ TEST(Split, PlacesAndVolumes)
   EXPECT_NEAR(total(deep), 1.0, 1e-14);
 }
 
+// parts of cells whose center is outside of the region are there, too: 10 of 16 along each axis
+TEST(Split, PartsOfCellsAtAFace)
+{
+  const auto points =
+      made(plane("si", "f f", "0 1 0 1") + place +
+           "variable n equal 4\nregion b block 0.2 0.8 0.2 0.8 INF INF\nfix grid all mpm 0.25\n"
+           "create_points 1 region b ppc 1 split v_n" +
+           axes_2 + "\n");
+  EXPECT_EQ(points.size(), 100u);
+  EXPECT_NEAR(total(points), 100.0 / 256.0, 1e-14);
+}
+
 // sites that are divided at the surface follow it: the volume of a ball by the size of its points there
 TEST(Split, SurfaceOfABall)
 {
