@@ -9,7 +9,7 @@ get_filename_component(MPM_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 set(MPM_DIR ${MPM_ROOT}/src/MPM)
 
 # styles and what needs LAMMPS are flat; what does not is in a folder for each idea
-set(MPM_FOLDERS declare image lattice law material math mesh solve transfer)
+set(MPM_FOLDERS declare image lattice law material math mesh solve table transfer)
 set(MPM_SOURCES)
 set(MPM_CORE_SOURCES)
 set(MPM_ISA_SOURCES)
@@ -217,7 +217,7 @@ endfunction()
 set(MPM_CORE_DIR "" CACHE PATH "Build tree of these sources whose core is taken, instead of compiling it again")
 string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
 set(MPM_CORE_FLAGS "${CMAKE_CXX_COMPILER} ${CMAKE_CXX_COMPILER_VERSION} ${config} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}}")
-string(APPEND MPM_CORE_FLAGS " ${MPM_SANITIZERS} ${MPM_FEATURES} ${EIGEN3_INCLUDE_DIR} ${PNG_LIBRARIES}")
+string(APPEND MPM_CORE_FLAGS " ${MPM_SANITIZERS} ${MPM_FEATURES} ${EIGEN3_INCLUDE_DIR} ${PNG_LIBRARIES} ${ZLIB_LIBRARY}")
 
 # objects of the core in another build tree, which is brought up to date first
 function(mpm_core_elsewhere out)
@@ -257,6 +257,10 @@ function(mpm_core out)
   if(PNG_FOUND)
     set_property(SOURCE ${MPM_DIR}/image/png.cpp APPEND PROPERTY COMPILE_DEFINITIONS MPM_PNG)
     target_include_directories(mpm_core SYSTEM PRIVATE "$<FILTER:${PNG_INCLUDE_DIRS},EXCLUDE,^/usr/include$>")
+  endif()
+  if(ZLIB_INCLUDE_DIR AND ZLIB_LIBRARY)
+    set_property(SOURCE ${MPM_DIR}/table/vtk_points.cpp APPEND PROPERTY COMPILE_DEFINITIONS MPM_ZLIB)
+    target_include_directories(mpm_core SYSTEM PRIVATE "$<FILTER:${ZLIB_INCLUDE_DIR},EXCLUDE,^/usr/include$>")
   endif()
   mpm_sanitize(mpm_core)
   # on their own, as the demonstration has other sets

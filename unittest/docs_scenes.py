@@ -5,6 +5,7 @@
 import glob
 import os
 import re
+import sys
 
 ROOT = os.environ.get("MPM_ROOT", os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PAGES = os.path.join(ROOT, "doc", "src")
@@ -45,7 +46,8 @@ def solid(faces):
 
 TOOL, SCAN = solid(FACES), solid(FACES[:3])    # a tetrahedron, and one with a hole
 VARIABLES = {"down": "equal 1.0e-3", "T": "equal 300+step", "laser": "atom 1.0e6*x", "depth": "equal -0.1*step*dt",
-             "p": "equal 1.0e3*step", "damage": "atom id", "speed": "equal 0.1"}
+             "p": "equal 1.0e3*step", "damage": "atom id", "speed": "equal 0.1",
+             "px": "internal 0", "py": "internal 0", "pz": "internal 0", "n": "equal 1+(v_pz>0.02)"}
 COMPUTES = {"mine": "all property/atom vx vy"}
 FIXES = {"fine": "all mpm 0.01"}
 # a tetrahedron, for lines that read a mesh
@@ -64,9 +66,16 @@ $Elements
 1 4 2 1 1 1 2 3 4
 $EndElements
 """
-# pictures, and values without a header, for lines that read an image
+# pictures, values without a header, and tables, for lines that read them
 PICTURE = "P2\n4 3\n255\n0 90 200 255\n0 60 120 180\n255 0 0 0\n"
-IMAGES = {"grains.pgm": PICTURE.encode(), "map.ppm": b"P3\n2 1\n255\n255 0 0  0 0 255\n",
+DUMP = """<VTKFile type="PolyData" byte_order="%s">
+<Piece NumberOfPoints="1">
+<PointData><DataArray type="Float64" Name="volume0" format="ascii">1e-6</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0.05 0.05 0.05</DataArray></Points>
+</Piece>
+</VTKFile>
+""" % (sys.byteorder.capitalize() + "Endian")
+IMAGES = {"grains.csv": b"x,y,z,mass,rho\n50,50,50,1e-3,2.7\n", "bar.5000.vtp": DUMP.encode(), "grains.pgm": PICTURE.encode(), "map.ppm": b"P3\n2 1\n255\n255 0 0  0 0 255\n",
           "scan.raw": bytes(range(0, 240, 10)), **{"scan_%04d.pgm" % k: PICTURE.encode() for k in range(3)}}
 # pages whose inputs test_docs_tasks.py runs and checks
 TASKS = ["Howto_mpm_" + name for name in

@@ -146,7 +146,7 @@ CODE
   build=$(dirname "$MPM_LMP")
   link=$(<"$build/CMakeFiles/lmp.dir/link.txt")
   for source in "$src"/{fix_,pair_,compute_,region_}*.cpp \
-    "$src"/{create_points,create_points_image,mpm_halo,mpm_nodes,mpm_point_map,mpm_state,mpm_every,mpm_affine,mpm_cpdi}.cpp; do
+    "$src"/{create_points,create_points_image,create_points_table,mpm_point_columns,mpm_halo,mpm_nodes,mpm_point_map,mpm_state,mpm_every,mpm_affine,mpm_cpdi}.cpp; do
     name=$(basename "$source")
     objects=()
     compile "$source" "${name%.cpp}.o" -include lammps.h "${lammps[@]}"

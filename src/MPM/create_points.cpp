@@ -11,11 +11,13 @@
 #include "atom.h"
 #include "atom_vec.h"
 #include "comm.h"
+#include "create_points_table.h"
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
 #include "group.h"
 #include "image/body.h"
+#include "input.h"
 #include "irregular.h"
 #include "math/random.h"
 #include "math_extra.h"
@@ -27,9 +29,11 @@
 #include "mpm_input.h"
 #include "mpm_mesh_fields.h"
 #include "mpm_options.h"
+#include "mpm_point_columns.h"
 #include "mpm_region_cut.h"
 #include "region.h"
 #include "transfer/cpdi.h"
+#include "variable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,6 +87,8 @@ void CreatePoints::command(int narg, char **arg)
   const bool mesh = strcmp(arg[1], "mesh") == 0 || strcmp(arg[1], "elements") == 0;
   if (mesh) {
     parse_mesh(narg, arg);
+  } else if (strcmp(arg[1], "table") == 0) {
+    parse_table(narg, arg);
   } else {
     if (strcmp(arg[1], "image") == 0)
       parse_image(narg, arg);
@@ -104,12 +110,13 @@ void CreatePoints::command(int narg, char **arg)
 
   const bigint natoms_previous = atom->natoms;
   const int nlocal_previous = atom->nlocal;
-  const bigint npoints = mesh ? make_mesh_points() : make_points();
+  const bigint npoints = mesh ? make_mesh_points() : table ? make_table_points() : make_points();
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
   set_domains(nlocal_previous);
   set_fields(nlocal_previous);
   if (mesh_fields) mesh_fields->set(nlocal_previous);
+  set_columns(nlocal_previous);
 
   bigint nblocal = atom->nlocal;
   MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
@@ -136,25 +143,25 @@ void CreatePoints::command(int narg, char **arg)
   MPI_Reduce(&made, &all_made, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   const std::string types = mesh_fields ? "type" + mesh_fields->types()
                                         : types_made(nlocal_previous);
-  const bool surface = cut || (image && image->surface);
+  const bool uneven = cut || table || split_variable >= 0 || (image && image->surface);
   if (comm->me == 0) {
     const bool flat = domain->dimension == 2;
     utils::logmesg(lmp, "Created {} material points of {}\n", npoints, types);
-    if (!mesh)
+    if (!mesh && !table)
       utils::logmesg(lmp, "  spacing = {:.8g} {:.8g}{}\n", spacing[0], spacing[1],
                      flat ? "" : fmt::format(" {:.8g}", spacing[2]));
     if (fix && fix->options.axisymmetric)
       utils::logmesg(
           lmp, "  area = {:.8g} per {}, volume = {:.8g} in total (all around the axis)\n", volume,
-          cut           ? "whole cell of a point"
-              : surface ? "site"
-                        : "point",
+          cut          ? "whole cell of a point"
+              : uneven ? "site"
+                       : "point",
           all_made);
     else
       utils::logmesg(lmp, "  volume = {:.8g} {}, {:.8g} in total{}\n",
-                     surface ? all_made / npoints : volume,
-                     mesh || surface ? "on average" : "per point",
-                     surface ? all_made : npoints * volume, flat ? " (per unit thickness)" : "");
+                     uneven ? all_made / npoints : volume,
+                     mesh || uneven ? "on average" : "per point",
+                     uneven ? all_made : npoints * volume, flat ? " (per unit thickness)" : "");
     utils::logmesg(lmp, "  create_points CPU = {:.3f} seconds\n", platform::walltime() - start);
   }
 }
@@ -205,6 +212,13 @@ void CreatePointsOptions::add_to(Options &o, int dim)
                 "share of the volume of their places that the points have")});
   o.add("cut", {yes_no(cut)},
         "give points at the surface of the region the part of their cell that is inside");
+  std::vector<OptionValue> words = {
+      text(split, "v_n", "variable of style equal: number of points along each axis of a site"),
+      text(split_place[0], "v_x",
+           "variable of style internal that it knows the place of the site by"),
+      text(split_place[1], "v_y", "the same along y")};
+  if (dim == 3) words.push_back(text(split_place[2], "v_z", "the same along z"));
+  o.add("split", words).standard("one point per site");
   o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
       .standard("all");
 }
@@ -216,6 +230,9 @@ OptionRules CreatePointsOptions::rules(bool has_radius) const
       {cut && jitter > 0.0, "cut",
        "puts points at the center of what is inside of the region, from where jitter would move "
        "them: use one of the two"},
+      {!split.empty() && cut, "split",
+       "divides whole sites, and cut has parts of them: use one of the two"},
+      {!split.empty() && jitter > 0.0, "split", "has no jitter: use one of the two"},
       {ppc[0] > 0, "spacing", "and ppc cannot be given together: use either of them"},
       {!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};
 }
@@ -231,9 +248,10 @@ void CreatePoints::parse(int narg, char **arg)
     region->prematch();
     iarg = 3;
   } else if (strcmp(arg[1], "box") != 0) {
-    error->all(FLERR, 1,
-               "Unknown create_points option {}: expected region, box, image, mesh, or elements",
-               arg[1]);
+    error->all(
+        FLERR, 1,
+        "Unknown create_points option {}: expected region, box, image, mesh, elements, or table",
+        arg[1]);
   }
 
   Options options = declare(domain->dimension, atom->radius_flag);
@@ -302,9 +320,69 @@ void CreatePoints::place_sites(const Options &options)
                      "{} ({:.8g}): there will be cells without points inside the body",
                      spacing[d], axis_name[d], fix->id(), fix->lattice.h);
   }
+  find_split(options);
   if (cut)
     region_cut = std::make_unique<MPMRegionCut>(lmp, region, origin, spacing,
                                                 fix && fix->options.axisymmetric);
+}
+
+/* ----------------------------------------------------------------------
+   keyword split: sites that are divided, by a variable of their place
+------------------------------------------------------------------------- */
+
+void CreatePoints::find_split(const Options &options)
+{
+  if (split.empty()) return;
+  const int where = options.where("split") + 1;
+  if (image)
+    error->all(FLERR, where,
+               "Create_points keyword split is for regions: use a finer spacing or sites pixels");
+  auto *variable = input->variable;
+  const auto find = [&](const std::string &word, int iarg, bool place) {
+    const int index = utils::strmatch(word, "^v_") ? variable->find(word.c_str() + 2) : -1;
+    if (index < 0)
+      error->all(FLERR, iarg, "Create_points split {}: there is no such variable; expected v_name",
+                 word);
+    if (!(place ? variable->internalstyle(index) : variable->equalstyle(index)))
+      error->all(FLERR, iarg, "Create_points split {}: variable must be of style {}", word,
+                 place ? "internal" : "equal");
+    return index;
+  };
+  split_variable = find(split, where, false);
+  for (int d = 0; d < domain->dimension; d++)
+    place_variable[d] = find(split_place[d], where + 1 + d, true);
+}
+
+/** Into how many points the site is divided along each axis. */
+int CreatePoints::divisions(const bigint *s) const
+{
+  for (int d = 0; d < domain->dimension; d++)
+    input->variable->internal_set(place_variable[d], position(d, s[d]));
+  const double n = input->variable->compute_equal(split_variable);
+  if (n != std::floor(n) || n < 1.0 || n > MAX_PPC)
+    error->one(FLERR, Error::NOLASTLINE,
+               "Create_points split: variable {} is {:.8g} at {:.6g} {:.6g} {:.6g}, but must be an "
+               "integer from 1 to {}",
+               split.substr(2), n, position(0, s[0]), position(1, s[1]), position(2, s[2]),
+               MAX_PPC);
+  return (int) n;
+}
+
+/** Visits the middle of each part of a divided site that is in the region, x first; returns how many parts there are. */
+template <class F> int CreatePoints::for_parts(const bigint *s, F &&visit) const
+{
+  const int dim = domain->dimension, n = divisions(s);
+  const int total = dim == 2 ? n * n : n * n * n;
+  for (int part = 0; part < total; part++) {
+    const int k[3] = {part % n, part / n % n, part / n / n};
+    double x[3];
+    for (int d = 0; d < 3; d++)
+      x[d] = position(d, s[d]) + (d < dim ? ((k[d] + 0.5) / n - 0.5) * spacing[d] : 0.0);
+    if (!(fix && fix->options.axisymmetric && x[0] < 0.0) &&
+        (!region || region->match(x[0], x[1], x[2])))
+      visit(x);
+  }
+  return total;
 }
 
 void CreatePoints::find_group(const Options &options, const std::string &name)
@@ -366,8 +444,8 @@ void CreatePoints::find_ranges()
 
   for (int d = 0; d < domain->dimension; d++) {
     const double boxlo = domain->boxlo[d], boxhi = domain->boxhi[d];
-    const double beyond = cut ? 0.5 * spacing[d]
-                              : 0.0;    // cells whose center is not in the region
+    // cells whose center is not in the region
+    const double beyond = cut || split_variable >= 0 ? 0.5 * spacing[d] : 0.0;
     const bool periodic = domain->periodicity[d];
 
     // site number, rounded up; a site within the tolerance below counts as being there
@@ -409,6 +487,13 @@ void CreatePoints::find_ranges()
 double CreatePoints::share_of(const bigint *s) const
 {
   if (region_cut) return region_cut->inside(s).share;
+  if (split_variable >= 0) {
+    int inside = 0;
+    const int all = for_parts(s, [&](const double *) {
+      inside++;
+    });
+    return (double) inside / all;
+  }
   double x[3] = {position(0, s[0]), position(1, s[1]), position(2, s[2])};
   if (region && !region->match(x[0], x[1], x[2])) return 0.0;
   if (!image) return 1.0;
@@ -535,7 +620,8 @@ void CreatePoints::check_overlap()
     }
     // of a cell that is cut the rest may belong to another body
     if (!in_box(s) || !in_region(s)) continue;
-    if (cut && !region->match(x[i][0], x[i][1], x[i][2])) continue;
+    if ((cut || split_variable >= 0) && region && !region->match(x[i][0], x[i][1], x[i][2]))
+      continue;
     mine[0]++;
     apart += !same;
     mine[1] = std::max(mine[1], -(bigint) atom->tag[i]);
@@ -620,7 +706,8 @@ bigint CreatePoints::make_points()
     for_sites(range, first, std::min(first + share, n), [&](const bigint *s) {
       Site site;
       if (cut && cut_site(s, site)) made.push_back(site);
-      const double part = cut ? 0.0 : share_of(s);
+      if (split_variable >= 0) make_parts(s, made);
+      const double part = cut || split_variable >= 0 ? 0.0 : share_of(s);
       if (!(part > 0.0)) return;
       made.push_back({{}, part * volume, 0});
       if (image) look_at_image(s, made.back());
@@ -639,7 +726,32 @@ bigint CreatePoints::make_points()
 
     send_and_make(made);
   }
+  bigint outside = 0;
+  MPI_Allreduce(&beyond_box, &outside, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (outside && !ignore_outside)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points split: {} points of sites at faces of the box would be outside of "
+               "it; let these faces "
+               "be faces of cells, or use create_points keyword outside ignore",
+               outside);
   return npoints;
+}
+
+/** The points of a divided site. */
+void CreatePoints::make_parts(const bigint *s, std::vector<Site> &made) const
+{
+  const std::size_t first = made.size();
+  const int all = for_parts(s, [&](const double *x) {
+    made.push_back({{x[0], x[1], x[2]}, 0.0, 0});
+    for (int d = 0; d < domain->dimension; d++)
+      if (!domain->periodicity[d] && !(x[d] >= domain->boxlo[d] && x[d] < domain->boxhi[d])) {
+        made.pop_back();
+        beyond_box++;
+        return;
+      }
+    domain->remap(made.back().x);
+  });
+  for (auto k = first; k < made.size(); k++) made[k].volume = volume / all;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -44,7 +44,10 @@ struct CreatePointsOptions {
   double diameter = 0.0;    ///< 0: that of the volume
   double share = 1.0;       ///< of the volume of its site that a point has
   bool cut = false;         ///< points have the part of their cell that is in the region
-  std::string group_id;     ///< that the points join, empty: none
+  /** Equal-style variable: into how many points a site is divided along each axis; empty: it is one. And the variables of
+   *  style internal that have the place of the site then. */
+  std::string split, split_place[3];
+  std::string group_id;    ///< that the points join, empty: none
 
   void add_to(MPM_NS::Options &, int dimension);
   MPM_NS::OptionRules rules(bool has_radius) const;
@@ -111,25 +114,32 @@ class CreatePoints : public Command, private CreatePointsOptions {
   Range box[3];          // sites in the simulation box
   Range search[3];       // sites that can be in the region, also outside the box
   std::unique_ptr<class MPMRegionCut> region_cut;    // with keyword cut, else null
+  int split_variable = -1;                           // index, -1: none
+  int place_variable[3] = {-1, -1, -1};
+  mutable bigint beyond_box = 0;    // points of divided sites that would be outside of the box
 
   // of an image
 
-  struct Field {    // vector of fix property/atom that gets scale * gray value + offset
-    int index;
+  struct Field {    // what gets scale * gray value + offset
     double scale, offset;
   };
   std::unique_ptr<MPM_NS::ImageBody> image;    // null: none
   bool sites_on_pixels = false;
   std::vector<Field> fields;
-  std::vector<double> grays;    // of the points made here, for fields
+  std::unique_ptr<class MPMPointColumns> field_columns;    // what they are, null: there are none
+  std::vector<double> grays;                               // of the points made here, for fields
 
   std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
   std::vector<Corners> corners;    // and the domains of these; at last those of the points here
   std::unique_ptr<class MPMMeshFields> mesh_fields;    // of the points of a mesh, else null
 
+  std::unique_ptr<class CreatePointsTable> table;    // null: none
+  std::vector<double> table_rows;                    // of the points made here
+
   void parse(int, char **);
   void parse_mesh(int, char **);
   void parse_image(int, char **);
+  void parse_table(int, char **);
   void place_sites(const MPM_NS::Options &);
   void find_group(const MPM_NS::Options &, const std::string &name);
   void find_nodes(const MPM_NS::Mesh &, const MPMThinBody &, const char *file);
@@ -146,9 +156,11 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void check_overlap();
   bigint make_points();
   bigint make_mesh_points();
+  bigint make_table_points();
   void send_and_make(std::vector<Site> &);
   void set_domains(int first);
   void set_fields(int first);
+  void set_columns(int first);
   void look_at_image(const bigint *s, Site &) const;
   std::string types_made(int first) const;
   void make_point(Site);
@@ -160,6 +172,10 @@ class CreatePoints : public Command, private CreatePointsOptions {
   }
   double share_of(const bigint *s) const;
   double surface_share(const bigint *s) const;
+  void find_split(const MPM_NS::Options &);
+  void make_parts(const bigint *s, std::vector<Site> &) const;
+  int divisions(const bigint *s) const;
+  template <class F> int for_parts(const bigint *s, F &&visit) const;
   bool in_region(const bigint *s) const { return share_of(s) > 0.0; }
   bool cut_site(const bigint *s, Site &) const;
   void point_position(const bigint *s, double *x) const;

@@ -17,6 +17,7 @@
 #include "lammps.h"
 #include "mpm_broadcast.h"
 #include "mpm_options.h"
+#include "mpm_point_columns.h"
 #include "region.h"
 
 #include "fmt/format.h"
@@ -80,11 +81,12 @@ void CreatePointsImageOptions::add_to(Options &o, int dim)
                 "surface between pixels, of values smoothed over W pixels, 0 for not at all")})
       .standard("the surface is that of the pixels");
   o.add("field",
-        {text(field.name, "d_name",
-              "vector of fix property/atom, which gets a times the gray value plus b"),
+        {text(field.name, "name",
+              "d_name of fix property/atom, or a history variable, which gets a times the gray "
+              "value plus b"),
          number(field.scale, "a", ANY_NUMBER, "", "factor"),
          number(field.offset, "b", ANY_NUMBER, "",
-                "offset; may be given several times, for other vectors")})
+                "offset; may be given several times, for others")})
       .then([this] {
         fields.push_back(field);
       })
@@ -323,16 +325,16 @@ void CreatePoints::parse_image(int narg, char **arg)
     region->prematch();
   }
   for (const auto &field : given.fields) {
-    int flag = 0, columns = 0;
-    const std::string name = field.name.substr(0, 2) == "d_" ? field.name.substr(2) : "";
-    const int index = name.empty() ? -1 : atom->find_custom(name.c_str(), flag, columns);
-    if (index < 0 || flag != 1 || columns != 0)
-      error->all(
-          FLERR, options.where("field") + 1,
-          "Create_points field {} must be a vector of reals of fix property/atom, d_NAME, which is "
-          "defined before",
-          field.name);
-    fields.push_back({index, field.scale, field.offset});
+    if (!field_columns) field_columns = std::make_unique<MPMPointColumns>(lmp);
+    const auto kind = field_columns->add(field.name);
+    const bool real = kind == MPMPointColumns::PROPERTY && field.name[0] == 'd';
+    if (!real && kind != MPMPointColumns::HISTORY)
+      error->all(FLERR, options.where("field") + 1,
+                 "Create_points field {} must be a vector of reals of fix property/atom, d_NAME, "
+                 "or a history "
+                 "variable of a fix mpm/material, which is defined before",
+                 field.name);
+    fields.push_back({field.scale, field.offset});
   }
   image = read_image_body(lmp, given, options, type, arg[2]);
   sites_on_pixels = given.on_pixels;
@@ -408,12 +410,14 @@ std::string CreatePoints::types_made(int first) const
 }
 
 /* ----------------------------------------------------------------------
-   gray values to vectors of fix property/atom, once fixes know of the points
+   gray values to properties and history, once fixes know of the points
 ------------------------------------------------------------------------- */
 
 void CreatePoints::set_fields(int first)
 {
-  for (const auto &field : fields)
-    for (std::size_t k = 0; k < grays.size(); k++)
-      atom->dvector[field.index][first + k] = field.scale * grays[k] + field.offset;
+  if (!field_columns) return;
+  std::vector<double> rows;
+  for (const double gray : grays)
+    for (const auto &field : fields) rows.push_back(field.scale * gray + field.offset);
+  field_columns->set(first, rows);
 }

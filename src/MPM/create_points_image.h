@@ -37,7 +37,7 @@ struct CreatePointsImageOptions {
   MPM_NS::RawLayout raw;
   MPM_NS::SliceRange slices;
 
-  /** Values of pixels into a vector of fix property/atom. */
+  /** Values of pixels into a vector of fix property/atom or a history variable. */
   struct Field {
     std::string name;
     double scale, offset;

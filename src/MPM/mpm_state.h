@@ -73,6 +73,8 @@ class FixMPMState : public Fix {
   ~FixMPMState() override;
   /** A number that no other fix has or had. */
   int instance() const { return instance_me; }
+  /** Names and widths of its arrays that go to restart files, empty: none. */
+  std::string keeps() const { return restarts ? state.layout() : ""; }
   double memory_usage() override;
   void grow_arrays(int nmax) override { state.grow(nmax); }
   void copy_arrays(int i, int j, int) override { state.copy(i, j); }

@@ -16,6 +16,7 @@
 
 #include "create_points.h"
 #include "create_points_image.h"
+#include "create_points_table.h"
 #include "fix_mpm_absorb.h"
 #include "fix_mpm_airbag.h"
 #include "fix_mpm_boundary.h"
@@ -58,6 +59,7 @@ std::map<std::string, std::string> files()
   };
   add("create_points", CreatePointsOptions().declare(3, true));
   add("create_points_image", CreatePointsImageOptions().declare(3));
+  add("create_points_table", CreatePointsTableOptions().declare(3, true));
   add("create_points_mesh", CreatePointsMeshOptions().declare("create_points mesh", 3, true, true));
   add("fix_mpm", MPMFieldOptions().declare(3));
   add("fix_mpm_airbag", MPMAirbagOptions().declare());
@@ -100,7 +102,7 @@ TEST(OptionTables, AreInTheirPages)
   const std::string folder = MPM_SOURCE_DIR "/doc/src/";
   for (const auto &[file, text] : files()) {
     std::string page = file.substr(0, file.size() - 4);
-    for (const std::string end : {"_default", "_coeff", "_image", "_mesh"})
+    for (const std::string end : {"_default", "_coeff", "_image", "_mesh", "_table"})
       if (page != "region_mpm_mesh" && page.size() > end.size() &&
           page.compare(page.size() - end.size(), end.size(), end) == 0)
         page.resize(page.size() - end.size());

@@ -1,0 +1,81 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_CREATE_POINTS_TABLE_H
+#define LMP_CREATE_POINTS_TABLE_H
+
+// create_points TYPE table FILE: what the input says of a table of points, and its rows.
+
+#include "declare/option.h"
+#include "mpm_point_columns.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+struct Table;
+}
+
+namespace LAMMPS_NS {
+
+/** Keywords of create_points for tables. */
+struct CreatePointsTableOptions {
+  std::string columns;    ///< their names, separated by commas; empty: the file has them
+  double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
+  double volume = 0.0;    ///< of each point, 0: a column has it
+  int part = 0;           ///< only rows of this type, 0: all
+  bool new_ids = false;
+  double diameter = 0.0;
+  std::string group_id;
+  std::vector<std::array<std::string, 2>> data;    ///< columns, and what they are for points
+  struct Factor {
+    std::string column;
+    double value = 1.0;
+  };
+  std::vector<Factor> factors;
+
+  MPM_NS::Options declare(int dimension, bool has_radius);
+
+ private:
+  std::array<std::string, 2> renamed;
+  Factor factor;
+};
+
+/** The points of a table: rank 0 has all of them, and the others what they are asked to make. */
+class CreatePointsTable : protected Pointers {
+ public:
+  /** type: of points that have none in the file. Reads and checks the file; stops with an error for what is wrong. */
+  CreatePointsTable(LAMMPS *, const CreatePointsTableOptions &, int type, const char *file);
+
+  struct Point {
+    double x[3];      ///< in the box
+    double volume;    ///< initial
+    bigint tag;       ///< of the file, 0: a new one
+    int type;
+  };
+  MPMPointColumns columns;
+  bigint npoint = 0;    ///< of all ranks
+
+  /** Rows first to first + n - 1 for all ranks: their points, and their numbers, one row after the other. */
+  void rows(bigint first, int n, std::vector<Point> &, std::vector<double> &) const;
+  int width() const { return ncolumn; }
+
+ private:
+  int ncolumn = 0;
+  std::vector<Point> points;     // of rank 0
+  std::vector<double> values;    // of rank 0, npoint rows
+
+  void read(const CreatePointsTableOptions &, int type, const std::string &file);
+  void make_points(const CreatePointsTableOptions &, const MPM_NS::Table &, int type,
+                   const std::string &file);
+  void check_points(const std::string &file);
+};
+
+}    // namespace LAMMPS_NS
+#endif
