@@ -266,6 +266,30 @@ SERIAL_TEST(Airbag, VentAndInflow)
   EXPECT_NEAR(fill.fix("b")->compute_vector(5) / mass, 1.0, 1e-9);
 }
 
+// a bag that lies across periodic faces from the start holds what it holds elsewhere, and keeps it while it moves
+TEST(Airbag, AcrossPeriodicFaces)
+{
+  ScratchFile file("ball.msh", sphere(2, 0.1));
+  const auto volumes = [&](const char *move) {
+    const std::string options = " thickness 0.001 move " + std::string(move);
+    Scene run(MPM_TEST::box(3, "si", "p p p", "-0.3 0.3 -0.3 0.3 -0.3 0.3", 1, 0.02) +
+              "fix grid all mpm 0.05 transfer flip 0.95\n" + "create_points 1 mesh " + file.name +
+              options + "\nfix m all mpm/material density 1000 neohookean 1e5 0.3\n" +
+              "velocity all set 2 0 0\nfix e all mpm/elements " + file.name +
+              " thickness 0.001 compression no\n" +
+              "fix b all mpm/airbag e gas 1013 1.4 outside 1000\ntimestep 5e-4\nrun 0\n");
+    const double before = run.fix("b")->compute_vector(1);
+    run.commands("run 100\n");
+    return std::pair(before, run.fix("b")->compute_vector(1));
+  };
+  const auto [before, after] = volumes("0 0 0");
+  for (const char *move : {"0.3 0.29 0", "0.25 -0.3 0.3"}) {
+    const auto [here, later] = volumes(move);
+    EXPECT_NEAR(here / before, 1.0, 1e-12) << move;
+    EXPECT_NEAR(later / after, 1.0, 1e-4) << move;
+  }
+}
+
 TEST(ThinElements, RanksAndRestart)
 {
   const struct {

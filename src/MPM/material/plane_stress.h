@@ -63,6 +63,7 @@ class PlaneStress {
   State state[BATCH];
   double start[6][BATCH];
   std::vector<double> history;
+  double stiffness = 0.0;    // of the material in small compression
 
   int last_axis() const { return dim == 2 ? 2 : 3; }
   void find_axes(const Point &, State &) const;
@@ -70,8 +71,9 @@ class PlaneStress {
   void keep(const Batch &);
   void move(Batch &, const Point *);
   void stress_across(Batch &, const Point *, double *s);
+  int iterate(Batch &, const Point *);
   int solve(Batch &, const Point *);
-  void check_isotropy() const;
+  void check_isotropy();
   void check_elasticity() const;
 };
 
