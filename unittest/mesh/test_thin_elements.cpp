@@ -147,11 +147,15 @@ TEST(ThinElements, ForcesAreTheGradientOfEnergy)
                {3, "section 0.001", "compression no", hanging(8, 0.5, 2), false},
                {3, "section 0.001", "", hanging(8, 0.5, 2), false},
                {2, "thickness 0.01", "compression no", hanging(8, 0.5, 1), false},
+               {3, "thickness 0.2", "bending yes", sheet(3, 0.3, true), false},
+               {3, "thickness 0.1", "bending yes", sphere(2, 0.3), true},
+               {3, "section 0.02", "bending yes", hanging(8, 1.0, 2), false},
+               {2, "thickness 0.1", "bending yes", hanging(8, 0.5, 1), false},
                {3, "thickness 0.01", "compression no", sphere(2, 0.3), true}};
   for (const auto &c : cases) {
     SCOPED_TRACE(std::string(c.thin) + " " + c.more);
     ScratchFile file("thin.msh", c.mesh);
-    const std::string input = box(c.dim, -1.0, 1.0, 0.1, "") +
+    const std::string input = box(c.dim, -1.2, 1.2, 0.1, "") +
         thin_body(file.name, c.thin, "neohookean 1000 0.3", c.more) +
         (c.gas ? "fix b all mpm/airbag e gas 50 1.4 outside 20\n" : "") + "timestep 1e-6\nrun 0\n";
     const auto displaced = [&](double shift) {
@@ -201,6 +205,71 @@ SERIAL_TEST(ThinElements, Catenary)
   EXPECT_NEAR(sag[0] / 0.39978, 1.0, 0.01);
   EXPECT_NEAR(sag[1] / 0.39978, 1.0, 0.005);
   EXPECT_LT(std::fabs(sag[1] - 0.39978), 0.6 * std::fabs(sag[0] - 0.39978));
+}
+
+// free vibrations: a beam between its free ends (R5, 22.37329, plane strain), of lines and of triangles, and a circular plate with two nodal
+// diameters (5.3583 for nu = 0.3: A.W. Leissa, Vibration of Plates, NASA SP-160 (1969), chapter 2). No clamp is there that could be
+// in another place. The lattice makes waves slower, by a part that falls with the square of its spacing
+SERIAL_TEST(Bending, FreeVibrations)
+{
+  const double E = 1e7, rho = 1000.0, t = 0.02;
+  const auto frequency = [&](int dim, double nu, double h, const std::string &mesh,
+                             const std::string &mode, double expected) {
+    ScratchFile file("free.msh", mesh);
+    Scene run(
+        box(dim, -0.7, 0.7, h, "transfer flip 1.0") +
+        thin_body(file.name, "thickness 0.02 ", strprintf("linear %g %g", E, nu), "bending yes") +
+        "variable q atom " + mode + "\nvariable v atom 0.02*v_q\nvelocity all set " +
+        (dim == 2 ? "NULL v_v NULL" : "NULL NULL v_v") +
+        "\nfix dt all mpm/dt 0.5\nvariable w atom " + (dim == 2 ? "vy" : "vz") +
+        "*v_q\ncompute w all reduce ave v_w\nthermo_style custom step c_w\nrun 0\n");
+    // to the first time without velocity, a quarter of a period
+    double before = run.evaluate("c_w"), from = 0.0;
+    for (int k = 0; k < 2000; k++) {
+      run.commands("run 20 post no\n");
+      const double now = run.evaluate("c_w"), time = run.evaluate("time");
+      if (now <= 0.0) return PI / 2.0 / (from + (time - from) * before / (before - now)) / expected;
+      before = now;
+      from = time;
+    }
+    return 0.0;
+  };
+  const double bl = 4.73004074, ratio = 0.982502215;
+  const std::string s = strprintf("(x+0.5)*%.9g", bl),
+                    mode = strprintf(
+                        "0.5*(exp(%s)+exp(-%s))+cos(%s)-%.9g*(0.5*(exp(%s)-exp(-%s))+sin(%s))",
+                        s.c_str(), s.c_str(), s.c_str(), ratio, s.c_str(), s.c_str(), s.c_str());
+  const double beam = 22.37329 * t * sqrt(E / (12.0 * rho));
+  std::vector<Node> x;
+  std::vector<std::vector<int>> lines;
+  for (int i = 0; i <= 40; i++) x.push_back({i / 40.0 - 0.5, 0.003, 0.0});
+  for (int i = 0; i < 40; i++) lines.push_back({i, i + 1});
+  const double coarse =
+      measured("beam", frequency(2, 0.3, 0.05, gmsh(1, x, lines), mode, beam / sqrt(0.91)));
+  const double fine =
+      measured("beam", frequency(2, 0.3, 0.025, gmsh(1, x, lines), mode, beam / sqrt(0.91)));
+  EXPECT_NEAR(fine, 1.0, 0.02);
+  EXPECT_NEAR((1.0 - coarse) / (1.0 - fine), 4.0, 1.0);
+
+  x.assign(1, {0.007, 0.003, 0.004});
+  std::vector<std::vector<int>> disk;
+  const int rings = 10;
+  const auto node = [](int ring, int k) {
+    return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1) + k % (6 * ring);
+  };
+  for (int r = 1; r <= rings; r++)
+    for (int k = 0; k < 6 * r; k++) {
+      const double angle = 2.0 * PI * k / (6 * r), R = 0.5 * r / rings;
+      x.push_back({x[0][0] + R * cos(angle), x[0][1] + R * sin(angle), x[0][2]});
+      const int side = k / r, at = k % r, inner = side * (r - 1) + at;
+      disk.push_back({node(r, k), node(r, k + 1), node(r - 1, inner)});
+      if (at > 0) disk.push_back({node(r, k), node(r - 1, inner), node(r - 1, inner - 1)});
+    }
+  const double D = E * t * t * t / (12.0 * 0.91);
+  EXPECT_NEAR(measured("plate",
+                       frequency(3, 0.3, 0.05, gmsh(2, x, disk), "(x-0.007)^2-(y-0.003)^2",
+                                 5.3583 * sqrt(D / (rho * t)) / 0.25)),
+              1.0, 0.02);
 }
 
 // balloons (R2, V1): a stretch of 1.2 by a given pressure, and what a gas at higher pressure does, of either kind
@@ -296,7 +365,10 @@ TEST(ThinElements, RanksAndRestart)
     int dim;
     const char *thin;
     std::string mesh, more;
+    const char *options = "compression no";
   } cases[] = {
+      {3, "thickness 0.02", sheet(8, 0.4, true), "", "bending yes"},
+      {2, "thickness 0.02", hanging(40, 0.5, 1), "", "bending yes"},
       {3, "thickness 0.001", sphere(3, 0.1),
        "fix b all mpm/airbag e gas 1200 1.4 outside 1000 temperature 300 287 vent 1e-4 1 opens "
        "50\n"},
@@ -310,7 +382,7 @@ TEST(ThinElements, RanksAndRestart)
     const std::string points =
         std::string("create_points 1 mesh ") + file.name + " " + c.thin + "\n";
     const std::string elements =
-        std::string("fix e all mpm/elements ") + file.name + " " + c.thin + " compression no\n";
+        std::string("fix e all mpm/elements ") + file.name + " " + c.thin + " " + c.options + "\n";
     const std::string rest = material + elements + c.more + "timestep 0.0002\n";
     ScratchFile own("serial.msh", c.mesh);
     const std::string start = head + points +
@@ -347,6 +419,16 @@ SERIAL_TEST(ThinElements, BadInput)
   EXPECT_THAT(failure(ball.name, thick, "locking fbar", ""), HasSubstr("is for solids"));
   EXPECT_THAT(failure(ball.name, thick, "compression no", "", "eos linear 1e5 strength j2 4e4 100"),
               HasSubstr("must be elastic"));
+  ScratchFile squares("squares.msh", sheet(4, 0.2, false));
+  EXPECT_THAT(failure(ball.name, thick, "bending yes", ""), "");
+  EXPECT_THAT(failure(ball.name, thick, "bending yes compression no", ""),
+              HasSubstr("exclude each other"));
+  EXPECT_THAT(failure(ball.name, "", "bending yes", ""), HasSubstr("no elements of dimension 3"));
+  EXPECT_THAT(failure(squares.name, thick, "bending yes", ""),
+              HasSubstr("element 1 is a quadrangle"));
+  EXPECT_THAT(failure(line.name, "section 1e-5", "bending yes", ""), HasSubstr("make an angle"));
+  EXPECT_THAT(failure(ball.name, thick, "bending yes", "", "eos linear 1e5 strength j2 4e4 100"),
+              HasSubstr("what resists bending: it must be elastic"));
   EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag x gas 1e5 1.4\n"),
               HasSubstr("no fix mpm/elements with ID x"));
   EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e\n"),

@@ -437,3 +437,17 @@ void PlaneStress::check_elasticity() const
   if (!(norm(rest) <= SAME * norm(stress)))
     throw std::runtime_error("it must be free of stress when it is not deformed");
 }
+
+/** From the stress in a small strain, 2 mu e + lambda tr(e) I. */
+std::array<double, 2> PlaneStress::elastic_constants() const
+{
+  check_elasticity();
+  double stress[9];
+  One one(material);
+  one.go(material, UNIT, STRAINED);
+  one.get(stress);
+  const double trace = STRAINED[0] + STRAINED[4] + STRAINED[8] - 3.0;
+  const double mu = 0.5 * stress[1] / STRAINED[1],
+               lambda = (stress[0] - 2.0 * mu * (STRAINED[0] - 1.0)) / trace;
+  return {mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), 0.5 * lambda / (lambda + mu)};
+}

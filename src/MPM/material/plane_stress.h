@@ -11,6 +11,7 @@
 
 #include "material/material.h"
 
+#include <array>
 #include <functional>
 
 namespace MPM_NS {
@@ -44,6 +45,9 @@ class PlaneStress {
    *  are zero where the law does not use them. Sets A, F, J, Jold, and leaves the rest to last, which is called once, in the
    *  state that was found. Returns the index of a point for which none was found, or -1. */
   int update(Batch &, const Point *, const std::function<void(Batch &)> &last);
+
+  /** Young's modulus and Poisson's ratio at rest. Throws std::runtime_error when the material is not elastic, see above. */
+  std::array<double, 2> elastic_constants() const;
 
   /** Orthonormal axes for Point::frame from gradients along the body: directions a and, for surfaces, b. */
   void make_frame(const double *a, const double *b, double (*frame)[3]) const;
