@@ -207,6 +207,80 @@ SERIAL_TEST(ThinElements, Catenary)
   EXPECT_LT(std::fabs(sag[1] - 0.39978), 0.6 * std::fabs(sag[0] - 0.39978));
 }
 
+// the lowest vibration of a chain that hangs from a clamp (R3): 1.2024128 sqrt(g/L). It is stretched by its weight first, and then pushed
+SERIAL_TEST(ThinElements, HangingChain)
+{
+  const double h = 0.04;
+  std::vector<Node> x;
+  std::vector<std::vector<int>> lines;
+  for (int i = 0; i <= 50; i++) x.push_back({0.0, -i / 50.0, 0.0});
+  for (int i = 0; i < 50; i++) lines.push_back({i, i + 1});
+  ScratchFile file("chain.msh", gmsh(1, x, lines));
+  Scene run(
+      MPM_TEST::box(2, "si", "f f f", "-0.4 0.4 -1.2 0.16", 1, 0.5 * h) +
+      "fix grid all mpm 0.04 transfer flip 1.0 gain ignore\n" +
+      thin_body(file.name, "thickness 0.001", "neohookean 1e7 0", "compression no") +
+      "region a block -1 1 0 1 INF INF\nfix a all mpm/boundary region a stick\n"
+      "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nfix rest all mpm/relax 1e-4\n"
+      "run 4000\nunfix rest\nvariable q atom "
+      "1-1.4457965*(1+y)+0.5225818*(1+y)^2-0.08394931*(1+y)^3\n"
+      "variable v atom 0.05*v_q\nvelocity all zero linear\nvelocity all set v_v NULL NULL\n"
+      "variable w atom vx*v_q\ncompute w all reduce ave v_w\nthermo_style custom step c_w\nrun "
+      "0\n");
+  const double start = run.evaluate("time");
+  double before = run.evaluate("c_w"), from = start, quarter = 0.0;
+  while (quarter == 0.0 && from < start + 1.0) {
+    run.commands("run 50 post no\n");
+    const double now = run.evaluate("c_w"), time = run.evaluate("time");
+    if (now <= 0.0) quarter = from + (time - from) * before / (before - now) - start;
+    before = now;
+    from = time;
+  }
+  EXPECT_NEAR(measured("frequency", 0.5 * PI / quarter / sqrt(9.81)) / 1.2024128, 1.0, 0.01);
+}
+
+// two square sheets that lie on each other, sewn together along their edges (R4): in fields of their own they part, and become a cushion of 0.1213 m^3
+SERIAL_TEST(Airbag, SheetsInFieldsOfTheirOwnPart)
+{
+  const int n = 24;
+  std::vector<Node> x;
+  std::vector<std::vector<int>> f;
+  std::map<std::array<int, 3>, int> place;
+  const auto node = [&](int i, int j, int side) {
+    const bool seam = std::min(i, j) == 0 || std::max(i, j) == n;
+    const auto found = place.emplace(std::array<int, 3>{i, j, seam ? 0 : side}, (int) x.size());
+    if (found.second)
+      x.push_back({0.84 * i / n - 0.42, 0.84 * j / n - 0.42, seam ? 0.0 : 1e-6 * side});
+    return found.first->second;
+  };
+  for (const int side : {1, -1})
+    for (int i = 0; i < n; i += 2)
+      for (int j = 0; j < n; j += 2) {
+        const int c[4] = {node(i, j, side), node(i + 2, j, side), node(i + 2, j + 2, side),
+                          node(i, j + 2, side)};
+        for (int k = 0; k < 4; k++) f.push_back({c[k], c[(k + 1) % 4], node(i + 1, j + 1, side)});
+      }
+  ScratchFile file("cushion.msh", gmsh(2, x, f));
+  const auto volume = [&](bool together) {
+    Scene run(
+        MPM_TEST::box(3, "si", "f f f", "-0.6 0.6 -0.6 0.6 -0.4 0.4", 1, 0.02) +
+        "create_points 1 mesh " + file.name + " thickness 0.0006\nvariable up atom z>-1e-9\n" +
+        "group up variable up\ngroup down subtract all up\nvariable x atom 0.93*x\nvariable y atom "
+        "0.93*y\n" +
+        (together ? "fix a all mpm 0.06 transfer flip 0.95\n"
+                  : "fix a up mpm 0.06 transfer flip 0.95\nfix b down mpm 0.06 transfer flip 0.95\n"
+                    "fix c all mpm/contact a b\n") +
+        "fix m all mpm/material density 1000 neohookean 588e6 0.4\nfix e all mpm/elements " +
+        file.name + " thickness 0.0006 compression no\nset group all x v_x y v_y\n" +
+        "fix p all mpm/airbag e pressure 5000\nfix dt all mpm/dt 0.5\nfix v all viscous "
+        "0.05\nrun " +
+        (together ? "300\n" : "2500\n"));
+    return run.fix("p")->compute_vector(1);
+  };
+  EXPECT_NEAR(measured("volume", volume(false)) / 0.1213, 1.0, 0.03);
+  EXPECT_LT(measured("in one field", volume(true)), 0.01);
+}
+
 // free vibrations: a beam between its free ends (R5, 22.37329, plane strain), of lines and of triangles, and a circular plate with two nodal
 // diameters (5.3583 for nu = 0.3: A.W. Leissa, Vibration of Plates, NASA SP-160 (1969), chapter 2). No clamp is there that could be
 // in another place. The lattice makes waves slower, by a part that falls with the square of its spacing
