@@ -25,7 +25,7 @@ PAGE = os.path.join(PAGES, "Howto_mpm_gallery.rst")
 TOPICS = {
     "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall hypervelocity "
                          "ring-on-block scratch blast-on-plate microstructure foam",
-     "Elastic bodies": "rubber-band beam arch buckling tube airbag cook-membrane two-disks ring-collision spinning-disk incline vortex",
+     "Elastic bodies": "rubber-band beam arch buckling tube airbag net cook-membrane two-disks ring-collision spinning-disk incline vortex",
     "Heat": "cooling-plate quench casting friction-weld machining hot-grains",
     "Fluids and gases": "dam-break sloshing pouring-honey extruder elastic-gate elastic-plate poiseuille shock-tube settling",
     "Soil and grains": "sand-column footing consolidation earthquake-slope levee submarine-slide ball-in-sand hopper boulders-in-debris tyre-on-gravel "
