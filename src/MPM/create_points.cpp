@@ -815,6 +815,7 @@ void CreatePoints::make_point(Site site)
 
   const int i = atom->nlocal - 1;
   atom->tag[i] = site.tag;
+  atom->image[i] = site.image;
   atom->mask[i] |= group_bits;
   atom->vfrac[i] = site.volume * (fix ? fix->frame->circle(site.x[0]) : 1.0);
   atom->rmass[i] = 0.0;    // not known yet, see fix mpm/material
@@ -951,7 +952,7 @@ void CreatePoints::wrap_sites(const char *file, const char *what)
           inside && site.x[d] >= domain->boxlo[d] - reach && site.x[d] < domain->boxhi[d] + reach;
     }
     if (inside)
-      domain->remap(site.x);
+      domain->remap(site.x, site.image);
     else
       outside++;
   }

@@ -86,12 +86,15 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void command(int, char **) override;
 
  private:
+  static constexpr imageint NO_IMAGE =
+      ((imageint) IMGMAX << IMG2BITS) | ((imageint) IMGMAX << IMGBITS) | IMGMAX;
   struct Site {    // a point to be made
     double x[3];
     double volume;
     tagint tag;
-    int type = 0;         // 0: that of all
-    double gray = 0.0;    // value of the image
+    int type = 0;                 // 0: that of all
+    double gray = 0.0;            // value of the image
+    imageint image = NO_IMAGE;    // of the periodic box: of nodes of a mesh that was wrapped
   };
   using Corners = std::array<double, 24>;    // of an element from its center, see transfer/cpdi.h
   struct Range {                             // consecutive sites along an axis

@@ -20,6 +20,7 @@
 #include "material/plane_stress.h"
 #include "math/matrix.h"
 #include "math_extra.h"
+#include "mesh/bending.h"
 #include "mesh/element.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -64,9 +65,18 @@ static const BatchKernels &kernels()
   return all;
 }
 
+static ElementType type_of(const double *row)
+{
+  return (ElementType) (int) row[1];
+}
+static bool bends(const double *row)
+{
+  return type_of(row) == ElementType::PATCH || type_of(row) == ElementType::CORNER;
+}
+
 static const ElementRule &rule_of(const double *row)
 {
-  return ElementRule::of((ElementType) (int) row[1]);
+  return ElementRule::of(type_of(row));
 }
 
 /* ----------------------------------------------------------------------
@@ -86,8 +96,15 @@ Options MPMElementsOptions::declare(int dim)
   thin.declare(o, dim);
   o.add("compression", {word(compression, {{"yes", true}, {"no", false}})},
         "do surfaces and lines resist compression, or wrinkle and sag?");
+  o.add("bending", {word(bending, {{"no", false}, {"yes", true}})},
+        "do surfaces of triangles, and lines, resist bending, as elastic plates and rods?");
   o.refuse([this] {
     auto rules = thin.rules();
+    rules.push_back(
+        {bending && !thin, "bending", "is for surfaces and lines: use thickness or section"});
+    rules.push_back(
+        {bending && !compression, "bending",
+         "and compression no exclude each other: what wrinkles does not resist bending"});
     rules.push_back({!compression && !thin, "compression",
                      "no is for surfaces and lines: use thickness or section"});
     rules.push_back({fbar && thin, "locking", "fbar is for solids, not for surfaces and lines"});
@@ -116,6 +133,12 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   int maxpoint = 0;
   Mesh mesh = read_body(lmp, file, part, along, "Fix mpm/elements", 3);
   if (along == dim - 1) kind = mesh.orient_surface();
+  nelements = mesh.elements.size();
+  try {
+    if (bending) mesh.add_bending();
+  } catch (const std::runtime_error &e) {
+    error->all(FLERR, "Fix mpm/elements bending: {}", e.what());
+  }
   for (const auto &e : mesh.elements) {
     const auto &rule = ElementRule::of(e.type);
     maxnode = std::max(maxnode, rule.nnode);
@@ -185,11 +208,21 @@ void FixMPMElements::define_plane_stress()
   if (!thin) return;
   try {
     plane_stress.reset(new PlaneStress(*material->material, dim, along, compression));
+    if (bending) {
+      const auto [E, ratio] = plane_stress->elastic_constants();
+      const double t = thin.across();
+      stiffness = along == dim - 1 ? E * t * t * t / (12.0 * (1.0 - ratio * ratio))
+                                   : E * t * t / (4.0 * M_PI);
+      nu = ratio;
+    }
   } catch (const std::runtime_error &e) {
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/elements {}: the material of fix mpm/material {} cannot be that of {}: {}",
                id, material->id,
-               compression ? "surfaces or lines" : "what does not resist compression", e.what());
+               bending           ? "what resists bending"
+                   : compression ? "surfaces or lines"
+                                 : "what does not resist compression",
+               e.what());
   }
 }
 
@@ -252,10 +285,9 @@ void FixMPMElements::make_elements(const Mesh &mesh)
 
   // each element belongs to the node that has fewest so far
 
-  nelements = mesh.elements.size();
   std::vector<int> owned(nnodes, 0);
   std::vector<std::pair<int, int>> here;    // (atom, element)
-  for (int e = 0; e < nelements; e++) {
+  for (int e = 0; e < (int) mesh.elements.size(); e++) {
     const auto &element = mesh.elements[e];
     int owner = element.node[0];
     for (int k = 1; k < element_nodes(element.type); k++)
@@ -279,6 +311,10 @@ void FixMPMElements::make_elements(const Mesh &mesh)
       nearest_image(*domain, X[m]);
       r[2 + m] = (double) (ids.low + element.node[m]);
       for (int d = 0; d < dim; d++) r[2 + maxnode + m * dim + d] = X[m][d];
+    }
+    if (bends(r)) {
+      define_bending(r, X);
+      continue;
     }
     double frequency = 0.0, size = 0.0;
     for (int q = 0; q < rule.npoint; q++) {
@@ -345,6 +381,7 @@ void FixMPMElements::init()
                id, variables, material->id, names_of_history());
 
   define_plane_stress();
+  if (bending) bending_frequency = largest_bending_frequency();
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
 
@@ -433,6 +470,7 @@ double FixMPMElements::largest_extent() const
     }
     largest = std::max(largest, sqrt(square * stretch));
   }
+  if (bending) largest *= 2.0;    // which are nodes of two elements
   MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
 }
@@ -482,6 +520,7 @@ void FixMPMElements::compute(bool starting)
     material_update(w, starting);
     add_sums(w);
   });
+  if (bending) add_bending();
   if (pressure) add_pressure(starting);
   comm->reverse_comm(this);
 
@@ -529,6 +568,7 @@ template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit)
   w.n = 0;
   w.elements.clear();
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
+    if (bends(row(e))) continue;
     if (w.n + rule_of(row(e)).npoint > BATCH) flush();
     load(w, e, moved);
   }
@@ -803,6 +843,7 @@ template <class Visit> void FixMPMElements::for_faces(Visit visit) const
     if (count[i] > 0) domain->unmap(atom->x[i], atom->image[i], here);
     for (int k = 0; k < count[i]; k++) {
       const auto e = (std::size_t) first[i] + k;
+      if (bends(row(e))) continue;
       const int nnode = rule_of(row(e)).nnode;
       double x[4][3];
       for (int m = 0; m < nnode; m++)
@@ -867,6 +908,99 @@ void FixMPMElements::add_pressure(bool starting)
   });
 }
 
+/* ----------------------------------------------------------------------
+   bending: a row has what mesh/bending.h knows of the patch or corner
+------------------------------------------------------------------------- */
+
+void FixMPMElements::define_bending(double *r, const double (*X)[3]) const
+{
+  double *const to = state_of(r, 0);
+  if (type_of(r) == ElementType::PATCH) {
+    static_assert(sizeof(BentTriangle) <= 24 * sizeof(double), "does not fit into a point");
+    BentTriangle bent;
+    bool has[3];
+    for (int k = 0; k < 3; k++) has[k] = r[2 + 3 + k] != r[2];
+    bent.define(X, has);
+    memcpy(to, &bent, sizeof(bent));
+  } else {
+    BentLine bent;
+    bent.define(dim, X);
+    if (dim == 3 && bent.rest > 1.0e-6)
+      error->one(
+          FLERR,
+          "Fix mpm/elements {}: element {} of the mesh and the next one make an angle: bending "
+          "is for lines that are straight when this fix is defined",
+          id, (bigint) r[0]);
+    memcpy(to, &bent, sizeof(bent));
+  }
+}
+
+/** Energy of a row, and forces. */
+double FixMPMElements::bend(const double *r, const double (*x)[3], double (*f)[3]) const
+{
+  const double *const from = state_of(const_cast<double *>(r), 0);
+  if (type_of(r) == ElementType::PATCH) {
+    BentTriangle bent;
+    memcpy(&bent, from, sizeof(bent));
+    return bent.bend(stiffness, nu, x, f);
+  }
+  BentLine bent;
+  memcpy(&bent, from, sizeof(bent));
+  return bent.bend(stiffness, dim, x, f);
+}
+
+/** visit(energy, row, number of nodes, forces on them). */
+template <class Visit> void FixMPMElements::for_bending(Visit visit) const
+{
+  for (std::size_t e = 0; e < nodes.size(); e++) {
+    const double *const r = row(e);
+    if (!bends(r)) continue;
+    const int nnode = rule_of(r).nnode;
+    double x[MAX_ELEMENT_NODES][3], f[MAX_ELEMENT_NODES][3] = {{0.0}};
+    for (int m = 0; m < nnode; m++)
+      MathExtra::sub3(atom->x[nodes[e][m]], atom->x[nodes[e][0]], x[m]);
+    const double energy = bend(r, x, f);
+    visit(energy, e, nnode, f);
+  }
+}
+
+void FixMPMElements::add_bending()
+{
+  const double scale = 1.0 / force->nktv2p;
+  for_bending([&](double, std::size_t e, int nnode, const double(*f)[3]) {
+    for (int m = 0; m < nnode; m++)
+      for (int d = 0; d < dim; d++) sums[(std::size_t) nodes[e][m] * width + d] += scale * f[m][d];
+  });
+}
+
+/** Of free nodes, by the theorem of Gerschgorin: the square is not above the largest sum of a row of the stiffness over its mass. */
+double FixMPMElements::largest_bending_frequency() const
+{
+  std::vector<double> sum(ids.n, 0.0), all(ids.n);
+  for (std::size_t e = 0; e < pool.size() / stride; e++) {
+    double *const r = row(e), mine[6];
+    if (!bends(r)) continue;
+    if (type_of(r) == ElementType::PATCH) {
+      BentTriangle bent;
+      memcpy(&bent, state_of(r, 0), sizeof(bent));
+      bent.stiffness_sums(nu, mine);
+    } else {
+      BentLine bent;
+      memcpy(&bent, state_of(r, 0), sizeof(bent));
+      bent.stiffness_sums(mine);
+    }
+    for (int m = 0; m < rule_of(r).nnode; m++)
+      sum[(bigint) r[2 + m] - ids.low] += stiffness * mine[m];
+  }
+  MPI_Allreduce(sum.data(), all.data(), (int) ids.n, MPI_DOUBLE, MPI_SUM, world);
+  double largest = 0.0, square;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit)
+      largest = std::max(largest, all[atom->tag[i] - ids.low] / atom->rmass[i]);
+  MPI_Allreduce(&largest, &square, 1, MPI_DOUBLE, MPI_MAX, world);
+  return sqrt(square * force->ftm2v / force->nktv2p);
+}
+
 /* ---------------------------------------------------------------------- */
 
 double FixMPMElements::stored_energy() const
@@ -876,6 +1010,10 @@ double FixMPMElements::stored_energy() const
     material->material->stored_energy(w.batch, energy);
     for (int p = 0; p < w.n; p++) sum += w.volume[p] * energy[p];
   });
+  if (bending)
+    for_bending([&](double stored, std::size_t, int, const double(*)[3]) {
+      sum += stored;
+    });
   return sum;
 }
 
@@ -909,6 +1047,7 @@ double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
       speed = largest;
     }
   });
+  if (bending) smallest = 2.0 / hypot(2.0 / smallest, bending_frequency);
   return smallest;
 }
 

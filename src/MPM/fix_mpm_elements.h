@@ -37,6 +37,7 @@ struct MPMElementsOptions {
   bool fbar = false;          ///< average the volume over an element
   MPMThinBody thin;           ///< surfaces or lines
   bool compression = true;    ///< do these resist it, or wrinkle?
+  bool bending = false;       ///< do these resist it?
 
   MPM_NS::Options declare(int dim);
 };
@@ -118,6 +119,7 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
       0.0;    // of the pressure: 1: on the inside if elements go around counterclockwise; 0: not known
   IDs ids;
   double pressure_work = 0.0, volume_before = 0.0, pressure_before = 0.0;    // of a closed surface
+  double stiffness = 0.0, nu = 0.0, bending_frequency = 0.0;                 // of bending
   double shortest = 0.0;             // length of the smallest element, for artificial viscosity
   class FixMPMMaterial *material;    // found again at the start of each run
   std::string variables;             // names of its history variables, which rows of the pool have
@@ -127,7 +129,8 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
 
   // A row of the pool: label and type of an element, tags of its nodes [maxnode], their reference
   // positions relative to the first one [maxnode][dim], and for each integration point F [9],
-  // tau [6], history, and, of surfaces and lines, the gradient of the motion along them [9].
+  // tau [6], history, and, of surfaces and lines, the gradient of the motion along them [9]. What bends
+  // has a row, too, with a BentTriangle or BentLine in the place of the points.
 
   double *first, *count;    // of an atom: its elements in the pool
   std::vector<double> pool;
@@ -165,6 +168,11 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   void add_sums(Work &);
   void add_pressure(bool starting);
   template <class Visit> void for_faces(Visit) const;
+  void define_bending(double *row, const double (*X)[3]) const;
+  template <class Visit> void for_bending(Visit) const;
+  double bend(const double *row, const double (*x)[3], double (*f)[3]) const;
+  void add_bending();
+  double largest_bending_frequency() const;
 };
 
 }    // namespace LAMMPS_NS

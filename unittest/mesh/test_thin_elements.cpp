@@ -79,6 +79,25 @@ std::string sphere(int divisions, double R, bool mixed = false)
   return gmsh(2, x, f);
 }
 
+/** A disk of triangles in rings, in a plane normal to z. */
+std::string disk(int rings, double radius, const Node &center)
+{
+  std::vector<Node> x(1, center);
+  std::vector<std::vector<int>> f;
+  const auto node = [](int ring, int k) {
+    return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1) + k % (6 * ring);
+  };
+  for (int r = 1; r <= rings; r++)
+    for (int k = 0; k < 6 * r; k++) {
+      const double angle = 2.0 * PI * k / (6 * r), R = radius * r / rings;
+      x.push_back({center[0] + R * cos(angle), center[1] + R * sin(angle), center[2]});
+      const int side = k / r, at = k % r, inner = side * (r - 1) + at;
+      f.push_back({node(r, k), node(r, k + 1), node(r - 1, inner)});
+      if (at > 0) f.push_back({node(r, k), node(r - 1, inner), node(r - 1, inner - 1)});
+    }
+  return gmsh(2, x, f);
+}
+
 /** n x n squares or pairs of triangles over 0 to l, with nodes in the plane z = 0. */
 std::string sheet(int n, double l, bool triangles)
 {
@@ -147,11 +166,15 @@ TEST(ThinElements, ForcesAreTheGradientOfEnergy)
                {3, "section 0.001", "compression no", hanging(8, 0.5, 2), false},
                {3, "section 0.001", "", hanging(8, 0.5, 2), false},
                {2, "thickness 0.01", "compression no", hanging(8, 0.5, 1), false},
+               {3, "thickness 0.2", "bending yes", sheet(3, 0.3, true), false},
+               {3, "thickness 0.1", "bending yes", sphere(2, 0.3), true},
+               {3, "section 0.02", "bending yes", hanging(8, 1.0, 2), false},
+               {2, "thickness 0.1", "bending yes", hanging(8, 0.5, 1), false},
                {3, "thickness 0.01", "compression no", sphere(2, 0.3), true}};
   for (const auto &c : cases) {
     SCOPED_TRACE(std::string(c.thin) + " " + c.more);
     ScratchFile file("thin.msh", c.mesh);
-    const std::string input = box(c.dim, -1.0, 1.0, 0.1, "") +
+    const std::string input = box(c.dim, -1.2, 1.2, 0.1, "") +
         thin_body(file.name, c.thin, "neohookean 1000 0.3", c.more) +
         (c.gas ? "fix b all mpm/airbag e gas 50 1.4 outside 20\n" : "") + "timestep 1e-6\nrun 0\n";
     const auto displaced = [&](double shift) {
@@ -201,6 +224,151 @@ SERIAL_TEST(ThinElements, Catenary)
   EXPECT_NEAR(sag[0] / 0.39978, 1.0, 0.01);
   EXPECT_NEAR(sag[1] / 0.39978, 1.0, 0.005);
   EXPECT_LT(std::fabs(sag[1] - 0.39978), 0.6 * std::fabs(sag[0] - 0.39978));
+}
+
+// the lowest vibration of a chain that hangs from a clamp (R3): 1.2024128 sqrt(g/L). It is stretched by its weight first, and then pushed
+SERIAL_TEST(ThinElements, HangingChain)
+{
+  const double h = 0.04;
+  std::vector<Node> x;
+  std::vector<std::vector<int>> lines;
+  for (int i = 0; i <= 50; i++) x.push_back({0.0, -i / 50.0, 0.0});
+  for (int i = 0; i < 50; i++) lines.push_back({i, i + 1});
+  ScratchFile file("chain.msh", gmsh(1, x, lines));
+  Scene run(
+      MPM_TEST::box(2, "si", "f f f", "-0.4 0.4 -1.2 0.16", 1, 0.5 * h) +
+      "fix grid all mpm 0.04 transfer flip 1.0 gain ignore\n" +
+      thin_body(file.name, "thickness 0.001", "neohookean 1e7 0", "compression no") +
+      "region a block -1 1 0 1 INF INF\nfix a all mpm/boundary region a stick\n"
+      "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nfix rest all mpm/relax 1e-4\n"
+      "run 4000\nunfix rest\nvariable q atom "
+      "1-1.4457965*(1+y)+0.5225818*(1+y)^2-0.08394931*(1+y)^3\n"
+      "variable v atom 0.05*v_q\nvelocity all zero linear\nvelocity all set v_v NULL NULL\n"
+      "variable w atom vx*v_q\ncompute w all reduce ave v_w\nthermo_style custom step c_w\nrun "
+      "0\n");
+  const double start = run.evaluate("time");
+  double before = run.evaluate("c_w"), from = start, quarter = 0.0;
+  while (quarter == 0.0 && from < start + 1.0) {
+    run.commands("run 50 post no\n");
+    const double now = run.evaluate("c_w"), time = run.evaluate("time");
+    if (now <= 0.0) quarter = from + (time - from) * before / (before - now) - start;
+    before = now;
+    from = time;
+  }
+  EXPECT_NEAR(measured("frequency", 0.5 * PI / quarter / sqrt(9.81)) / 1.2024128, 1.0, 0.01);
+}
+
+// two square sheets that lie on each other, sewn together along their edges (R4): in fields of their own they part, and become a cushion of 0.1213 m^3
+SERIAL_TEST(Airbag, SheetsInFieldsOfTheirOwnPart)
+{
+  const int n = 24;
+  std::vector<Node> x;
+  std::vector<std::vector<int>> f;
+  std::map<std::array<int, 3>, int> place;
+  const auto node = [&](int i, int j, int side) {
+    const bool seam = std::min(i, j) == 0 || std::max(i, j) == n;
+    const auto found = place.emplace(std::array<int, 3>{i, j, seam ? 0 : side}, (int) x.size());
+    if (found.second)
+      x.push_back({0.84 * i / n - 0.42, 0.84 * j / n - 0.42, seam ? 0.0 : 1e-6 * side});
+    return found.first->second;
+  };
+  for (const int side : {1, -1})
+    for (int i = 0; i < n; i += 2)
+      for (int j = 0; j < n; j += 2) {
+        const int c[4] = {node(i, j, side), node(i + 2, j, side), node(i + 2, j + 2, side),
+                          node(i, j + 2, side)};
+        for (int k = 0; k < 4; k++) f.push_back({c[k], c[(k + 1) % 4], node(i + 1, j + 1, side)});
+      }
+  ScratchFile file("cushion.msh", gmsh(2, x, f));
+  const auto volume = [&](bool together) {
+    Scene run(
+        MPM_TEST::box(3, "si", "f f f", "-0.6 0.6 -0.6 0.6 -0.4 0.4", 1, 0.02) +
+        "create_points 1 mesh " + file.name + " thickness 0.0006\nvariable up atom z>-1e-9\n" +
+        "group up variable up\ngroup down subtract all up\nvariable x atom 0.93*x\nvariable y atom "
+        "0.93*y\n" +
+        (together ? "fix a all mpm 0.06 transfer flip 0.95\n"
+                  : "fix a up mpm 0.06 transfer flip 0.95\nfix b down mpm 0.06 transfer flip 0.95\n"
+                    "fix c all mpm/contact a b\n") +
+        "fix m all mpm/material density 1000 neohookean 588e6 0.4\nfix e all mpm/elements " +
+        file.name + " thickness 0.0006 compression no\nset group all x v_x y v_y\n" +
+        "fix p all mpm/airbag e pressure 5000\nfix dt all mpm/dt 0.5\nfix v all viscous "
+        "0.05\nrun " +
+        (together ? "300\n" : "2500\n"));
+    return run.fix("p")->compute_vector(1);
+  };
+  EXPECT_NEAR(measured("volume", volume(false)) / 0.1213, 1.0, 0.03);
+  EXPECT_LT(measured("in one field", volume(true)), 0.01);
+}
+
+// free vibrations: a beam between its free ends (R5, 22.37329, plane strain), of lines and of triangles, and a circular plate with two nodal
+// diameters (5.3583 for nu = 0.3: A.W. Leissa, Vibration of Plates, NASA SP-160 (1969), chapter 2). No clamp is there that could be
+// in another place. The lattice makes waves slower, by a part that falls with the square of its spacing
+SERIAL_TEST(Bending, FreeVibrations)
+{
+  const double E = 1e7, rho = 1000.0, t = 0.02;
+  const auto frequency = [&](int dim, double nu, double h, const std::string &mesh,
+                             const std::string &mode, double expected) {
+    ScratchFile file("free.msh", mesh);
+    Scene run(
+        box(dim, -0.7, 0.7, h, "transfer flip 1.0") +
+        thin_body(file.name, "thickness 0.02 ", strprintf("linear %g %g", E, nu), "bending yes") +
+        "variable q atom " + mode + "\nvariable v atom 0.02*v_q\nvelocity all set " +
+        (dim == 2 ? "NULL v_v NULL" : "NULL NULL v_v") +
+        "\nfix dt all mpm/dt 0.5\nvariable w atom " + (dim == 2 ? "vy" : "vz") +
+        "*v_q\ncompute w all reduce ave v_w\nthermo_style custom step c_w\nrun 0\n");
+    // to the first time without velocity, a quarter of a period
+    double before = run.evaluate("c_w"), from = 0.0;
+    for (int k = 0; k < 2000; k++) {
+      run.commands("run 20 post no\n");
+      const double now = run.evaluate("c_w"), time = run.evaluate("time");
+      if (now <= 0.0) return PI / 2.0 / (from + (time - from) * before / (before - now)) / expected;
+      before = now;
+      from = time;
+    }
+    return 0.0;
+  };
+  const double bl = 4.73004074, ratio = 0.982502215;
+  const std::string s = strprintf("(x+0.5)*%.9g", bl),
+                    mode = strprintf(
+                        "0.5*(exp(%s)+exp(-%s))+cos(%s)-%.9g*(0.5*(exp(%s)-exp(-%s))+sin(%s))",
+                        s.c_str(), s.c_str(), s.c_str(), ratio, s.c_str(), s.c_str(), s.c_str());
+  const double beam = 22.37329 * t * sqrt(E / (12.0 * rho));
+  std::vector<Node> x;
+  std::vector<std::vector<int>> lines;
+  for (int i = 0; i <= 40; i++) x.push_back({i / 40.0 - 0.5, 0.003, 0.0});
+  for (int i = 0; i < 40; i++) lines.push_back({i, i + 1});
+  const double coarse =
+      measured("beam", frequency(2, 0.3, 0.05, gmsh(1, x, lines), mode, beam / sqrt(0.91)));
+  const double fine =
+      measured("beam", frequency(2, 0.3, 0.025, gmsh(1, x, lines), mode, beam / sqrt(0.91)));
+  EXPECT_NEAR(fine, 1.0, 0.02);
+  EXPECT_NEAR((1.0 - coarse) / (1.0 - fine), 4.0, 1.0);
+
+  const std::string plate = disk(10, 0.5, {0.007, 0.003, 0.004});
+  const double D = E * t * t * t / (12.0 * 0.91);
+  EXPECT_NEAR(measured("plate",
+                       frequency(3, 0.3, 0.05, plate, "(x-0.007)^2-(y-0.003)^2",
+                                 5.3583 * sqrt(D / (rho * t)) / 0.25)),
+              1.0, 0.02);
+}
+
+// a clamped circular membrane under pressure (R1, Hencky): the region that clamps it begins 0.8 cells before the rim, as the manual advises
+SERIAL_TEST(ThinElements, HenckysMembrane)
+{
+  const double h = 0.05, a = 0.5;
+  for (const double off : {0.0, 0.013}) {
+    ScratchFile file("membrane.msh", disk(12, 0.62, {off, 0.7 * off, 0.4 * off}));
+    Scene run(
+        MPM_TEST::box(3, "si", "f f f", "-0.76 0.76 -0.76 0.76 -0.16 0.16", 1, 0.5 * h) +
+        "fix grid all mpm 0.05 transfer flip 0.95\n" +
+        thin_body(file.name, "thickness 1e-3", "linear 1e6 0.3") +
+        strprintf("region c cylinder z %g %g %g -1 1 side out\n", off, 0.7 * off, a - 0.8 * h) +
+        "fix c all mpm/boundary region c stick\nfix p all mpm/airbag e pressure 0.1\n"
+        "fix dt all mpm/dt 0.5\nfix rest all mpm/relax 1e-3\nrun 6000\n");
+    double high = 0.0;
+    for (const auto &s : run.gather()) high = std::max(high, s.x[2] - 0.4 * off);
+    EXPECT_NEAR(measured("W", high / (a * cbrt(0.1 * a / (1e6 * 1e-3)))) / 0.653443, 1.0, 0.015);
+  }
 }
 
 // balloons (R2, V1): a stretch of 1.2 by a given pressure, and what a gas at higher pressure does, of either kind
@@ -266,13 +434,40 @@ SERIAL_TEST(Airbag, VentAndInflow)
   EXPECT_NEAR(fill.fix("b")->compute_vector(5) / mass, 1.0, 1e-9);
 }
 
+// a bag that lies across periodic faces from the start holds what it holds elsewhere, and keeps it while it moves
+TEST(Airbag, AcrossPeriodicFaces)
+{
+  ScratchFile file("ball.msh", sphere(2, 0.1));
+  const auto volumes = [&](const char *move) {
+    const std::string options = " thickness 0.001 move " + std::string(move);
+    Scene run(MPM_TEST::box(3, "si", "p p p", "-0.3 0.3 -0.3 0.3 -0.3 0.3", 1, 0.02) +
+              "fix grid all mpm 0.05 transfer flip 0.95\n" + "create_points 1 mesh " + file.name +
+              options + "\nfix m all mpm/material density 1000 neohookean 1e5 0.3\n" +
+              "velocity all set 2 0 0\nfix e all mpm/elements " + file.name +
+              " thickness 0.001 compression no\n" +
+              "fix b all mpm/airbag e gas 1013 1.4 outside 1000\ntimestep 5e-4\nrun 0\n");
+    const double before = run.fix("b")->compute_vector(1);
+    run.commands("run 100\n");
+    return std::pair(before, run.fix("b")->compute_vector(1));
+  };
+  const auto [before, after] = volumes("0 0 0");
+  for (const char *move : {"0.3 0.29 0", "0.25 -0.3 0.3"}) {
+    const auto [here, later] = volumes(move);
+    EXPECT_NEAR(here / before, 1.0, 1e-12) << move;
+    EXPECT_NEAR(later / after, 1.0, 1e-4) << move;
+  }
+}
+
 TEST(ThinElements, RanksAndRestart)
 {
   const struct {
     int dim;
     const char *thin;
     std::string mesh, more;
+    const char *options = "compression no";
   } cases[] = {
+      {3, "thickness 0.02", sheet(8, 0.4, true), "", "bending yes"},
+      {2, "thickness 0.02", hanging(40, 0.5, 1), "", "bending yes"},
       {3, "thickness 0.001", sphere(3, 0.1),
        "fix b all mpm/airbag e gas 1200 1.4 outside 1000 temperature 300 287 vent 1e-4 1 opens "
        "50\n"},
@@ -286,7 +481,7 @@ TEST(ThinElements, RanksAndRestart)
     const std::string points =
         std::string("create_points 1 mesh ") + file.name + " " + c.thin + "\n";
     const std::string elements =
-        std::string("fix e all mpm/elements ") + file.name + " " + c.thin + " compression no\n";
+        std::string("fix e all mpm/elements ") + file.name + " " + c.thin + " " + c.options + "\n";
     const std::string rest = material + elements + c.more + "timestep 0.0002\n";
     ScratchFile own("serial.msh", c.mesh);
     const std::string start = head + points +
@@ -323,6 +518,16 @@ SERIAL_TEST(ThinElements, BadInput)
   EXPECT_THAT(failure(ball.name, thick, "locking fbar", ""), HasSubstr("is for solids"));
   EXPECT_THAT(failure(ball.name, thick, "compression no", "", "eos linear 1e5 strength j2 4e4 100"),
               HasSubstr("must be elastic"));
+  ScratchFile squares("squares.msh", sheet(4, 0.2, false));
+  EXPECT_THAT(failure(ball.name, thick, "bending yes", ""), "");
+  EXPECT_THAT(failure(ball.name, thick, "bending yes compression no", ""),
+              HasSubstr("exclude each other"));
+  EXPECT_THAT(failure(ball.name, "", "bending yes", ""), HasSubstr("no elements of dimension 3"));
+  EXPECT_THAT(failure(squares.name, thick, "bending yes", ""),
+              HasSubstr("element 1 is a quadrangle"));
+  EXPECT_THAT(failure(line.name, "section 1e-5", "bending yes", ""), HasSubstr("make an angle"));
+  EXPECT_THAT(failure(ball.name, thick, "bending yes", "", "eos linear 1e5 strength j2 4e4 100"),
+              HasSubstr("what resists bending: it must be elastic"));
   EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag x gas 1e5 1.4\n"),
               HasSubstr("no fix mpm/elements with ID x"));
   EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e\n"),

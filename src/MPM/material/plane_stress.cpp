@@ -16,11 +16,14 @@
 
 using namespace MPM_NS;
 
-// the strain across, up to what the stress there is as good as zero
-static constexpr double TOLERANCE = 1.0e-11;
+// the stretch across is found up to a part TOLERANCE of it, or until the stress there is this part of the stiffness, which is rounding
+static constexpr double TOLERANCE = 1.0e-11, NO_STRESS = 1.0e-14;
 // relative change of the stretch for the first slope, and the largest of an iteration
 static constexpr double PROBE = 1.0e-7, MOST_CHANGE = 0.3;
-static constexpr int MOST_ITERATIONS = 60;
+static constexpr int SECANT_ITERATIONS = 8, MOST_ITERATIONS = 100;
+// a stress that is no rounding, as part of the stiffness
+static constexpr double BROKEN = 1.0e-8;
+static constexpr int MOST_ATTEMPTS = 4;
 // axes of a surface that has collapsed to a line are those of before
 static constexpr double COLLAPSED = 1.0e-12;
 
@@ -162,6 +165,7 @@ void PlaneStress::keep(const Batch &b)
 void PlaneStress::move(Batch &b, const Point *point)
 {
   std::memcpy(b.stress, start, sizeof(start));
+  std::fill_n(b.heat, b.n, 0.0);
   for (std::size_t k = 0; k < history.size(); k++) b.history[k / BATCH][k % BATCH] = history[k];
   for (int p = 0; p < b.n; p++) {
     double F[9], change[9];
@@ -186,7 +190,6 @@ void PlaneStress::move(Batch &b, const Point *point)
 void PlaneStress::stress_across(Batch &b, const Point *point, double *value)
 {
   move(b, point);
-  std::fill_n(b.heat, b.n, 0.0);
   material.update(b);
   for (int p = 0; p < b.n; p++) {
     const State &s = state[p];
@@ -203,13 +206,24 @@ void PlaneStress::stress_across(Batch &b, const Point *point, double *value)
   }
 }
 
-/** The stretch of all points that are not done, by the secant method. */
-int PlaneStress::solve(Batch &b, const Point *point)
+/** The stretch of all points that are not done, by the secant method. What yields or breaks has a stress with kinks and steps,
+ *  between whose sides the secant method can go to and fro: from a few iterations on, every other one halves the range between the last
+ *  stretches with a stress below and above zero. */
+int PlaneStress::iterate(Batch &b, const Point *point)
 {
-  double before[BATCH], now[BATCH], change[BATCH], slope[BATCH];
+  double before[BATCH], now[BATCH], change[BATCH], slope[BATCH], low[BATCH], high[BATCH];
+  const auto keep_range = [&](int p, double stress) {
+    (stress < 0.0 ? low : high)[p] = state[p].stretch;
+  };
+  const auto is_none = [this](double stress) {
+    return std::fabs(stress) <= NO_STRESS * stiffness;
+  };
+  std::fill_n(low, b.n, 0.0);
+  std::fill_n(high, b.n, HUGE_VAL);
   stress_across(b, point, before);
   for (int p = 0; p < b.n; p++) {
-    if (before[p] == 0.0) state[p].done = true;
+    if (is_none(before[p])) state[p].done = true;
+    keep_range(p, before[p]);
     change[p] = state[p].done ? 0.0 : PROBE * state[p].stretch;
     state[p].stretch += change[p];
   }
@@ -222,8 +236,11 @@ int PlaneStress::solve(Batch &b, const Point *point)
     for (int p = 0; p < b.n; p++) {
       State &s = state[p];
       if (s.done) continue;
-      const double most = MOST_CHANGE * s.stretch;
-      change[p] = std::max(-most, std::min(most, -now[p] / slope[p]));
+      keep_range(p, now[p]);
+      const double most = MOST_CHANGE * s.stretch, middle = 0.5 * (low[p] + high[p]);
+      change[p] = is_none(now[p]) ? 0.0 : std::max(-most, std::min(most, -now[p] / slope[p]));
+      if (k > SECANT_ITERATIONS && k % 2 && low[p] > 0.0 && std::isfinite(middle))
+        change[p] = middle - s.stretch;
       s.stretch += change[p];
       s.done = std::fabs(change[p]) <= TOLERANCE * s.stretch;
       if (!s.done) left = p;    // also if not a number
@@ -240,6 +257,24 @@ int PlaneStress::solve(Batch &b, const Point *point)
   for (int p = 0; p < b.n; p++)
     if (!state[p].done) return p;
   return -1;
+}
+
+/** What breaks may do so in the last, small change: then there is another state without stress, and it is looked for from there. */
+int PlaneStress::solve(Batch &b, const Point *point)
+{
+  int bad = iterate(b, point);
+  for (int attempt = 0; bad < 0 && !history.empty(); attempt++) {
+    double left[BATCH];
+    stress_across(b, point, left);
+    for (int p = 0; p < b.n; p++) {
+      if (std::fabs(left[p]) <= BROKEN * stiffness || !std::isfinite(left[p])) continue;
+      state[p].done = false;
+      bad = p;
+    }
+    if (bad < 0 || attempt == MOST_ATTEMPTS) return bad;
+    bad = iterate(b, point);
+  }
+  return bad;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -287,6 +322,12 @@ int PlaneStress::update(Batch &b, const Point *point, const std::function<void(B
 
 namespace {
 
+// a small compression, which all materials resist
+constexpr double SMALL = 1.0e-6, SAME = 1.0e-6;
+constexpr double UNIT[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+constexpr double STRAINED[9] = {1.0 - SMALL, 0.1 * SMALL, 0.0, 0.1 * SMALL,      1.0 - 0.8 * SMALL,
+                                0.0,         0.0,         0.0, 1.0 - 0.7 * SMALL};
+
 /** A batch with one point at rest, without deformation. */
 struct One {
   Batch b = {};
@@ -300,7 +341,8 @@ struct One {
     if (!values.empty()) material.initialize(origin, values.data());
     for (std::size_t k = 0; k < values.size(); k++) history[k * BATCH] = values[k];
     b.n = 1;
-    b.dt = b.h = b.vol0[0] = 1.0;
+    b.dt = b.vol0[0] = 1.0;
+    b.h = SMALL;    // else what breaks would do so at once
     b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
     for (int c = 0; c < 9; c += 4) b.F[c][0] = 1.0;
     b.J[0] = b.Jold[0] = 1.0;
@@ -331,11 +373,6 @@ struct One {
   }
 };
 
-constexpr double SMALL = 1.0e-4, SAME = 1.0e-6;
-constexpr double UNIT[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-constexpr double STRAINED[9] = {1.0 + SMALL, 0.3 * SMALL, 0.0, 0.3 * SMALL,      1.0 - 0.5 * SMALL,
-                                0.0,         0.0,         0.0, 1.0 + 0.4 * SMALL};
-
 double norm(const double *m)
 {
   double sum = 0.0;
@@ -355,7 +392,7 @@ void turn(const double *R, const double *m, double *to)
 
 }    // namespace
 
-void PlaneStress::check_isotropy() const
+void PlaneStress::check_isotropy()
 {
   // about x + y by one radian, which is no symmetry of anything
   const double c = cos(1.0), s = sin(1.0), r = sqrt(0.5);
@@ -366,6 +403,7 @@ void PlaneStress::check_isotropy() const
   One one(material), other(material);
   one.go(material, UNIT, STRAINED);
   one.get(stress);
+  stiffness = norm(stress) / SMALL;
   turn(R, stress, wanted);
   turn(R, STRAINED, strained);
   other.go(material, UNIT, strained);
@@ -398,4 +436,18 @@ void PlaneStress::check_elasticity() const
         "it must be elastic: its stress must follow from the deformation alone");
   if (!(norm(rest) <= SAME * norm(stress)))
     throw std::runtime_error("it must be free of stress when it is not deformed");
+}
+
+/** From the stress in a small strain, 2 mu e + lambda tr(e) I. */
+std::array<double, 2> PlaneStress::elastic_constants() const
+{
+  check_elasticity();
+  double stress[9];
+  One one(material);
+  one.go(material, UNIT, STRAINED);
+  one.get(stress);
+  const double trace = STRAINED[0] + STRAINED[4] + STRAINED[8] - 3.0;
+  const double mu = 0.5 * stress[1] / STRAINED[1],
+               lambda = (stress[0] - 2.0 * mu * (STRAINED[0] - 1.0)) / trace;
+  return {mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), 0.5 * lambda / (lambda + mu)};
 }

@@ -11,6 +11,7 @@
 
 #include "material/material.h"
 
+#include <array>
 #include <functional>
 
 namespace MPM_NS {
@@ -45,6 +46,9 @@ class PlaneStress {
    *  state that was found. Returns the index of a point for which none was found, or -1. */
   int update(Batch &, const Point *, const std::function<void(Batch &)> &last);
 
+  /** Young's modulus and Poisson's ratio at rest. Throws std::runtime_error when the material is not elastic, see above. */
+  std::array<double, 2> elastic_constants() const;
+
   /** Orthonormal axes for Point::frame from gradients along the body: directions a and, for surfaces, b. */
   void make_frame(const double *a, const double *b, double (*frame)[3]) const;
 
@@ -63,6 +67,7 @@ class PlaneStress {
   State state[BATCH];
   double start[6][BATCH];
   std::vector<double> history;
+  double stiffness = 0.0;    // of the material in small compression
 
   int last_axis() const { return dim == 2 ? 2 : 3; }
   void find_axes(const Point &, State &) const;
@@ -70,8 +75,9 @@ class PlaneStress {
   void keep(const Batch &);
   void move(Batch &, const Point *);
   void stress_across(Batch &, const Point *, double *s);
+  int iterate(Batch &, const Point *);
   int solve(Batch &, const Point *);
-  void check_isotropy() const;
+  void check_isotropy();
   void check_elasticity() const;
 };
 

@@ -59,13 +59,22 @@ ElementRule cube(int dim)
   return r;
 }
 
+/** Without points: bending is not integrated. */
+ElementRule bending(int nnode)
+{
+  ElementRule r = {};
+  r.nnode = nnode;
+  return r;
+}
+
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
 
 const ElementRule &ElementRule::of(ElementType type)
 {
-  static const ElementRule rules[5] = {simplex(2), cube(2), simplex(3), cube(3), simplex(1)};
+  static const ElementRule rules[7] = {simplex(2), cube(2),    simplex(3), cube(3),
+                                       simplex(1), bending(6), bending(3)};
   return rules[static_cast<int>(type)];
 }
 

@@ -23,7 +23,15 @@
 namespace MPM_NS {
 
 /** Linear elements; their nodes are in Gmsh's order, which is that of VTK. */
-enum class ElementType : int { TRIANGLE, QUAD, TETRAHEDRON, HEXAHEDRON, LINE };
+enum class ElementType : int {
+  TRIANGLE,
+  QUAD,
+  TETRAHEDRON,
+  HEXAHEDRON,
+  LINE,
+  PATCH,    ///< a triangle and its neighbors, see mesh/bending.h; never in a file, nor is the next one
+  CORNER,    ///< two lines
+};
 
 /** Number of nodes of an element, and its dimension (1, 2 or 3). */
 constexpr int element_nodes(ElementType t)
@@ -32,7 +40,10 @@ constexpr int element_nodes(ElementType t)
     case ElementType::LINE:
       return 2;
     case ElementType::TRIANGLE:
+    case ElementType::CORNER:
       return 3;
+    case ElementType::PATCH:
+      return 6;
     case ElementType::HEXAHEDRON:
       return 8;
     default:
@@ -100,6 +111,9 @@ struct Mesh {
 
   /** Number the nodes of elements of a surface such that those of neighbors go around in the same sense. */
   SurfaceKind orient_surface();
+
+  /** Append patches and corners for the bending of a surface or of lines. Throws std::runtime_error where it cannot bend. */
+  void add_bending();
 
   /** Area or volume of an element of the dimension of the mesh, negative when its nodes are numbered in the wrong
    *  sense. */

@@ -1,0 +1,256 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mesh/bending.h"
+
+#include "math/matrix.h"
+#include "mesh/gmsh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+using namespace MPM_NS;
+
+namespace {
+
+void difference(const double *a, const double *b, double *to)
+{
+  for (int d = 0; d < 3; d++) to[d] = a[d] - b[d];
+}
+
+double norm(const double *a)
+{
+  return std::sqrt(dot(a, a));
+}
+
+/** Gradients of the linear functions of a triangle in the plane; returns its area. */
+double plane_gradients(const double (*p)[2], double (*g)[2])
+{
+  const double twice =
+      (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
+  for (int k = 0; k < 3; k++) {
+    const double *const a = p[(k + 1) % 3], *const b = p[(k + 2) % 3];
+    g[k][0] = (a[1] - b[1]) / twice;
+    g[k][1] = (b[0] - a[0]) / twice;
+  }
+  return 0.5 * twice;
+}
+
+/** Unit normal of the first three nodes, and with g also the gradients of their functions; returns the area. */
+double normal_of(const double (*x)[3], double *n, double (*g)[3] = nullptr)
+{
+  double a[3], b[3];
+  difference(x[1], x[0], a);
+  difference(x[2], x[0], b);
+  cross(a, b, n);
+  const double twice = norm(n);
+  for (int d = 0; d < 3; d++) n[d] /= twice;
+  for (int k = 0; k < 3 && g; k++) {
+    double edge[3];
+    difference(x[(k + 2) % 3], x[(k + 1) % 3], edge);
+    cross(n, edge, g[k]);
+    for (int d = 0; d < 3; d++) g[k][d] /= twice;
+  }
+  return 0.5 * twice;
+}
+
+}    // namespace
+
+/* ----------------------------------------------------------------------
+   With the outward normal m_i and length l_i of edge i, and the mean of the gradients on its sides, the theorem of Gauss gives
+   b A = sum_i l_i m_i x (grad_i + grad)/2
+------------------------------------------------------------------------- */
+
+void BentTriangle::define(const double (*X)[3], const bool *has)
+{
+  std::fill_n(h[0], 18, 0.0);
+  double axis[2][3], n[3];
+  area = normal_of(X, n);
+  difference(X[1], X[0], axis[0]);
+  const double first = norm(axis[0]);
+  for (double &c : axis[0]) c /= first;
+  cross(n, axis[0], axis[1]);
+  double p[3][2], own[3][2];
+  for (int k = 0; k < 3; k++) {
+    double from[3];
+    difference(X[k], X[0], from);
+    for (int a = 0; a < 2; a++) p[k][a] = dot(from, axis[a]);
+  }
+  plane_gradients(p, own);
+  for (int i = 0; i < 3; i++) {
+    if (!has[i]) continue;
+    const int j = (i + 1) % 3, k = (i + 2) % 3;    // of the edge
+    double edge[3], other[3];
+    difference(X[k], X[j], edge);
+    difference(X[3 + i], X[j], other);
+    const double l = norm(edge), along = dot(other, edge) / l,
+                 away = std::sqrt(std::max(0.0, dot(other, other) - along * along));
+    const double u[2] = {(p[k][0] - p[j][0]) / l, (p[k][1] - p[j][1]) / l}, m[2] = {u[1], -u[0]};
+    const double unfolded[3][2] = {
+        {p[k][0], p[k][1]},
+        {p[j][0], p[j][1]},
+        {p[j][0] + along * u[0] + away * m[0], p[j][1] + along * u[1] + away * m[1]}};
+    double g[3][2];
+    plane_gradients(unfolded, g);
+    const int node[3] = {k, j, 3 + i};
+    const double factor = 0.5 * l / area;
+    const auto add = [&](int at, double sign, const double *slope) {
+      h[at][0] += sign * factor * m[0] * slope[0];
+      h[at][1] += sign * factor * m[1] * slope[1];
+      h[at][2] += sign * factor * 0.5 * (m[0] * slope[1] + m[1] * slope[0]);
+    };
+    for (int c = 0; c < 3; c++) {
+      add(node[c], 1.0, g[c]);
+      add(c, -1.0, own[c]);
+    }
+  }
+  for (int c = 0; c < 3; c++) {
+    rest[c] = 0.0;
+    for (int k = 0; k < 6; k++) rest[c] += h[k][c] * dot(X[k], n);
+  }
+}
+
+double BentTriangle::bend(double D, double nu, const double (*x)[3], double (*f)[3]) const
+{
+  double n[3], g[3][3], B[3][3] = {{0.0}}, change[3];
+  normal_of(x, n, g);
+  for (int c = 0; c < 3; c++) {
+    for (int k = 0; k < 6; k++)
+      for (int d = 0; d < 3; d++) B[c][d] += h[k][c] * x[k][d];
+    change[c] = dot(B[c], n) - rest[c];
+  }
+  const double moment[3] = {D * (change[0] + nu * change[1]), D * (change[1] + nu * change[0]),
+                            2.0 * D * (1.0 - nu) * change[2]};
+  for (int k = 0; k < 6; k++) {
+    double factor = 0.0;
+    for (int c = 0; c < 3; c++) {
+      factor += moment[c] * h[k][c];
+      if (k < 3) factor -= moment[c] * dot(B[c], g[k]);    // turns the normal
+    }
+    for (int d = 0; d < 3; d++) f[k][d] -= area * factor * n[d];
+  }
+  return 0.5 * area * (moment[0] * change[0] + moment[1] * change[1] + moment[2] * change[2]);
+}
+
+void BentTriangle::stiffness_sums(double nu, double *sum) const
+{
+  double size[6], all = 0.0;
+  for (int k = 0; k < 6; k++) {
+    size[k] = std::sqrt(h[k][0] * h[k][0] + h[k][1] * h[k][1] + 2.0 * h[k][2] * h[k][2]);
+    all += size[k];
+  }
+  for (int k = 0; k < 6; k++) sum[k] = (1.0 + std::fabs(nu)) * area * size[k] * all;
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Unit vectors along both lines and their lengths, and the angle; u: the directions to which each would turn the other. */
+static double angle_of(int dim, const double (*x)[3], double *l, double (*u)[3])
+{
+  double t[2][3];
+  for (int k = 0; k < 2; k++) {
+    difference(x[k + 1], x[k], t[k]);
+    l[k] = norm(t[k]);
+    for (double &c : t[k]) c /= l[k];
+  }
+  const double c = dot(t[0], t[1]);
+  if (dim == 2) {
+    for (int k = 0; k < 2; k++) {
+      u[k][0] = -t[k][1];
+      u[k][1] = t[k][0];
+      u[k][2] = 0.0;
+    }
+    return std::atan2(t[0][0] * t[1][1] - t[0][1] * t[1][0], c);
+  }
+  double n[3];
+  cross(t[0], t[1], n);
+  const double s = norm(n);
+  for (int d = 0; d < 3; d++) {
+    u[0][d] = s > 0.0 ? (t[1][d] - c * t[0][d]) / s : 0.0;
+    u[1][d] = s > 0.0 ? (c * t[1][d] - t[0][d]) / s : 0.0;
+  }
+  return std::atan2(s, c);
+}
+
+void BentLine::define(int dim, const double (*X)[3])
+{
+  double u[2][3];
+  rest = angle_of(dim, X, length, u);
+}
+
+double BentLine::bend(double D, int dim, const double (*x)[3], double (*f)[3]) const
+{
+  double l[2], u[2][3];
+  const double change = angle_of(dim, x, l, u) - rest, moment = D * change / mean();
+  for (int d = 0; d < 3; d++) {
+    const double a = moment * u[0][d] / l[0], b = moment * u[1][d] / l[1];
+    f[0][d] -= a;
+    f[1][d] += a + b;
+    f[2][d] -= b;
+  }
+  return 0.5 * moment * change;
+}
+
+void BentLine::stiffness_sums(double *sum) const
+{
+  const double a = 1.0 / length[0], b = 1.0 / length[1];
+  const double size[3] = {a, a + b, b};
+  for (int k = 0; k < 3; k++) sum[k] = size[k] * 2.0 * (a + b) / mean();
+}
+
+/* ----------------------------------------------------------------------
+   what bends: triangles with their neighbors, or pairs of lines
+------------------------------------------------------------------------- */
+
+void Mesh::add_bending()
+{
+  const auto n = elements.size();
+  const auto problem = [&](std::size_t e, const std::string &what) {
+    return std::runtime_error("element " + std::to_string(elements[e].label) + " " + what);
+  };
+  std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, int>>> rims;    // element, node
+  for (std::size_t e = 0; e < n; e++) {
+    const auto &element = elements[e];
+    if (element.type == ElementType::LINE) {
+      for (int k = 0; k < 2; k++) rims[{element.node[k], element.node[k]}].emplace_back(e, k);
+    } else if (element.type == ElementType::TRIANGLE) {
+      for (int k = 0; k < 3; k++)
+        rims[std::minmax(element.node[(k + 1) % 3], element.node[(k + 2) % 3])].emplace_back(e, k);
+    } else
+      throw problem(e, "is a quadrangle: bending is for triangles and lines");
+  }
+  for (const auto &[nodes, parts] : rims)
+    if (parts.size() > 2)
+      throw problem(parts[0].first, "has a rim with more than two elements: these cannot bend");
+  for (std::size_t e = 0; e < n; e++) {
+    const MeshElement element = elements[e];    // a copy, as the list grows
+    if (element.type == ElementType::LINE) continue;
+    MeshElement patch = element;
+    patch.type = ElementType::PATCH;
+    for (int k = 0; k < 3; k++) {
+      patch.node[3 + k] = patch.node[0];
+      const auto &parts = rims[std::minmax(element.node[(k + 1) % 3], element.node[(k + 2) % 3])];
+      for (const auto &[other, opposite] : parts)
+        if (other != e) patch.node[3 + k] = elements[other].node[opposite];
+    }
+    elements.push_back(patch);
+  }
+  for (const auto &[nodes, parts] : rims) {
+    if (parts.size() != 2 || elements[parts[0].first].type != ElementType::LINE) continue;
+    MeshElement corner = elements[parts[0].first];
+    corner.type = ElementType::CORNER;
+    corner.node[0] = elements[parts[0].first].node[1 - parts[0].second];
+    corner.node[1] = nodes.first;
+    corner.node[2] = elements[parts[1].first].node[1 - parts[1].second];
+    elements.push_back(corner);
+  }
+}
