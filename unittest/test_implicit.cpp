@@ -610,6 +610,95 @@ SERIAL_TEST(Cylinder, BecomesPlastic)
   EXPECT_LE(most, 6.0);
 }
 
+namespace {
+
+/** A hollow sphere of a perfectly plastic metal around an axis of symmetry, with pressure in its bore: benchmark P3, a = 1, b = 2.
+ *  Strains are 1e-6, as the solutions are those of small ones. */
+struct HollowSphere {
+  static constexpr double E = 1e6, YIELD = 1.0;
+  Scene run;
+  double p = 0.0;
+
+  HollowSphere(const char *options, int ppc) :
+      run(plane("si", "f f", "0 2.4 0 2.4", 1, 0.03) +
+          "fix grid all mpm 0.1 axisymmetric yes frame total " + options +
+          "\nregion outer sphere 0 0 0 2\nregion bore sphere 0 0 0 1 side out\n"
+          "region shell intersect 2 outer bore\n" +
+          strprintf("create_points 1 region shell ppc %d outside ignore\n", ppc) +
+          "fix m all mpm/material density 1000 eos linear 833333.333333 strength j2 "
+          "384615.384615 1\nfix walls all mpm/boundary xlo ylo slip\nvariable p equal 0.0\n"
+          "fix gas all mpm/traction region bore pressure v_p area $(2*PI)\n"
+          "fix solve all mpm/implicit static solver multigrid\ntimestep 1.0\n")
+  {
+    run.set_reference();
+  }
+
+  /** Pressure grows to this one in equal steps. Returns the largest number of Newton iterations in one of them. */
+  double load(double next, int steps)
+  {
+    double most = 0.0;
+    for (int k = 1; k <= steps; k++) {
+      run.commands(strprintf("variable p equal %.17g\nrun 1\n", p + (next - p) * k / steps));
+      most = std::max(most, run.fix("solve")->compute_vector(0));
+    }
+    p = next;
+    return most;
+  }
+
+  /** At the bore, R^2 times displacement times E over the yield stress, or hoop stress over the yield stress, by a straight
+   *  line through the points next to it. */
+  double at_bore(bool stress)
+  {
+    double s[5] = {};
+    for (int i = 0; i < run.n(); i++) {
+      const double *const X = run.reference(i), *const x = run.x()[i], R = std::hypot(X[0], X[1]),
+                          d = R - 1.0;
+      if (d > 0.25) continue;
+      double sigma[6];
+      run.points().cauchy(i, sigma);
+      const double value = stress ? sigma[2] / YIELD : (std::hypot(x[0], x[1]) - R) * R * R * E;
+      const double w[5] = {1.0, d, d * d, value, value * d};
+      for (int k = 0; k < 5; k++) s[k] += w[k];
+    }
+    return (s[3] * s[2] - s[4] * s[1]) / (s[0] * s[2] - s[1] * s[1]);
+  }
+};
+
+}    // namespace
+
+// displacement of the bore by R. Hill's solution for plastic zones to the radius c, and what is left after unloading
+SERIAL_TEST(Sphere, BecomesPlastic)
+{
+  HollowSphere sphere("", 4);
+  struct Case {
+    double p, u, c;
+  };
+  for (const auto &at : {Case{0.5, 0.4, 1.0}, Case{0.887310, 0.854676, 1.2},
+                         Case{1.110944, 1.476422, 1.4}, Case{1.265341, 2.361064, 1.6}}) {
+    EXPECT_LE(sphere.load(at.p, 3), 6.0);
+    EXPECT_NEAR(measured(strprintf("c = %g: u(a) over exact", at.c), sphere.at_bore(false) / at.u),
+                1.0, 0.02);
+    if (at.c != 1.4) continue;
+    sphere.load(0.0, 1);
+    EXPECT_NEAR(measured("residual hoop stress over exact", sphere.at_bore(true) / -0.904476), 1.0,
+                0.05);
+    sphere.load(at.p, 1);
+  }
+}
+
+// the same sphere bears 2 ln(b/a) and no more, to +2 % and -1 %, with averages of the pressure
+SERIAL_TEST(Sphere, BearsTheLimitLoad)
+{
+  HollowSphere sphere("locking pressure", 4);
+  const double limit = 2.0 * std::log(2.0);
+  sphere.load(0.99 * limit, 4);
+  const auto said = sphere.run.error("unfix solve\nfix solve all mpm/implicit static solver "
+                                     "multigrid iterations 20 parts 1 linear "
+                                     "500\n" +
+                                     strprintf("variable p equal %.17g\nrun 1\n", 1.02 * limit));
+  EXPECT_NE(said.find("no equilibrium"), std::string::npos) << said;
+}
+
 // forces are those of LAMMPS's units: a column that sinks by a hundredth of its length under its weight
 SERIAL_TEST(Forces, HaveUnits)
 {
@@ -700,6 +789,20 @@ SERIAL_TEST(Parts, LeadToTheSameEnd)
     expect_error(replaced(scene, "SHORT", "iterations 6 parts 1") + "run 1\n",
                  "0 % were reached, in 0 parts");
   }
+}
+
+// parts become larger again where the way is easier: a beam that hangs down in the end needs one of less than 1/8 at first, and less
+// than eight of them
+SERIAL_TEST(Parts, GrowAgain)
+{
+  const auto scene = beam(2, "frame total", 1000.0, "static tolerance 1e-11 iterations 12 parts N",
+                          "neohookean 1e8 0.3");
+  expect_error(replaced(scene, "parts N", "parts 8") + "run 1\n", "no equilibrium in step 1");
+  Scene run(replaced(scene, "parts N", "parts 16") + "run 1\n");
+  EXPECT_GE(run.fix("solve")->compute_vector(8), 5.0)
+      << "1/16 and three that are twice as long each, and the rest";
+  EXPECT_LT(measured("parts", run.fix("solve")->compute_vector(8)), 8.0);
+  EXPECT_LT(run.compute_scalar("low"), -0.7);
 }
 
 // a bar of Hencky's law in uniaxial strain bears M/e and no more: the message tells where loads had come to
