@@ -606,6 +606,7 @@ SERIAL_TEST(Implicit, BadInput)
        {"fix s all mpm/implicit static iterations 1", "smaller steps"},
        {"fix s all mpm/implicit static linear 3", "linear system"},
        {"fix g all gravity 1e6 vector 0 -1 0\nfix s all mpm/implicit static", "smaller steps"},
+       {"fix g all gravity 1e6 vector 0 -1 0\nfix s all mpm/implicit static", "frame total"},
        {"unfix m\nunfix clamp\nunfix grid\nfix s all mpm/implicit static", "needs a fix mpm"}},
       "run 1\n");
   for (const char *options :

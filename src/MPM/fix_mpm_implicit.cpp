@@ -241,9 +241,12 @@ void FixMPMImplicit::step()
         "forces:{}; ratio {:.3g}; {} tangents were not positive definite. Of the changes of loads "
         "and walls in this step {:.5g} % were reached, in {} parts. Use smaller steps of load or "
         "time, hold bodies that can move freely, or let it be less accurate (keyword tolerance); "
-        "above the largest load that bodies can bear, move a wall instead, or use euler",
+        "above the largest load that bodies can bear, move a wall instead, or use euler{}",
         id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite,
-        100.0 * now.reached, now.parts);
+        100.0 * now.reached, now.parts,
+        field->frame->is_total()
+            ? ""
+            : "; slender solids that keep their neighbors need fix mpm ... frame total");
   if (report && comm->me == 0)
     utils::logmesg(lmp, "  implicit step {}:{} {} linear iterations, {} not definite, forces{}\n",
                    update->ntimestep,
