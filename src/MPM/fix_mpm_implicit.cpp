@@ -8,7 +8,9 @@
 
 #include "fix_mpm_implicit.h"
 
+#include "mpm_affine.h"
 #include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_ledger.h"
 #include "mpm_node_action.h"
 #include "mpm_options.h"
@@ -32,19 +34,20 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
-   fix ID all mpm/implicit static|euler|newmark keyword value ...
+   fix ID all mpm/implicit static|euler|newmark|midpoint keyword value ...
 ------------------------------------------------------------------------- */
 
 Options MPMImplicitOptions::declare()
 {
   using namespace option;
   Options options("fix mpm/implicit");
-  options.argument(
-      word(time,
-           {{"static", STATIC, "without inertia: each step ends in equilibrium"},
-            {"euler", EULER, "backward Euler: first order in time, damps what is fast"},
-            {"newmark", NEWMARK,
-             "Newmark's method: second order and without damping for gamma = 1/2"}}));
+  options.argument(word(
+      time,
+      {{"static", STATIC, "without inertia: each step ends in equilibrium"},
+       {"euler", EULER, "backward Euler: first order in time, damps what is fast"},
+       {"newmark", NEWMARK, "Newmark's method: second order and without damping for gamma = 1/2"},
+       {"midpoint", MIDPOINT,
+        "mid-point rule: second order, without damping, keeps angular momentum"}}));
   options.add("gamma",
               {number(gamma, "G", {0.5, 1.0, true, true}, "",
                       "of Newmark's method; more than 1/2 damps, in first order")});
@@ -140,6 +143,14 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
         "points move with another velocity than they have at the end of the step: use transfer "
         "flip 1.0, "
         "or euler instead of newmark"},
+       {time == MIDPOINT && !(options.transfer == FLIP && options.flip == 1.0) &&
+            !(options.transfer == APIC && is_mls(options.shape, options.transfer) &&
+              !options.strains_by_gradient() && !field->frame->is_total()),
+        "this transfer",
+        "points move with another velocity than they have at the end of the step: use transfer "
+        "flip "
+        "1.0, in the updated frame also transfer apic with shape quadratic or cubic and stress "
+        "mls"},
        {has_domain(options.shape), "shape cpdi and cpdi2",
         "their nodes are not reached by trial motions: use B-splines or gimp"},
        {options.averages_strain(), "locking fbar and both",
@@ -184,6 +195,10 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("implicit step", [this]() {
       rest();
     });
+  if (place == MPMPlan::AFTER_MOTION && time == MIDPOINT && field->affine)
+    plan.together("implicit step", [this]() {
+      solver->end_motion();
+    });
 }
 
 void FixMPMImplicit::setup(int)
@@ -226,9 +241,12 @@ void FixMPMImplicit::step()
         "forces:{}; ratio {:.3g}; {} tangents were not positive definite. Of the changes of loads "
         "and walls in this step {:.5g} % were reached, in {} parts. Use smaller steps of load or "
         "time, hold bodies that can move freely, or let it be less accurate (keyword tolerance); "
-        "above the largest load that bodies can bear, move a wall instead, or use euler",
+        "above the largest load that bodies can bear, move a wall instead, or use euler{}",
         id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite,
-        100.0 * now.reached, now.parts);
+        100.0 * now.reached, now.parts,
+        field->frame->is_total()
+            ? ""
+            : "; slender solids that keep their neighbors need fix mpm ... frame total");
   if (report && comm->me == 0)
     utils::logmesg(lmp, "  implicit step {}:{} {} linear iterations, {} not definite, forces{}\n",
                    update->ntimestep,

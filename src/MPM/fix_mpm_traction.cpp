@@ -30,9 +30,11 @@
 #include "math/matrix.h"
 #include "mpm_face.h"
 #include "mpm_field.h"
+#include "mpm_frame.h"
 #include "mpm_image.h"
 #include "mpm_options.h"
 #include "mpm_points.h"
+#include "mpm_time_limit.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -116,6 +118,8 @@ FixMPMTraction::FixMPMTraction(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
     state.declare(inside, "pressure", INSIDE_WIDTH);
   else
     state.declare(rows, "area", WIDTH);
+  grows = surface == REGION && has_pressure;
+  if (grows) state.declare(growth, "growth", GROWTH_WIDTH);
   keep_arrays();
 }
 
@@ -149,6 +153,41 @@ void FixMPMTraction::init_physics(MPMPlan &plan)
 bool FixMPMTraction::belongs(const MPMField &field, int i) const
 {
   return (atom->mask[i] & groupbit) && field.is_point(i) && !field.is_element_node(i);
+}
+
+/* ----------------------------------------------------------------------
+   pressure acts on the area that the surface has by where points are, in the updated frame. It changes slowly in explicit steps
+------------------------------------------------------------------------- */
+
+static constexpr int EVERY = 10;    // explicit steps
+
+void FixMPMTraction::add_stages(MPMPlan &plan, MPMPlan::Place place)
+{
+  if (!grows || place != MPMPlan::BEFORE_POINTS_TO_NODES) return;
+  plan.each(
+      "area of surfaces",
+      [this](MPMField &field) {
+        if (!field.time_limit->bound || update->ntimestep % EVERY == 0) find_growth(field);
+      },
+      [](const MPMField &field) {
+        return !field.frame->is_total();
+      });
+}
+
+void FixMPMTraction::find_growth(MPMField &field)
+{
+  const auto member = [&](int i) -> MPMFaceGrowth::Member {
+    const double *const row = growth[i];
+    const bool is = belongs(field, i) && row[LAYER] > 0.0;
+    return {is ? (int) row[LAYER] - 1 : -1, row + MOVED, row + FACING};
+  };
+  face_growth.find(field, member, [&](int i, double area) {
+    double now[3];
+    present_area(i, field.points->F[i], now);
+    const double change = area / std::sqrt(dot(now, now));
+    growth[i][RATIO] *= change;
+    rows[i][HEIGHT] /= change;    // which is no work
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -186,6 +225,12 @@ void FixMPMTraction::define()
       row[PLACE + d] = atom->x[i][d];
     }
     row[HEIGHT] = determinant(F);
+    if (grows) {
+      growth[i][RATIO] = 1.0;
+      growth[i][LAYER] = 1.0 + std::min((int) share.layer, MPMFaceGrowth::LAYERS - 1);
+      std::fill_n(growth[i] + MOVED, 3, 0.0);
+      std::copy_n(n, 3, growth[i] + FACING);
+    }
     mine[0] += share.area;
     mine[1] += 1.0;
   };
@@ -252,10 +297,11 @@ void FixMPMTraction::evaluate_loads()
 }
 
 /** cof(F) N: the present area for each one before deformation, times its normal. */
-static void present_area(const double *F, const double *N, double *area)
+void FixMPMTraction::present_area(int i, const double *F, double *area) const
 {
   const double cofactors[9] = MPM_COFACTORS(F);
-  for (int d = 0; d < 3; d++) area[d] = dot(cofactors + 3 * d, N);
+  const double ratio = grows ? growth[i][RATIO] : 1.0;
+  for (int d = 0; d < 3; d++) area[d] = ratio * dot(cofactors + 3 * d, rows[i] + NORMAL);
 }
 
 void FixMPMTraction::load_on(int i, const double *F, double *load) const
@@ -263,7 +309,7 @@ void FixMPMTraction::load_on(int i, const double *F, double *load) const
   for (int d = 0; d < 3; d++) load[d] = now[d].at(i);
   if (!has_pressure) return;
   double area[3];
-  present_area(F, rows[i] + NORMAL, area);
+  present_area(i, F, area);
   for (int d = 0; d < 3; d++) load[d] -= now[3].at(i) * area[d];
 }
 
@@ -293,7 +339,7 @@ void FixMPMTraction::add_forces()
     const double *const x = atom->x[i], *const F = points->F[i];
     double load[3], moved[3], area[3], torque[3], place[3];
     load_on(i, F, load);
-    present_area(F, row + NORMAL, area);
+    present_area(i, F, area);
     const double size = std::sqrt(dot(area, area)), height = determinant(F) / size;
     work[1] += 0.5 * (dot(last, area) + dot(load, area)) / size * atom->vfrac[i] * row[STRESS] *
         (height - row[HEIGHT]);
@@ -306,6 +352,7 @@ void FixMPMTraction::add_forces()
       sums[d] += force;
       last[d] = load[d];
       row[PLACE + d] = x[d];
+      if (grows) growth[i][MOVED + d] += moved[d];
     }
     sums[3] += row[AREA] * size;
     row[HEIGHT] = height;
@@ -395,7 +442,7 @@ void FixMPMTraction::add_stress_of_load(int i, const double *F, const double *T,
   const double *const row = rows[i];
   if (row[STRESS] == 0.0) return;
   double n[3];
-  present_area(F, row + NORMAL, n);
+  present_area(i, F, n);
   const double size = std::sqrt(dot(n, n));
   for (double &component : n) component /= size;
   MPMFace::add_stress(T, n, force->nktv2p * row[STRESS] * determinant(F) / size, tau);
@@ -445,8 +492,8 @@ void FixMPMTraction::follow(const MPMField &field, int first, int n, const doubl
     const double *const row = rows[i];
     if (row[STRESS] == 0.0 && row[AREA] == 0.0) continue;
     double before[3], after[3], load[3];
-    present_area(field.points->F[i], row + NORMAL, before);
-    present_area(F, row + NORMAL, after);
+    present_area(i, field.points->F[i], before);
+    present_area(i, F, after);
     for (int d = 0; d < 3; d++) {
       const double change = -row[PRESSED] * (after[d] - before[d]);
       load[d] = row[LOAD + d] + change;
@@ -489,7 +536,7 @@ double FixMPMTraction::compute_vector(int k)
 
 double FixMPMTraction::memory_usage()
 {
-  double bytes = FixMPMState::memory_usage();
+  double bytes = FixMPMState::memory_usage() + face_growth.memory_usage();
   for (const auto &each : now) bytes += each.of_points.capacity() * sizeof(double);
   return bytes;
 }

@@ -16,6 +16,7 @@ FixStyle(mpm/traction,FixMPMTraction);
 #define LMP_FIX_MPM_TRACTION_H
 
 #include "declare/option.h"
+#include "mpm_face_growth.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
 
@@ -56,7 +57,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   void restart(char *) override;
 
   void init_physics(MPMPlan &) override;
-  void add_stages(MPMPlan &, MPMPlan::Place) override {}
+  void add_stages(MPMPlan &, MPMPlan::Place) override;
   bool looks_beyond_points() const override { return false; }
   bool adds_stress(const MPMField &, int first, int last) const override;
   void add_stress(const MPMField &, int first, int n, double *tau) const override;
@@ -74,7 +75,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
  private:
   // Of a point, before deformation: area, share of the stress (MPMFace), normal [3], so that area times cof(F) times normal is
   // that on the present surface; in the last step force over this
-  // area and place [3], J over the size of cof(F) times normal, and pressure
+  // area and place [3], J over the present area, and pressure
   MPMRows rows;
   enum {
     AREA,
@@ -86,6 +87,12 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
     PRESSED,
     WIDTH
   };
+  // In the updated frame, of a point with pressure: present area over the size of cof(F) times normal, which is what points
+  // themselves know of it; layer (0: none, then from 1 on); displacement, and normal, since and when the surface was found
+  MPMRows growth;
+  enum { RATIO, LAYER, MOVED, FACING = MOVED + 3, GROWTH_WIDTH = FACING + 3 };
+  bool grows = false;    // are these kept?
+  MPMFaceGrowth face_growth;
   // of a point with pressure on all of the surface, in the last step: pressure, volume, force of its gradient [3], place [3]
   MPMRows inside;
   enum { PRESSURE, VOLUME, PUSH, AT = PUSH + 3, INSIDE_WIDTH = AT + 3 };
@@ -107,6 +114,8 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   Load now[4];
 
   bool belongs(const MPMField &, int i) const;
+  void present_area(int i, const double *F, double *area) const;
+  void find_growth(MPMField &);
   void add_stress_of_load(int i, const double *F, const double *load, double *tau) const;
   MPM_NS::NumberOrVariable &load(int k) { return k < 3 ? traction[k] : pressure; }
   void find_load(int k);

@@ -97,6 +97,7 @@ void MPMFace::find(const MPMField &field, int groupbit,
     share.area = force_share(depth) * volume / apart;
     share.stress = stress_share(depth);
     share.depth = depth * apart;
+    share.layer = depth;
     share.covered = hat(depth - 1.0) * volume / apart;
     sums[0] += share.area;
     sums[1] += share.area * depth;

@@ -52,6 +52,7 @@ class MPMFace : protected Pointers {
     double stress;       ///< W
     double normal[3];    ///< out of the region
     double depth;        ///< of the point below the surface [distance]
+    double layer;        ///< the same in units of the distance of layers
     /** The area as two layers have it with the hat around 1, which is never negative; its sum is that of the surface. */
     double covered;
   };

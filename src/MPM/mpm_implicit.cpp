@@ -177,7 +177,7 @@ void MPMImplicit::apply(const double *x, double *y)
   tangent.change_of_forces(x, y);
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width];
-    y[k] = m > 0.0 ? inertia * m * x[k] - y[k] : 0.0;
+    y[k] = m > 0.0 ? inertia * m * x[k] - part * y[k] : 0.0;
   }
   project_forces(y);
 }
@@ -237,10 +237,19 @@ static void invert(int n, double *A)
 
 /* ---------------------------------------------------------------------- */
 
+/** The part s u of a motion. */
+const double *MPMImplicit::part_of(const std::vector<double> &u)
+{
+  if (part == 1.0) return u.data();
+  partial.resize(u.size());
+  for (std::size_t k = 0; k < u.size(); k++) partial[k] = part * u[k];
+  return partial.data();
+}
+
 bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
 {
   double carried, all;
-  if (!tangent.forces(u.data(), dt, inner.data(), carried)) return false;
+  if (!tangent.forces(part_of(u), part * dt, inner.data(), carried)) return false;
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width], pull = inertia * m * (u[k] - from[k]);
     residual[k] = m > 0.0 ? outer[k] + inner[k] - pull : 0.0;
@@ -326,10 +335,16 @@ void MPMImplicit::prepare_levels()
     round_projection(width, &projection[width * width * n]);
   by_levels = true;
   multigrid->begin(constrained ? projection.data() : nullptr, blocks.data());
-  tangent.each_point([this](int n, const int64_t *nodes, int ngrad, const double *gradient,
-                            const double *stiffness) {
-    multigrid->add_point(n, nodes, ngrad, gradient, stiffness);
-  });
+  std::vector<double> scaled;
+  tangent.each_point(
+      [&](int n, const int64_t *nodes, int ngrad, const double *gradient, const double *stiffness) {
+        if (part != 1.0) {
+          scaled.assign(stiffness, stiffness + (std::size_t) width * ngrad * width * ngrad);
+          for (double &entry : scaled) entry *= part;
+          stiffness = scaled.data();
+        }
+        multigrid->add_point(n, nodes, ngrad, gradient, stiffness);
+      });
   std::vector<double> stiff = mass;
   for (double &m : stiff) m *= inertia;
   multigrid->finish(*this, inertia > 0.0 ? stiff.data() : nullptr);
@@ -362,6 +377,7 @@ SolveReport MPMImplicit::solve(const SolveGoal &goal)
   };
   const auto find_blocks = [&]() {
     tangent.diagonal(blocks);
+    for (double &entry : blocks) entry *= part;
     for (int64_t n = 0; n < (int64_t) mass.size(); n++)
       for (int d = 0; d < width; d++)
         blocks[width * width * n + (width + 1) * d] += inertia * mass[n];
@@ -424,7 +440,7 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     accuracy = std::max(accuracy, MOST_ACCURATE);
     last = now.unbalanced;
 
-    stiffness = tangent.linearize(u.data(), dt);
+    stiffness = tangent.linearize(part_of(u), part * dt);
     now.asymmetry = tangent.asymmetry();
     // at first, walls bring what they hold where it has to be, and all the rest goes with that
 
@@ -530,6 +546,7 @@ double MPMImplicit::step(double step_dt)
   std::vector<double> u(nreals(), 0.0);
   held.assign(nreals(), 0.0);
   inertia = 0.0;
+  part = options.part_of_motion();
   if (options.time == MPMImplicitOptions::STATIC) {
     for (int64_t k = 0; k < nreals(); k++) held[k] = dt * wall[k];
   } else {
@@ -537,7 +554,7 @@ double MPMImplicit::step(double step_dt)
 
     start = before;
     if (constrained) act(start.data());
-    inertia = 1.0 / (dt * dt);
+    inertia = 1.0 / (part * dt * dt);
     for (int64_t k = 0; k < nreals(); k++) u[k] = from[k] = dt * start[k];
     if (options.time == MPMImplicitOptions::NEWMARK) {
       const double beta = options.beta();
@@ -567,6 +584,7 @@ double MPMImplicit::step(double step_dt)
 double MPMImplicit::give_back(const std::vector<double> &u)
 {
   const bool newmark = options.time == MPMImplicitOptions::NEWMARK,
+             midpoint = options.time == MPMImplicitOptions::MIDPOINT,
              rests = options.time == MPMImplicitOptions::STATIC;
   double kinetic = 0.0;
   push.assign(nreals(), 0.0);
@@ -586,6 +604,7 @@ double MPMImplicit::give_back(const std::vector<double> &u)
         record[d] = v + late * (record[d] - v) - early * dt * reaction;
         record[4 + d] = v - (start[k] + gained - before[k]);
       }
+      if (midpoint && m > 0.0) record[4 + d] = v - (2.0 * v - start[k] - before[k]);
       push[k] = m * (record[d] - record[4 + d] - explicit_velocity[k] + before[k]);
       if (m > 0.0 && grid.owns(n)) kinetic += 0.5 * m * v * v;
     }
@@ -604,6 +623,7 @@ void MPMImplicit::finish()
   double *record = field.grid.nodes();
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8)
     for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
+  if (options.time == MPMImplicitOptions::MIDPOINT && field.affine) find_end_of_motion();
 }
 
 /** Ledger: forces of loads that follow points are external ones. */
@@ -615,14 +635,15 @@ void MPMImplicit::find_loads(const std::vector<double> &u)
   if (!tangent.has_loads()) return;
   tangent.loads(loads.data(), more_loads.data());    // without any motion
   loads.swap(more_loads);
-  tangent.loads(u.data(), more_loads.data());
+  tangent.loads(part_of(u), more_loads.data());
   for (int64_t k = 0; k < nreals(); k++) more_loads[k] -= loads[k];
 }
 
 void MPMImplicit::account()
 {
-  const bool newmark = options.time == MPMImplicitOptions::NEWMARK;
-  const double share = newmark ? options.gamma : 1.0;    // of the forces of the end of the step
+  const bool by_mean = options.moves_by_mean();
+  // of the forces of the end of the step
+  const double share = options.time == MPMImplicitOptions::NEWMARK ? options.gamma : 1.0;
   double internal = 0.0, external = 0.0, transfer = 0.0;
   const double *record = field.grid.nodes();
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
@@ -633,7 +654,7 @@ void MPMImplicit::account()
       const double of_loads = share * dt * more_loads[k] * 0.5 * (v + old);
       external += of_loads;
       internal -= push[k] * 0.5 * (v + old) - of_loads;
-      if (!newmark) continue;
+      if (!by_mean) continue;
       // points move with v, which is the mean velocity of the step already
       const double half = 0.5 * (v - old),
                    of_forces = dt * (outer[k] + loads[k] + share * more_loads[k]),
@@ -658,6 +679,7 @@ double MPMImplicit::memory_usage() const
                            &wall,         &held,       &start,
                            &acceleration, &push,       &velocity,
                            &loads,        &more_loads, &residual,
+                           &partial,      &of_nodes,   &of_points,
                            &free,         &change,     &trial,
                            &blocks,       &room,       &allowed})
     bytes += list->capacity() * sizeof(double);

@@ -26,7 +26,7 @@ class MPMField;
 
 /** How a field is stepped. */
 struct MPMImplicitOptions {
-  enum Time { STATIC, EULER, NEWMARK };
+  enum Time { STATIC, EULER, NEWMARK, MIDPOINT };
   Time time = STATIC;
   double gamma = 0.5;                ///< of Newmark's method
   double tolerance = 1.0e-8;         ///< of the ratio of forces
@@ -41,13 +41,17 @@ struct MPMImplicitOptions {
 
   MPM_NS::Options declare();
   double beta() const { return 0.25 * (gamma + 0.5) * (gamma + 0.5); }
+  /** The part of the motion of a step after which forces are those of the balance. */
+  double part_of_motion() const { return time == MIDPOINT ? 0.5 : 1.0; }
+  /** Do points have another velocity at the end of a step than they move with? */
+  bool moves_by_mean() const { return time == NEWMARK || time == MIDPOINT; }
 };
 
 /** The implicit step of a field: displacements u of its nodes in a step of duration dt for which
 
-      f_ext + f_int(u) + f_walls = c m (u - u*),   u = P u + dt w
+      f_ext + f_int(s u) + f_walls = c m (u - u*),   u = P u + dt w
 
-   where c and u* are those of the method of time integration (c = 0: statics), f_int(u) is that of MPMTangent, and v -> P v
+   where c, u*, and s are those of the method of time integration (c = 0: statics; s = 1, or 1/2 in the mid-point rule), f_int(u) is that of MPMTangent, and v -> P v
    + w is what all node actions make of velocities. Walls do no work on what P leaves free, so that with the right side
    P^T r = 0 is to be solved for the residual r without them. Newton's method, whose steps are solved for by conjugate
    gradients. Vectors are [node][dim]; forces are in units of mass times acceleration. */
@@ -77,6 +81,9 @@ class MPMImplicit : private MPMNodeSystem {
   double step(double dt);
   /** Node actions have acted: velocities of the step, and works of forces that the ledger does not know. */
   void finish();
+  /** Points have moved: those of affine transfers get what their velocities at the end of the step have more than the mean ones that they
+   *  have moved with. */
+  void end_motion();
   const Report &report() const { return now; }
   double memory_usage() const;
 
@@ -94,6 +101,7 @@ class MPMImplicit : private MPMNodeSystem {
   // of the present step
 
   double dt = 0.0, inertia = 0.0;    // c
+  double part = 1.0;                 // s
   bool constrained = false;
   double wall_speed = 0.0;     // largest of w
   int repeats = 1;             // of node actions, until they are a projection
@@ -101,6 +109,8 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> before, explicit_velocity, outer, inner, from, wall, held;
   std::vector<double> start, acceleration;    // with walls, for dynamics
   std::vector<double> velocity;               // that points move with
+  std::vector<double> partial;                // s u
+  std::vector<double> of_nodes, of_points;    // of affine points that move with the mean velocity
   std::vector<double> push;    // impulses that are not of the forces of the start of the step
   std::vector<double> loads,
       more_loads;    // that follow points: at the start, and what is new at the end
@@ -123,6 +133,8 @@ class MPMImplicit : private MPMNodeSystem {
   Outcome newton(std::vector<double> &u, int most_iterations);
   void approach(std::vector<double> &u);
   void find_loads(const std::vector<double> &u);
+  const double *part_of(const std::vector<double> &u);
+  void find_end_of_motion();
   void account();
   double give_back(const std::vector<double> &u);
 

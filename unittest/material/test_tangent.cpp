@@ -392,6 +392,53 @@ TEST(Tangent, OnBothSidesOfYield)
   }
 }
 
+// without any motion, and with motions so small that squares of their strains or stresses underflow, in SI units and in others whose
+// numbers are large or small: finite, and the same as that of a small motion
+TEST(Tangent, OfNextToNoMotion)
+{
+  std::vector<Sample> all(std::begin(samples), std::end(samples));
+  all.insert(all.end(), std::begin(more), std::end(more));
+  for (const Sample &one :
+       {Sample{"tough steel", "density 7800 eos linear 160e9 strength j2 80e9 1e30"},
+        Sample{"stiff rubber", "density 1000 neohookean 1e15 0.3"},
+        Sample{"stiff ogden", "density 1000 hencky 1e15 0.3"},
+        Sample{"soft gel", "density 1e-21 neohookean/split 1e-15 0.45"},
+        Sample{"soft metal", "density 1e-21 eos linear 1e-15 strength j2 1e-15 1e-17"},
+        Sample{"hard metal",
+               "density 1e21 eos linear 1e20 strength j2 1e20 1e17 hardening linear 1e18"}})
+    all.push_back(one);
+  for (const auto &sample : all) {
+    if (!can_be(sample)) continue;
+    const auto material = make(sample.text);
+    if (!material->has_tangent()) continue;
+    SCOPED_TRACE(sample.name);
+    Motions A;
+    for (const double size :
+         {1e-9, -1e-9, 0.0, 5e-324, 1e-310, 1e-200, 1e-160, 1e-150, 1e-80, 1e-30, 1e-17})
+      for (const int shape : {0, 1}) {
+        Matrix a = diagonal(shape ? 0.0 : size, 0.0, 0.0);
+        a[1] = size;
+        A.push_back(a);
+      }
+    MaterialPoint p(*material, A.size());
+    Tangent t;
+    make_step(p, A, 0.01, &t);
+    for (std::size_t i = 0; i < A.size(); i++) {
+      // of extension or compression, where these differ
+      double worst[2] = {};
+      for (int k = 0; k < 6; k++)
+        for (int l = 0; l < 9; l++)
+          for (const int side : {0, 1}) {
+            const double difference = std::fabs(t.stress[k][l][i] - t.stress[k][l][2 * side]);
+            // also where one is not a number
+            if (!(difference <= worst[side])) worst[side] = difference;
+          }
+      const double least = std::min(worst[0], worst[1]);
+      EXPECT_LE(least, 1e-6 * largest(t, 0)) << "motion " << A[i][0] << " " << A[i][1];
+    }
+  }
+}
+
 TEST(Tangent, ConvergesQuadratically)
 {
   // uniaxial stress after a large plastic strain, found by Newton's method for the lateral stretches

@@ -1,0 +1,87 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The mid-point rule with affine points. Nodes move by u = dt (v0 + v1)/2, and forces are those of u/2: they have no torque about where
+   nodes are then, sum (x_i + u_i/2) x f_i = 0, as Kirchhoff stress is symmetric, so that sum (x_i + u_i) x m v1_i = sum x_i x m
+   v0_i. Points have moved with the mean velocity u/dt, and their matrices are those of that; here they get the rest w = v1 - u/dt.
+   The angular momentum of the nodes, where these have come to, is that of the points when the matrix D C of a point has
+
+     sum_i N_ip v1_i (x_i + u_i - x_p - u_p)^T
+
+   in the part that is not symmetric: with what C. Jiang, C. Schroeder, J. Teran, J. Comput. Phys. 338 (2017) 137 have in their matrices for
+   steps of this kind. For backward Euler, u = dt v1, the part with u is symmetric by itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_implicit.h"
+
+#include "atom.h"
+#include "mpm_affine.h"
+#include "mpm_field.h"
+#include "mpm_passes.h"
+#include "mpm_stencil.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/** Changes of velocities and matrices of points, found where they are before they move. */
+void MPMImplicit::find_end_of_motion()
+{
+  const int dim = width, square = dim * dim, U = dim;
+  of_nodes.assign(2 * mass.size() * dim, 0.0);
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
+    for (int d = 0; d < dim && mass[n] > 0.0; d++) {
+      const double v = velocity[dim * n + d];
+      of_nodes[2 * dim * n + d] = v - start[dim * n + d];
+      of_nodes[2 * dim * n + U + d] = dt * v;
+    }
+  field.nodes.complete(of_nodes.data(), 2 * dim, 2 * dim);
+
+  const double h = field.lattice.h,
+               inverse = shape_constants[field.options.shape].inv_moment / (h * h);    // of D
+  const MPMStencil stencil(field);
+  of_points.assign((std::size_t) lmp->atom->nmax * (dim + square), 0.0);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      double *const more = &of_points[i * (dim + square)], *const C = more + dim;
+      double end[3] = {0.0}, moved[3] = {0.0}, products[9] = {0.0};
+      stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+        const double *const w = &of_nodes[2 * dim * node.number], *const u = w + U;
+        for (int a = 0; a < dim; a++) {
+          const double v1 = u[a] / dt + w[a];
+          more[a] += node.weight * w[a];
+          end[a] += node.weight * v1;
+          moved[a] += node.weight * u[a];
+          for (int b = 0; b < dim; b++) {
+            C[dim * b + a] -= inverse * node.weight * w[a] * h * node.r[b];
+            products[3 * a + b] += node.weight * v1 * u[b];
+          }
+        }
+      });
+      for (int a = 0; a < dim; a++)
+        for (int b = 0; b < dim; b++)
+          C[dim * b + a] += 0.5 * inverse *
+              (products[3 * a + b] - end[a] * moved[b] - products[3 * b + a] + end[b] * moved[a]);
+    }
+}
+
+void MPMImplicit::end_motion()
+{
+  const double kinetic = field.ledger.on ? field.ledger.point_kinetic_energy() : 0.0;
+  const int dim = width, square = dim * dim;
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double *const more = &of_points[i * (dim + square)];
+      for (int d = 0; d < dim; d++) lmp->atom->v[i][d] += more[d];
+      for (int k = 0; k < square; k++) field.affine->C[i][k] += more[dim + k];
+    }
+  if (!field.ledger.on) return;
+  const double gained = field.ledger.point_kinetic_energy() - kinetic;
+  field.ledger.transfer += gained;
+  field.ledger.take(-gained);
+}
