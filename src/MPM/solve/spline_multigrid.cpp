@@ -107,7 +107,8 @@ Matrix inverse_of(const Matrix &A)
 struct SplineMultigrid::Levels {
   const Grid &grid;
   LatticeRanks &ranks;
-  const int width, order, dim, few;
+  const int width, order, dim, few, all;
+  bool whole = false;           // the first level below has the nodes themselves, and is factorized
   int period[3] = {0, 0, 0};    // of the first coarse level
 
   LinearSystem *system = nullptr;
@@ -165,10 +166,11 @@ struct SplineMultigrid::Levels {
     void by_blocks(int width, const double *r, double *z);
   };
   std::vector<Level> coarse;
-  CholeskyFactors factors;
+  EnvelopeFactors factors;
 
-  Levels(const Grid &grid, LatticeRanks &ranks, int width, int order, int few) :
-      grid(grid), ranks(ranks), width(width), order(order), dim(grid.lattice.dim), few(few)
+  Levels(const Grid &grid, LatticeRanks &ranks, int width, int order, int few, int all) :
+      grid(grid), ranks(ranks), width(width), order(order), dim(grid.lattice.dim), few(few),
+      all(all)
   {
   }
 
@@ -222,8 +224,8 @@ struct SplineMultigrid::Levels {
 };
 
 SplineMultigrid::SplineMultigrid(const Grid &grid, LatticeRanks &ranks, int width, int order,
-                                 int few) :
-    on(new Levels(grid, ranks, width, order, few > 0 ? few : FEW[grid.lattice.dim]))
+                                 int few, int all) :
+    on(new Levels(grid, ranks, width, order, few > 0 ? few : FEW[grid.lattice.dim], all))
 {
 }
 
@@ -232,7 +234,8 @@ SplineMultigrid::~SplineMultigrid() = default;
 void SplineMultigrid::begin(const double *projection, const double *blocks)
 {
   const auto before = std::move(on);
-  on.reset(new Levels(before->grid, before->ranks, before->width, before->order, before->few));
+  on.reset(new Levels(before->grid, before->ranks, before->width, before->order, before->few,
+                      before->all));
   const int64_t nnodes = on->grid.nnodes();
   const int w = on->width;
   on->plain.assign(nnodes, 1);
@@ -243,12 +246,13 @@ void SplineMultigrid::begin(const double *projection, const double *blocks)
         for (int b = 0; b < w; b++)
           if (projection[(node * w + a) * w + b] != (a == b ? 1.0 : 0.0)) on->plain[node] = 0;
   }
-  on->find_parents();
   on->find_rim(blocks);
+  on->find_parents();
   on->invert_blocks(blocks);
 }
 
-/** Which nodes of this rank are in the rim: all ranks know all nodes that have a stiffness. */
+/** Which nodes of this rank are in the rim: all ranks know all nodes that have a stiffness. A system that is factorized as a whole
+ *  needs none. */
 void SplineMultigrid::Levels::find_rim(const double *given)
 {
   const int w = width;
@@ -260,14 +264,16 @@ void SplineMultigrid::Levels::find_rim(const double *given)
   std::vector<LatticeIndex> owned;
   for (int64_t node = 0; node < grid.nnodes(); node++)
     if (grid.owns(node) && exists(node)) owned.push_back(index_of(node));
-  const auto all = ranks.gather(owned);
+  const auto everywhere = ranks.gather(owned);
+  rim_number.assign(grid.nnodes(), -1);
+  whole = everywhere.size() * w <= (std::size_t) all;
+  if (whole) return;
   int cells[3] = {0, 0, 0};
   for (int d = 0; d < dim; d++) cells[d] = grid.lattice.periodic[d] ? grid.lattice.ncell[d] : 0;
-  const auto at_surface = rim_of(all, dim, order + 1, cells);
-  for (const auto &index : all)
+  const auto at_surface = rim_of(everywhere, dim, order + 1, cells);
+  for (const auto &index : everywhere)
     if (at_surface.count(lattice_key(index))) rim.add(index);
   rim_factors.start(rim.index, dim, width);
-  rim_number.assign(grid.nnodes(), -1);
   std::vector<int> list;
   for (int64_t node = 0; node < grid.nnodes(); node++) {
     const auto found = exists(node) ? rim.number.find(lattice_key(index_of(node)))
@@ -287,9 +293,13 @@ void SplineMultigrid::Levels::find_parents()
   for (int d = 0; d < dim; d++) period[d] = lattice.periodic[d] ? (lattice.ncell[d] + 1) / 2 : 0;
   first.assign(1, 0);
   for (int64_t node = 0; node < grid.nnodes(); node++) {
-    each_parent(order, dim, index_of(node), period, [&](const LatticeIndex &parent, double weight) {
-      parts.push_back({mine.add(parent), weight});
-    });
+    if (whole)
+      parts.push_back({mine.add(index_of(node)), 1.0});
+    else
+      each_parent(order, dim, index_of(node), period,
+                  [&](const LatticeIndex &parent, double weight) {
+                    parts.push_back({mine.add(parent), weight});
+                  });
     first.push_back(parts.size());
   }
   place.assign(mine.index.size(), -1);
@@ -631,12 +641,18 @@ void SplineMultigrid::Levels::invert_blocks(const double *given)
     if (!(scale > 0.0)) continue;
     in_system[node] = 1;
     if (plain[node]) {
-      if (rim_number[node] < 0)
+      if (rim_number[node] < 0 && !whole)
         Eigen::Map<Matrix>(inverse.data() + node * w * w, w, w) = inverse_of(D);
       continue;
     }
     const Matrix P = Eigen::Map<const Matrix>(projection_of(node), w, w);
     const Matrix rest = Matrix::Identity(w, w) - P, held = scale * rest.transpose() * rest;
+    if (whole) {
+      const int k = parts[first[node]].node;
+      auto &to = block(k, k);
+      for (int ab = 0; grid.owns(node) && ab < w * w; ab++) to.value[ab] += held(ab / w, ab % w);
+      continue;
+    }
     if (rim_number[node] >= 0) {
       if (grid.owns(node))
         Eigen::Map<Matrix>(held_part.data() + (std::size_t) rim_number[node] * w * w, w, w) = held;
@@ -716,12 +732,15 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
   o.system = &system;
   o.flush();
   if (mass) o.add_masses(mass);
-  o.factorize_rim(mass);
+  if (!o.whole) o.factorize_rim(mass);
   LatticeNodes all;
   o.merge_ranks(all);
-  o.coarsen(std::move(all));
+  if (o.whole)
+    o.coarse.back().x = o.coarse.back().b = Eigen::VectorXd::Zero(o.coarse.back().A.rows());
+  else
+    o.coarsen(std::move(all));
   o.usable = o.usable && factorize(o.coarse.back().A, o.factors);
-  if (o.usable) o.estimate_largest();
+  if (o.usable && !o.whole) o.estimate_largest();
 }
 
 void SplineMultigrid::Levels::smooth(const double *r, double *z, bool from_zero)
@@ -741,7 +760,7 @@ void SplineMultigrid::Levels::cycle(std::size_t which)
 {
   auto &level = coarse[which];
   if (which + 1 == coarse.size()) {
-    if (level.b.size() > 0) level.x = factors.solve(level.b);
+    if (level.b.size() > 0) factors.solve(level.b.data(), level.x.data());
     return;
   }
   const auto smooth_level = [&](bool from_zero) {
@@ -773,12 +792,14 @@ void SplineMultigrid::precondition(const double *r, double *z)
     return;
   }
   std::fill_n(z, nnodes * w, 0.0);
-  o.smooth(r, z, true);
+  o.rest.assign(nnodes * w, 0.0);
+  if (!o.whole) {
+    o.smooth(r, z, true);
+    o.system->apply(z, o.rest.data());
+  }
 
   // residuals of the nodes that this rank owns go to its part of the coarse level, and those of all ranks to the level
 
-  o.rest.resize(nnodes * w);
-  o.system->apply(z, o.rest.data());
   auto &partial = o.partial;
   partial.assign(o.number.size() * w, 0.0);
   for (int64_t node = 0; node < nnodes; node++) {
@@ -812,7 +833,7 @@ void SplineMultigrid::precondition(const double *r, double *z)
     o.project(node, motion, false, free);
     for (int a = 0; a < w; a++) z[node * w + a] += free[a];
   }
-  o.smooth(r, z, false);
+  if (!o.whole) o.smooth(r, z, false);
 }
 
 bool SplineMultigrid::usable() const
@@ -822,7 +843,7 @@ bool SplineMultigrid::usable() const
 
 int SplineMultigrid::levels() const
 {
-  return 1 + on->coarse.size();
+  return on->coarse.size() + (on->whole ? 0 : 1);
 }
 
 double SplineMultigrid::largest_eigenvalue() const
@@ -835,7 +856,7 @@ double SplineMultigrid::memory_usage() const
   const auto &o = *on;
   // a node of a hash map: what it has, and a pointer in it and to it
   constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
-  double bytes = o.parts.capacity() * sizeof(Part) + memory_of(o.factors) +
+  double bytes = o.parts.capacity() * sizeof(Part) + o.factors.memory_usage() +
       o.rim_factors.memory_usage() + o.plain.capacity() + o.in_system.capacity() +
       (o.blocks.capacity() + o.rim_blocks.capacity()) * sizeof(Block) +
       (o.block_at.size() + o.rim_block_at.size()) * HASHED +
