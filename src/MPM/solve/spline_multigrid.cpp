@@ -17,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
-#include <unordered_map>
 #include <utility>
 
 using namespace MPM_NS;
@@ -77,6 +76,57 @@ struct Block {
   double value[9];
 };
 
+/** Blocks in the order in which they came. A row has some ten of them, which are looked through. */
+struct Blocks {
+  std::vector<Block> list;
+
+  Block &at(int row, int column)
+  {
+    if (row >= (int) rows.size()) rows.resize(row + 1);
+    for (const auto &[other, k] : rows[row])
+      if (other == column) return list[k];
+    rows[row].emplace_back(column, (int) list.size());
+    list.push_back({row, column, {}});
+    return list.back();
+  }
+  double memory_usage() const
+  {
+    double bytes = list.capacity() * sizeof(Block) + rows.capacity() * sizeof(rows[0]);
+    for (const auto &row : rows) bytes += row.capacity() * sizeof(row[0]);
+    return bytes;
+  }
+
+ private:
+  std::vector<std::vector<std::pair<int, int>>> rows;    // columns, and places in the list
+};
+
+/** Adds to one triangle of the element, blocks [number][number] of [W][W], what functions with the gradients [G] have by the stiffness C [G
+ *  W][G W]. */
+template <int W, int G, class F>
+void add_blocks(int number, const F &gradient_of, const double *C, double *element)
+{
+  constexpr int M = W * G;
+  for (int J = 0; J < number; J++) {
+    const double *const gJ = gradient_of(J);
+    double T[M * W];
+    for (int i = 0; i < M; i++)
+      for (int b = 0; b < W; b++) {
+        double sum = 0.0;
+        for (int l = 0; l < G; l++) sum += C[i * M + l * W + b] * gJ[l];
+        T[i * W + b] = sum;
+      }
+    for (int I = J; I < number; I++) {
+      const double *const gI = gradient_of(I);
+      double *const K = element + (I * number + J) * W * W;
+      for (int ab = 0; ab < W * W; ab++) {
+        double sum = K[ab];
+        for (int l = 0; l < G; l++) sum += gI[l] * T[l * W * W + ab];
+        K[ab] = sum;
+      }
+    }
+  }
+}
+
 /** A number at random that depends on the place alone. */
 double noise(const LatticeIndex &index, int a)
 {
@@ -128,8 +178,7 @@ struct SplineMultigrid::Levels {
   std::vector<int> rim_of_ranks;     // those of all ranks, by their number
   std::vector<int> rim_local;        // of nodes
   std::vector<double> rim_element;
-  std::vector<Block> rim_blocks;
-  std::unordered_map<uint64_t, int> rim_block_at;
+  Blocks rim_blocks;
   RimFactors rim_factors;
   std::vector<double> rim_x, rim_b;
 
@@ -146,8 +195,7 @@ struct SplineMultigrid::Levels {
       place;    // coarse nodes of these, and the place of a coarse node in that list
   std::vector<double> element, G, T;
   bool held = false;
-  std::vector<Block> blocks;
-  std::unordered_map<uint64_t, int> block_at;
+  Blocks blocks;
 
   struct Level {
     Sparse A, to_next;    // the latter: [unknown][unknown of the next level]
@@ -178,13 +226,6 @@ struct SplineMultigrid::Levels {
   {
     return projection.data() + node * width * width;
   }
-  static Block &block(std::vector<Block> &blocks, std::unordered_map<uint64_t, int> &at, int row,
-                      int column)
-  {
-    const auto inserted = at.emplace((uint64_t) row << 32 | (uint64_t) column, (int) blocks.size());
-    if (inserted.second) blocks.push_back({row, column, {}});
-    return blocks[inserted.first->second];
-  }
   /** P from, or P^T from. */
   void project(int64_t node, const double *from, bool transposed, double *to) const
   {
@@ -197,7 +238,6 @@ struct SplineMultigrid::Levels {
         to[a] += (transposed ? P[b * width + a] : P[a * width + b]) * from[b];
     }
   }
-  Block &block(int row, int column) { return block(blocks, block_at, row, column); }
   LatticeIndex index_of(int64_t node) const
   {
     int at[3];
@@ -334,7 +374,7 @@ void SplineMultigrid::Levels::flush()
       const double *const K = element.data() + (I * n + J) * w * w;
       // one triangle
       const bool lower = local[I] >= local[J];
-      auto &to = lower ? block(local[I], local[J]) : block(local[J], local[I]);
+      auto &to = lower ? blocks.at(local[I], local[J]) : blocks.at(local[J], local[I]);
       for (int a = 0; a < w; a++)
         for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
     }
@@ -350,8 +390,7 @@ void SplineMultigrid::Levels::flush()
       if (!plain[j]) K = (K * Eigen::Map<const Matrix>(projection_of(j), w, w)).eval();
       const bool lower = row >= column;
       if (!lower) K.transposeInPlace();
-      auto &to = lower ? block(rim_blocks, rim_block_at, row, column)
-                       : block(rim_blocks, rim_block_at, column, row);
+      auto &to = lower ? rim_blocks.at(row, column) : rim_blocks.at(column, row);
       for (int a = 0; a < w; a++)
         for (int b = 0; b < w; b++) to.value[a * w + b] += K(a, b);
     }
@@ -368,29 +407,21 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
   if ((int) o.nodes.size() != n || !std::equal(nodes, nodes + n, o.nodes.begin()))
     o.start(n, nodes);
   const int w = o.width, m = w * ngrad, nc = o.local.size();
+  double symmetric[81];
+  for (int i = 0; i < m; i++)
+    for (int j = 0; j < m; j++)
+      symmetric[i * m + j] = 0.5 * (stiffness[i * m + j] + stiffness[j * m + i]);
   const auto C = [&](int i, int j) {
-    return 0.5 * (stiffness[i * m + j] + stiffness[j * m + i]);
+    return symmetric[i * m + j];
   };
   o.T.assign(m * w, 0.0);
-  // of functions with these gradients [ngrad]: one triangle of the blocks [number][number]
-  const auto add_blocks = [&](int number, const auto &gradient_of, std::vector<double> &element) {
-    for (int J = 0; J < number; J++) {
-      const double *const gJ = gradient_of(J);
-      for (int i = 0; i < m; i++)
-        for (int b = 0; b < w; b++) {
-          double sum = 0.0;
-          for (int l = 0; l < ngrad; l++) sum += C(i, l * w + b) * gJ[l];
-          o.T[i * w + b] = sum;
-        }
-      for (int I = J; I < number; I++) {
-        const double *const gI = gradient_of(I);
-        double *const K = element.data() + (I * number + J) * w * w;
-        for (int l = 0; l < ngrad; l++)
-          for (int ab = 0; ab < w * w; ab++) K[ab] += gI[l] * o.T[l * w * w + ab];
-      }
-    }
+  const auto add = [&](int number, const auto &gradient_of, std::vector<double> &element) {
+    const auto with = w == 3 ? &add_blocks<3, 3, decltype(gradient_of)>
+        : ngrad == 3         ? &add_blocks<2, 3, decltype(gradient_of)>
+                             : &add_blocks<2, 2, decltype(gradient_of)>;
+    with(number, gradient_of, symmetric, element.data());
   };
-  add_blocks(
+  add(
       o.rim_local.size(),
       [&](int J) {
         return gradient + o.rim_local[J] * ngrad;
@@ -405,7 +436,7 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
         double *const g = o.G.data() + o.place[o.parts[k].node] * ngrad;
         for (int l = 0; l < ngrad; l++) g[l] += o.parts[k].weight * gradient[i * ngrad + l];
       }
-    add_blocks(
+    add(
         nc,
         [&](int J) {
           return o.G.data() + J * ngrad;
@@ -460,7 +491,7 @@ void SplineMultigrid::Levels::add_masses(const double *mass)
     for (int i = first[node]; i < first[node + 1]; i++)
       for (int j = first[node]; j < first[node + 1]; j++) {
         if (parts[j].node > parts[i].node) continue;
-        auto &to = block(parts[i].node, parts[j].node);
+        auto &to = blocks.at(parts[i].node, parts[j].node);
         for (int ab = 0; ab < w * w; ab++)
           to.value[ab] += parts[i].weight * parts[j].weight * mass[node] * PP[ab];
       }
@@ -473,7 +504,7 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
   // nodes in the order of ranks, those that have a stiffness
   const int w = width;
   std::vector<char> used(mine.index.size(), 0);
-  for (const auto &b : blocks) used[b.row] = used[b.column] = 1;
+  for (const auto &b : blocks.list) used[b.row] = used[b.column] = 1;
   std::vector<LatticeIndex> given;
   for (std::size_t k = 0; k < used.size(); k++)
     if (used[k]) given.push_back(mine.index[k]);
@@ -487,7 +518,7 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
     }
   of_ranks = ranks.gather(list);
 
-  for (auto &b : blocks) {
+  for (auto &b : blocks.list) {
     b.row = number[b.row];
     b.column = number[b.column];
     if (b.row >= b.column) continue;
@@ -497,9 +528,8 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
       for (int j = 0; j < w; j++) turned[i * w + j] = b.value[j * w + i];
     std::copy_n(turned, w * w, b.value);
   }
-  const auto of_all = ranks.gather(blocks);
+  const auto of_all = ranks.gather(blocks.list);
   blocks = {};
-  block_at = {};
 
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(of_all.size() * w * w * 2);
@@ -649,7 +679,7 @@ void SplineMultigrid::Levels::invert_blocks(const double *given)
     const Matrix rest = Matrix::Identity(w, w) - P, held = scale * rest.transpose() * rest;
     if (whole) {
       const int k = parts[first[node]].node;
-      auto &to = block(k, k);
+      auto &to = blocks.at(k, k);
       for (int ab = 0; grid.owns(node) && ab < w * w; ab++) to.value[ab] += held(ab / w, ab % w);
       continue;
     }
@@ -669,7 +699,7 @@ void SplineMultigrid::Levels::factorize_rim(const double *mass)
   const int w = width;
   for (const int64_t node : rim_owned) {
     const int k = rim_number[node];
-    auto &to = block(rim_blocks, rim_block_at, k, k);
+    auto &to = rim_blocks.at(k, k);
     Matrix PP = Matrix::Identity(w, w);
     if (!plain[node]) PP = Eigen::Map<const Matrix>(projection_of(node), w, w);
     PP = (PP.transpose() * PP).eval();
@@ -677,9 +707,8 @@ void SplineMultigrid::Levels::factorize_rim(const double *mass)
       to.value[ab] +=
           held_part[(std::size_t) k * w * w + ab] + (mass ? mass[node] * PP(ab / w, ab % w) : 0.0);
   }
-  const auto of_all = ranks.gather(rim_blocks);
+  const auto of_all = ranks.gather(rim_blocks.list);
   rim_blocks = {};
-  rim_block_at = {};
   for (const auto &b : of_all) rim_factors.add(b.row, b.column, b.value);
   usable = rim_factors.factorize() && usable;
   rim_b.resize(rim.index.size() * w);
@@ -858,8 +887,7 @@ double SplineMultigrid::memory_usage() const
   constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
   double bytes = o.parts.capacity() * sizeof(Part) + o.factors.memory_usage() +
       o.rim_factors.memory_usage() + o.plain.capacity() + o.in_system.capacity() +
-      (o.blocks.capacity() + o.rim_blocks.capacity()) * sizeof(Block) +
-      (o.block_at.size() + o.rim_block_at.size()) * HASHED +
+      o.blocks.memory_usage() + o.rim_blocks.memory_usage() +
       (o.rim_owned.capacity() + o.nodes.capacity()) * sizeof(int64_t);
   for (const auto *list : {&o.rim, &o.mine})
     bytes += list->index.capacity() * sizeof(LatticeIndex) + list->number.size() * HASHED;
