@@ -541,6 +541,27 @@ void MPMTangent::each_point(const UsePoint &use) const
     }
 }
 
+/** Adds to the block [DIM][DIM] of a node minus its force by its own motion: g: gradient of its function at a point with the tangents K;
+ *  turn: H_zz for a unit of u_r; V: volume. */
+template <int DIM, int NH>
+static void add_block(const double *K, const double *g, double turn, double V, double *block)
+{
+  constexpr int NL = DIM * DIM;
+  for (int b = 0; b < DIM; b++) {
+    double sum[NH] = {0.0};    // change of P for a unit of u_b
+    for (int m = 0; m < DIM; m++)
+      for (int l = 0; l < NH; l++) sum[l] += K[NH * (DIM * m + b) + l] * g[m];
+    if (NH > NL && b == 0)
+      for (int l = 0; l < NH; l++) sum[l] += K[NH * (NH - 1) + l] * turn;
+    for (int a = 0; a < DIM; a++) {
+      double force = 0.0;
+      for (int j = 0; j < DIM; j++) force += sum[DIM * j + a] * g[j];
+      if (NH > NL && a == 0) force += sum[NH - 1] * turn;
+      block[DIM * a + b] += V * force;
+    }
+  }
+}
+
 void MPMTangent::diagonal(std::vector<double> &blocks)
 {
   const Grid &grid = field.grid;
@@ -548,6 +569,7 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
   const double scale = field.step_data().stress_scale, moment = mls_moment();
   const double *const place = &field.frame->places()[0][0];
   blocks.assign(grid.nnodes() * nL, 0.0);
+  const auto add = nH > nL ? add_block<2, 5> : dim == 2 ? add_block<2, 4> : add_block<3, 9>;
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       const double *const K = &tangents[i * nH * nH], V = scale * atom->vfrac[i];
@@ -556,21 +578,7 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
         double g[3];
         for (int d = 0; d < dim; d++)
           g[d] = mls ? -moment * node.weight * node.r[d] : node.gradient[d];
-        double *const block = &blocks[node.number * nL];
-        for (int b = 0; b < dim; b++) {
-          double sum[10] = {0.0};    // change of P for a unit of u_b
-          for (int m = 0; m < dim; m++)
-            for (int l = 0; l < nH; l++) sum[l] += K[nH * (dim * m + b) + l] * g[m];
-          const double turn = around * node.weight;
-          if (nH > nL && b == 0)
-            for (int l = 0; l < nH; l++) sum[l] += K[nH * nL + l] * turn;
-          for (int a = 0; a < dim; a++) {
-            double force = 0.0;
-            for (int j = 0; j < dim; j++) force += sum[dim * j + a] * g[j];
-            if (nH > nL && a == 0) force += sum[nL] * turn;
-            block[dim * a + b] += V * force;
-          }
-        }
+        add(K, g, around * node.weight, V, &blocks[node.number * nL]);
       });
     }
   field.nodes.sum(blocks.data(), nL, 0, nL);

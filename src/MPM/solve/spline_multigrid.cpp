@@ -768,7 +768,12 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
     o.coarse.back().x = o.coarse.back().b = Eigen::VectorXd::Zero(o.coarse.back().A.rows());
   else
     o.coarsen(std::move(all));
-  o.usable = o.usable && factorize(o.coarse.back().A, o.factors);
+  // symmetric: its rows are columns
+  const Sparse &last = o.coarse.back().A;
+  const Eigen::Map<const Eigen::SparseMatrix<double>> columns(
+      last.rows(), last.cols(), last.nonZeros(), last.outerIndexPtr(), last.innerIndexPtr(),
+      last.valuePtr());
+  o.usable = o.usable && factorize(columns, o.factors);
   if (o.usable && !o.whole) o.estimate_largest();
 }
 
