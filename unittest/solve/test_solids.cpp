@@ -299,7 +299,7 @@ TEST(EnvelopeFactors, SolveLikeDenseOnes)
       unsetenv("MPM_ISA");
       Eigen::MatrixXd A = Eigen::MatrixXd::Identity(n, n);
       for (int k = 0; k < n; k++)
-        for (const int l : {(7 * k + 3) % n, (k + 1) % n, (k + 11) % n}) {
+        for (const int l : {(7 * k + 4) % n, (k + 2) % n, (k + 12) % n}) {
           // two parts, of even and odd unknowns
           if (l == k || (k + l) % 2) continue;
           const double value = 1.0 + std::sin(k + 2.0 * l);
