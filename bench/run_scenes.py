@@ -13,7 +13,8 @@ any run) is named at the end.
 
 The parts: law: nodes to points with the laws of materials; p2g: points to nodes; nodes: momentum equation with
 walls and contact; ledger: energies of nodes for compute mpm/energy; topology, sort, halo: of blocks, points, messages;
-physics: heat, pore water; rest: other stages; lammps: all else in the loop: forces, neighbor lists, other fixes, computes, output.
+physics: heat, pore water, implicit steps; rest: other stages; lammps: all else in the loop: forces, neighbor lists, other fixes,
+computes, output, and all of the time of scenes without a fix mpm (fix mpm/incompressible).
 """
 
 import argparse
@@ -38,8 +39,8 @@ STAGES = (("nodes to points", "law"), ("gradients", "law"), ("averaged", "law"),
           ("points to nodes", "p2g"), ("velocities back", "p2g"), ("momentum equation", "nodes"), ("node actions", "nodes"), ("FMPM", "nodes"),
           ("XPIC", "nodes"), ("light nodes", "nodes"), ("energy of nodes", "ledger"), ("topology", "topology"),
           ("sort", "sort"), ("sum over ranks", "halo"), ("conduction of heat", "physics"), ("pore pressure", "physics"),
-          ("flow of pore water", "physics"), ("pressure of the mixture", "physics"),
-          ("volume of the mixture", "physics"), ("work in the mixture", "physics"))
+          ("flow of pore water", "physics"), ("inertia of pore water", "physics"), ("pressure of the mixture", "physics"),
+          ("volume of the mixture", "physics"), ("work in the mixture", "physics"), ("implicit step", "physics"))
 COLUMNS = ("scene", "dimension", "points", "steps", "total") + PARTS + ("times",)
 
 
@@ -82,7 +83,8 @@ def measure(lmp, name, path, steps):
             command += ["-var", key, value]
         done = subprocess.run(command, cwd=folder, env=dict(os.environ, OMP_NUM_THREADS="1"), stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
-    loops = list(re.finditer(r"^Loop time of (\S+) on 1 procs for (\d+) steps", done.stdout, re.M))
+    loops = [loop for loop in re.finditer(r"^Loop time of (\S+) on 1 procs for (\d+) steps", done.stdout, re.M)
+             if int(loop.group(2))]
     if done.returncode or not loops:
         sys.exit("%s failed:\n%s" % (name, done.stdout[-2000:]))
     loop = max(loops, key=lambda found: float(found.group(1)))    # the long one
@@ -92,7 +94,7 @@ def measure(lmp, name, path, steps):
     report = report[report.rfind("MPM plan of a step"):]
     fields = re.findall(r"^MPM \S+: (\d+) points, .*? kernels, .*\n  plan of the step:\n((?:    .*\n)+)", report, re.M)
     row = dict.fromkeys(PARTS, 0.0)
-    points = sum(int(n) for n, _ in fields)
+    points = sum(int(n) for n, _ in fields) or int(re.search(r"with (\d+) atoms", done.stdout[loop.start():]).group(1))
     for n, stages in fields:
         for line in stages.splitlines():
             stage, ns = line.rsplit(None, 1)

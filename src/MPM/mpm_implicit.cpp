@@ -32,6 +32,8 @@ static constexpr int TURN = 1000;                   // iterations in which GMRES
 static constexpr int IN_A_PART = 15;                // Newton iterations, of a step that has failed
 static constexpr int DO_WELL = 15;                  // iterations with levels of other tangents
 static constexpr double LOST = 1.0e12;              // times the first residual
+// unknowns of a system that is factorized as a whole, which is faster than levels, by dimension
+static constexpr int WHOLE[] = {0, 0, 12000, 8500};
 
 /* ---------------------------------------------------------------------- */
 
@@ -40,8 +42,8 @@ MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions 
     tangent(lmp, field), ranks(lmp, field.grid, *field.nodes.halo)
 {
   if (options.preconditioner == MPMImplicitOptions::MULTIGRID)
-    multigrid = std::make_unique<SplineMultigrid>(field.grid, ranks, width,
-                                                  stencil_order(field.options.shape));
+    multigrid = std::make_unique<SplineMultigrid>(
+        field.grid, ranks, width, stencil_order(field.options.shape), 0, WHOLE[width]);
 }
 
 void MPMImplicit::init()

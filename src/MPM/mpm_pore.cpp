@@ -213,8 +213,9 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 {
   if (layers) find_layers(formula);
   const int dim = field.lattice.dim;
-  for (auto *list : {&capacity, &conductance, &mean, &squeezed}) list->resize(atom->nmax);
-  in_forces.assign(atom->nmax, 0.0);
+  for (auto *list : {&in_forces, &capacity, &conductance, &mean, &squeezed})
+    list->resize(atom->nmax);
+  const bool open = surface.any(), plain = !suction && !open && quadratic.empty();
   if (!quadratic.empty()) quadratic.resize(atom->nmax);
   const double density = water.density * force->mvv2e * force->nktv2p;
   if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
@@ -222,25 +223,42 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
   nodes.points_to_nodes(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
         const Soil *const s = soil(run.material);
-        if (!s) return false;
-        double *const C = capacity.data() + first, *const K = conductance.data() + first;
-        double most = fastest, room[BATCH];
-        const double *const ratios = field.jacobians.get(field, first, n, room);
-        for (int p = 0; p < n; p++) {
+        if (!s) {
+          std::fill(&in_forces[run.first], &in_forces[run.first] + (run.last - run.first), 0.0);
+          return false;
+        }
+        double *const C = capacity.data() + first, *const K = conductance.data() + first,
+                      *const part = in_forces.data() + first;
+        double V[BATCH], room[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, room),
+                            *const initial = atom->vfrac + first;
+        for (int p = 0; p < n; p++) V[p] = J[p] * initial[p];
+        // a division for each point takes as long as all the rest: apart from it, where the compiler has vectors for them
+        for (int p = 0; p < n; p++) C[p] = V[p] * s->of.storage_at(J[p], water);
+        if (s->of.law == MPMPoreSoil::CONSTANT) {
+          const double k = s->of.permeability / water.resistance;
+          for (int p = 0; p < n; p++) K[p] = V[p] * k;
+        } else {
+          for (int p = 0; p < n; p++) K[p] = V[p] * mobility(*s, first + p, J[p], formula);
+        }
+        for (int p = 0; p < n; p++) part[p] = s->of.biot * J[p];
+        for (int p = 0; p < n && !plain; p++) {
           const int i = first + p;
-          const double J = ratios[p], V = J * atom->vfrac[i];
-          C[p] = V * s->of.storage_at(J, water);
-          const double k = mobility(*s, i, J, formula);
-          K[p] = V * k;
-          in_forces[i] = s->of.biot * J;
           const double *const mine = state[i];
-          if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J, density);
-          double through = surface.any() ? V * at_surface(*s, i, J, k, mine) : 0.0;
+          if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J[p], density);
+          double through =
+              open ? V[p] * at_surface(*s, i, J[p], mobility(*s, i, J[p], formula), mine) : 0.0;
           if (suction)
-            suction->begin_point(i, s->of, J, V, mine[0], C[p], K[p], through, in_forces[i]);
-          const double greatest = layers ? V * layers->most(i) : K[p];
+            suction->begin_point(i, s->of, J[p], V[p], mine[0], C[p], K[p], through, part[p]);
+          if (open) points.volume[p] = through;
+        }
+        double most = fastest;
+        for (int p = 0; p < n; p++) {
+          const double greatest = layers ? V[p] * layers->most(first + p) : K[p];
           if (greatest > most * C[p]) most = greatest / C[p];    // hardly ever: no division
-          if (surface.any()) points.volume[p] = through;
+        }
+        const double *mine = state[first];
+        for (int p = 0; p < n; p++, mine += 1 + dim) {
           points.capacity[p] = C[p];
           points.row[p][3] = mine[0];
           points.row[p][0] = mine[1];
@@ -377,13 +395,13 @@ void MPMPore::take_motion()
     field.kernel.g2p_gradient(rows, step, first, first + n, base, field.map->tile_load, L);
     double room[BATCH];
     const double *const ratios = field.jacobians.get(field, first, n, room);
-    for (int p = 0; p < n; p++) {
-      const int i = first + p;
-      const double V = ratios[p] * atom->vfrac[i];
-      const double change = field.frame->volume_change(i, L + nL * p, dt);
-      squeezed[i] = -s->of.biot * V * change / dt;
-      if (suction) squeezed[i] *= suction->take_motion(i, V * change, dt);
-    }
+    const double *const initial = atom->vfrac + first;
+    double *const out = squeezed.data() + first, change[BATCH];
+    for (int p = 0; p < n; p++)
+      change[p] = ratios[p] * initial[p] * field.frame->volume_change(first + p, L + nL * p, dt);
+    const double rate = -s->of.biot / dt;
+    for (int p = 0; p < n; p++) out[p] = rate * change[p];
+    for (int p = 0; p < n && suction; p++) out[p] *= suction->take_motion(first + p, change[p], dt);
   });
   if (suction) suction->take_rates(dt);
 }
@@ -406,8 +424,22 @@ void MPMPore::find_rates(std::vector<double> &inflow)
   const double dt = field.step_dt(), cell_in_step = field.lattice.h / dt;
   const int dim = field.lattice.dim;
   const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
+  const bool plain = !motion && !layers && !suction && quadratic.empty();
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
     double power[3] = {0.0, 0.0, 0.0};
+    const double *const out = squeezed.data() + first;
+    if (plain) {
+      const double *const K = conductance.data() + first;
+      for (int p = 0; p < n; p++) {
+        for (int d = 0; d < 3; d++) {
+          q[p][d] = K[p] * (along[d] - q[p][d]);
+          power[d] += q[p][d] * along[d];
+        }
+        q[p][3] = out[p];
+      }
+      inflow[MPMPoreSurface::ENERGY] += power[0] + power[1] + power[2];
+      return;
+    }
     for (int p = 0; p < n; p++) {
       const int i = first + p;
       if (motion) {
@@ -425,7 +457,7 @@ void MPMPore::find_rates(std::vector<double> &inflow)
       }
       if (suction) suction->limit_flow(i, cell_in_step, q[p]);
       for (int d = 0; d < dim; d++) power[d] += q[p][d] * along[d];
-      q[p][3] = squeezed[first + p];
+      q[p][3] = out[p];
       if (suction) q[p][3] += suction->regained(first + p, capacity[first + p], dt);
     }
     inflow[MPMPoreSurface::ENERGY] += power[0] + power[1] + power[2];
@@ -464,15 +496,29 @@ void MPMPore::end_step(const MPMRows &state)
   const double keep = exp(-rate_of_lag() * dt);
   nodes.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q, const double *) {
-        const MPMPoreSoil *const dries = suction ? &soil(run.material)->of : nullptr;
+        if (!suction) {
+          double *mine = state[first];
+          const double *const C = capacity.data() + first, *const m = mean.data() + first,
+                              *const out = squeezed.data() + first;
+          double *const mass = atom->rmass + first;
+          for (int p = 0; p < n; p++, mine += 1 + dim) {
+            const double now = q[p][3] + keep * (mine[0] - m[p]);
+            mass[p] += water.density * (C[p] * (now - mine[0]) - out[p] * dt);
+            mine[0] = now;
+            mine[1] = q[p][0];
+            mine[2] = q[p][1];
+            if (dim == 3) mine[3] = q[p][2];
+          }
+          return;
+        }
+        const MPMPoreSoil &dries = soil(run.material)->of;
         for (int p = 0; p < n; p++) {
           const int i = first + p;
           double *const mine = state[i];
-          const double lag = dries ? suction->kept_lag(i) : keep * (mine[0] - mean[i]);
-          double now = q[p][3] + lag;
+          double now = q[p][3] + suction->kept_lag(i);
           const double more = capacity[i] * (now - mine[0]) - squeezed[i] * dt;
           atom->rmass[i] += water.density * more;
-          if (dries) now = suction->take_water(i, *dries, mine[0], now, more);
+          now = suction->take_water(i, dries, mine[0], now, more);
           mine[0] = now;
           for (int d = 0; d < dim; d++) mine[1 + d] = q[p][d];
         }

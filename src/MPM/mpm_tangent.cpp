@@ -392,34 +392,43 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
   stress(run, first, n, H, dt, P, tangent.get());
   lattice_F(first, n, H, F);
   const Batch &b = *batch;
+  // what laws give has points side by side, and so have all sums here
+  double cofactor[9][BATCH], det[BATCH], l[3][BATCH], d[3][3][BATCH], trace[BATCH];
   for (int p = 0; p < n; p++) {
     double *const f = F + 9 * p;
     if (nH > nL) f[8] = 1.0 + H[nH * p + nL];    // around the axis
     const double cofactors[9] = MPM_COFACTORS(f);
-    const double det = determinant(f);
-    double *const K = &tangents[((bigint) first + p) * nH * nH];
-    for (int k = 0; k < nH; k++) {
-      const int r = k < nL ? k % dim : 2, c = k < nL ? k / dim : 2;
-      double l[3], d[3][3], trace = 0.0;
-      for (int s = 0; s < 3; s++) l[s] = cofactors[3 * s + c] / det;
-      for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-          d[i][j] = 0.0;
-          for (int s = 0; s < 3; s++) {
-            if (tangent->skips(3 * r + s)) continue;
-            d[i][j] += tangent->stress[COMPONENT[i][j]][3 * r + s][p] * l[s];
-            if (i == j) trace += tangent->stress[i][3 * r + s][p] * l[s];
-            if (j == r) d[i][j] -= b.J[p] * b.stress[COMPONENT[i][s]][p] * l[s];
-          }
+    for (int c = 0; c < 9; c++) cofactor[c][p] = cofactors[c];
+    det[p] = determinant(f);
+  }
+  for (int k = 0; k < nH; k++) {
+    const int r = k < nL ? k % dim : 2, c = k < nL ? k / dim : 2;
+    for (int s = 0; s < 3; s++)
+      for (int p = 0; p < n; p++) l[s][p] = cofactor[3 * s + c][p] / det[p];
+    std::fill_n(trace, n, 0.0);
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        double *const sum = d[i][j];
+        std::fill_n(sum, n, 0.0);
+        for (int s = 0; s < 3; s++) {
+          if (tangent->skips(3 * r + s)) continue;
+          const double *const change = tangent->stress[COMPONENT[i][j]][3 * r + s],
+                              *const stress = b.stress[COMPONENT[i][s]];
+          for (int p = 0; p < n; p++) sum[p] += change[p] * l[s][p];
+          for (int p = 0; p < n && i == j; p++) trace[p] += change[p] * l[s][p];
+          for (int p = 0; p < n && j == r; p++) sum[p] -= b.J[p] * stress[p] * l[s][p];
         }
-      if (averages())
-        mean_tangents[nH * ((bigint) first + p) + k] =
-            trace / (3.0 * b.J[p]) - mean_stress[first + p] * l[r];
-      for (int m = 0; m < nH; m++) {
-        const int row = m < nL ? m % dim : 2, column = m < nL ? m / dim : 2;
+      }
+    for (int p = 0; p < n && averages(); p++)
+      mean_tangents[nH * ((bigint) first + p) + k] =
+          trace[p] / (3.0 * b.J[p]) - mean_stress[first + p] * l[r][p];
+    for (int m = 0; m < nH; m++) {
+      const int row = m < nL ? m % dim : 2, column = m < nL ? m / dim : 2;
+      double *const K = &tangents[(bigint) first * nH * nH + nH * k + m];
+      for (int p = 0; p < n; p++) {
         double sum = 0.0;
-        for (int j = 0; j < 3; j++) sum += d[row][j] * cofactors[3 * j + column];
-        K[nH * k + m] = sum / det;
+        for (int j = 0; j < 3; j++) sum += d[row][j][p] * cofactor[3 * j + column][p];
+        K[nH * nH * p] = sum / det[p];
       }
     }
   }
@@ -452,16 +461,35 @@ double MPMTangent::linearize(const double *u, double dt)
   return all;
 }
 
+/** P = K H of n points, [n][N][N] with a column for each entry of H. */
+template <int N> static void multiply(int n, const double *K, const double *H, double *P)
+{
+  for (int p = 0; p < n; p++, K += N * N, H += N, P += N) {
+    double sum[N] = {0.0};
+    for (int k = 0; k < N; k++)
+      for (int l = 0; l < N; l++) sum[l] += K[N * k + l] * H[k];
+    for (int l = 0; l < N; l++) P[l] = sum[l];
+  }
+}
+
 void MPMTangent::change_of_forces(const double *du, double *dforce)
 {
   gather(du, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
-    for (int p = 0; p < n; p++) {
-      const double *const K = &tangents[((bigint) first + p) * nH * nH], *const h = H + nH * p;
-      double sum[10] = {0.0};
-      for (int k = 0; k < nH; k++)
-        for (int l = 0; l < nH; l++) sum[l] += K[nH * k + l] * h[k];
-      std::copy_n(sum, nL, &P[(bigint) nL * (first + p)]);
-      if (nH > nL) hoop_stress[first + p] = sum[nL];
+    const double *const K = &tangents[(bigint) first * nH * nH];
+    double *const stress = &P[(bigint) nL * first];
+    if (nH == 4)
+      multiply<4>(n, K, H, stress);
+    else if (nH == 9)
+      multiply<9>(n, K, H, stress);
+    else
+      for (int p = 0; p < n; p++) {
+        double sum[5];
+        multiply<5>(1, K + 25 * p, H + 5 * p, sum);
+        std::copy_n(sum, nL, stress + nL * p);
+        hoop_stress[first + p] = sum[nL];
+      }
+    for (int p = 0; p < n && (averages() || loaded); p++) {
+      const double *const h = H + nH * p;
       if (averages()) {
         double change = 0.0;
         for (int k = 0; k < nH; k++) change += mean_tangents[nH * ((bigint) first + p) + k] * h[k];
@@ -513,6 +541,27 @@ void MPMTangent::each_point(const UsePoint &use) const
     }
 }
 
+/** Adds to the block [DIM][DIM] of a node minus its force by its own motion: g: gradient of its function at a point with the tangents K;
+ *  turn: H_zz for a unit of u_r; V: volume. */
+template <int DIM, int NH>
+static void add_block(const double *K, const double *g, double turn, double V, double *block)
+{
+  constexpr int NL = DIM * DIM;
+  for (int b = 0; b < DIM; b++) {
+    double sum[NH] = {0.0};    // change of P for a unit of u_b
+    for (int m = 0; m < DIM; m++)
+      for (int l = 0; l < NH; l++) sum[l] += K[NH * (DIM * m + b) + l] * g[m];
+    if (NH > NL && b == 0)
+      for (int l = 0; l < NH; l++) sum[l] += K[NH * (NH - 1) + l] * turn;
+    for (int a = 0; a < DIM; a++) {
+      double force = 0.0;
+      for (int j = 0; j < DIM; j++) force += sum[DIM * j + a] * g[j];
+      if (NH > NL && a == 0) force += sum[NH - 1] * turn;
+      block[DIM * a + b] += V * force;
+    }
+  }
+}
+
 void MPMTangent::diagonal(std::vector<double> &blocks)
 {
   const Grid &grid = field.grid;
@@ -520,6 +569,7 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
   const double scale = field.step_data().stress_scale, moment = mls_moment();
   const double *const place = &field.frame->places()[0][0];
   blocks.assign(grid.nnodes() * nL, 0.0);
+  const auto add = nH > nL ? add_block<2, 5> : dim == 2 ? add_block<2, 4> : add_block<3, 9>;
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       const double *const K = &tangents[i * nH * nH], V = scale * atom->vfrac[i];
@@ -528,21 +578,7 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
         double g[3];
         for (int d = 0; d < dim; d++)
           g[d] = mls ? -moment * node.weight * node.r[d] : node.gradient[d];
-        double *const block = &blocks[node.number * nL];
-        for (int b = 0; b < dim; b++) {
-          double sum[10] = {0.0};    // change of P for a unit of u_b
-          for (int m = 0; m < dim; m++)
-            for (int l = 0; l < nH; l++) sum[l] += K[nH * (dim * m + b) + l] * g[m];
-          const double turn = around * node.weight;
-          if (nH > nL && b == 0)
-            for (int l = 0; l < nH; l++) sum[l] += K[nH * nL + l] * turn;
-          for (int a = 0; a < dim; a++) {
-            double force = 0.0;
-            for (int j = 0; j < dim; j++) force += sum[dim * j + a] * g[j];
-            if (nH > nL && a == 0) force += sum[nL] * turn;
-            block[dim * a + b] += V * force;
-          }
-        }
+        add(K, g, around * node.weight, V, &blocks[node.number * nL]);
       });
     }
   field.nodes.sum(blocks.data(), nL, 0, nL);

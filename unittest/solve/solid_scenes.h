@@ -37,6 +37,7 @@ struct SolidScene {
   double offset = 0.0;     ///< of the first point from the corner of its cell [h/2]
   bool periodic[3] = {false, false, false};
   int few = 0;    ///< unknowns of the level that is factorized
+  int all = 0;    ///< unknowns of a system that is factorized as a whole
 };
 
 /** The system of a scene, by loops over its points. */
@@ -70,7 +71,7 @@ class SolidSystem : public LinearSystem {
     grid.close_periodic();
     grid.finish();
     ranks.reset(ranks_of(grid));
-    multigrid.reset(new SplineMultigrid(grid, *ranks, dim, scene.order, scene.few));
+    multigrid.reset(new SplineMultigrid(grid, *ranks, dim, scene.order, scene.few, scene.all));
     find_stencils();
     hold_nodes();
     find_blocks();

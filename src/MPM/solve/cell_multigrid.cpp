@@ -172,8 +172,7 @@ struct CellMultigrid::Levels {
     std::vector<double> x, b, r;
   };
   std::vector<Level> coarse;
-  CholeskyFactors factors;
-  Eigen::VectorXd rest, solution;
+  EnvelopeFactors factors;
   bool usable = true;    // these are factors
 
   // closed pools
@@ -288,11 +287,7 @@ void CellMultigrid::Levels::factorize()
   }
   Eigen::SparseMatrix<double> A(n, n);
   A.setFromTriplets(entries.begin(), entries.end());
-  factors.compute(A);
-  usable = n == 0 ||
-      (factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0.0 &&
-       std::isfinite(factors.vectorD().sum()));
-  rest.resize(n);
+  usable = factors.compute(A);
   find_pools(component, closed);
 }
 
@@ -406,17 +401,15 @@ void CellMultigrid::Levels::cycle(std::size_t which)
 {
   auto &level = coarse[which];
   const auto &graph = level.graph;
-  const int n = graph.size();
   if (which + 1 == coarse.size()) {
-    std::copy(level.b.begin(), level.b.end(), rest.data());
-    if (n > 0 && usable) solution = factors.solve(rest);
     if (usable)
-      std::copy_n(solution.data(), n, level.x.begin());
+      factors.solve(level.b.data(), level.x.data());
     else
       std::fill(level.x.begin(), level.x.end(), 0.0);
     return;
   }
 
+  const int n = graph.size();
   double *const x = level.x.data();
   const auto sweep = [&](int color) {
     for (const int cell : graph.colored[color])
@@ -475,9 +468,9 @@ double CellMultigrid::memory_usage() const
                   on->pool.capacity()) *
           sizeof(int) +
       (on->partial.capacity() + on->of_all.capacity() + on->node_values.capacity() +
-       on->cells_of_pool.capacity() + on->rest.size() + on->solution.size()) *
+       on->cells_of_pool.capacity()) *
           sizeof(double) +
-      memory_of(on->factors);
+      on->factors.memory_usage();
   for (const auto &level : on->coarse)
     bytes += level.graph.memory_usage() + level.next.capacity() * sizeof(int) +
         3 * level.x.capacity() * sizeof(double);

@@ -45,7 +45,7 @@ std::unordered_set<uint64_t> MPM_NS::rim_of(const std::vector<LatticeIndex> &nod
   return rim;
 }
 
-bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &factors)
+bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &factors)
 {
   const int n = A.rows();
   if (n == 0) return true;
@@ -56,19 +56,9 @@ bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &factors)
     for (int i = 0; i < n; i++)
       A.coeffRef(i, i) = diagonal[i] > tiny ? diagonal[i] * (1.0 + shift)
                                             : std::max(tiny, 1.0e-300) * 1.0e14;
-    factors.compute(A);
-    if (factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0.0 &&
-        std::isfinite(factors.vectorD().sum()))
-      return true;
+    if (factors.compute(A)) return true;
   }
   return false;
-}
-
-double MPM_NS::memory_of(const CholeskyFactors &factors)
-{
-  if (factors.rows() == 0 || factors.info() != Eigen::Success) return 0.0;
-  return factors.matrixL().nestedExpression().nonZeros() * (sizeof(double) + sizeof(int)) +
-      factors.rows() * (sizeof(double) + 5 * sizeof(int));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -139,11 +129,11 @@ void RimFactors::solve(const double *b, double *x)
   for (int node = 0; node < size(); node++)
     for (int i = first[node]; i < first[node + 1]; i++)
       for (int a = 0; a < width; a++) from[i * width + a] = share(node) * b[node * width + a];
-  to = factors.solve(from);
+  factors.solve(from.data(), from.data());
   for (int node = 0; node < size(); node++)
     for (int a = 0; a < width; a++) {
       double sum = 0.0;
-      for (int i = first[node]; i < first[node + 1]; i++) sum += to[i * width + a];
+      for (int i = first[node]; i < first[node + 1]; i++) sum += from[i * width + a];
       x[node * width + a] = share(node) * sum;
     }
 }
@@ -151,6 +141,6 @@ void RimFactors::solve(const double *b, double *x)
 double RimFactors::memory_usage() const
 {
   return (first.capacity() + chunk.capacity()) * sizeof(int) +
-      entries.capacity() * sizeof(Eigen::Triplet<double>) +
-      (from.size() + to.size()) * sizeof(double) + memory_of(factors);
+      entries.capacity() * sizeof(Eigen::Triplet<double>) + from.capacity() * sizeof(double) +
+      factors.memory_usage();
 }

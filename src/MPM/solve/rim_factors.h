@@ -9,9 +9,10 @@
 #ifndef MPM_SOLVE_RIM_FACTORS_H
 #define MPM_SOLVE_RIM_FACTORS_H
 
+#include "solve/envelope_factors.h"
 #include "solve/lattice_key.h"
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 
 #include <cstdint>
 #include <unordered_map>
@@ -43,13 +44,10 @@ struct LatticeNodes {
 std::unordered_set<uint64_t> rim_of(const std::vector<LatticeIndex> &nodes, int dim, int reach,
                                     const int *period);
 
-using CholeskyFactors = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
-
 /** Factors of a symmetric matrix with a shift of its diagonal: functions that points cannot tell apart, and free bodies, make it
  *  singular, and more than that where a tangent is not positive definite.  Factors are.  False: no shift makes it so, or it is
  *  not finite; the factors are of no use then. */
-bool factorize(Eigen::SparseMatrix<double> A, CholeskyFactors &);
-double memory_of(const CholeskyFactors &);
+bool factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &);
 
 /** An approximate inverse for nodes at the surface of a body.
  *
@@ -73,8 +71,8 @@ class RimFactors {
   int width = 0;
   std::vector<int> first, chunk;    // copies of nodes, and the chunks that they are in
   std::vector<Eigen::Triplet<double>> entries;
-  CholeskyFactors factors;
-  Eigen::VectorXd from, to;
+  EnvelopeFactors factors;
+  std::vector<double> from;
 
   double share(int node) const;
 };

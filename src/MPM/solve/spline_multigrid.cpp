@@ -17,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
-#include <unordered_map>
 #include <utility>
 
 using namespace MPM_NS;
@@ -77,6 +76,57 @@ struct Block {
   double value[9];
 };
 
+/** Blocks in the order in which they came. A row has some ten of them, which are looked through. */
+struct Blocks {
+  std::vector<Block> list;
+
+  Block &at(int row, int column)
+  {
+    if (row >= (int) rows.size()) rows.resize(row + 1);
+    for (const auto &[other, k] : rows[row])
+      if (other == column) return list[k];
+    rows[row].emplace_back(column, (int) list.size());
+    list.push_back({row, column, {}});
+    return list.back();
+  }
+  double memory_usage() const
+  {
+    double bytes = list.capacity() * sizeof(Block) + rows.capacity() * sizeof(rows[0]);
+    for (const auto &row : rows) bytes += row.capacity() * sizeof(row[0]);
+    return bytes;
+  }
+
+ private:
+  std::vector<std::vector<std::pair<int, int>>> rows;    // columns, and places in the list
+};
+
+/** Adds to one triangle of the element, blocks [number][number] of [W][W], what functions with the gradients [G] have by the stiffness C [G
+ *  W][G W]. */
+template <int W, int G, class F>
+void add_blocks(int number, const F &gradient_of, const double *C, double *element)
+{
+  constexpr int M = W * G;
+  for (int J = 0; J < number; J++) {
+    const double *const gJ = gradient_of(J);
+    double T[M * W];
+    for (int i = 0; i < M; i++)
+      for (int b = 0; b < W; b++) {
+        double sum = 0.0;
+        for (int l = 0; l < G; l++) sum += C[i * M + l * W + b] * gJ[l];
+        T[i * W + b] = sum;
+      }
+    for (int I = J; I < number; I++) {
+      const double *const gI = gradient_of(I);
+      double *const K = element + (I * number + J) * W * W;
+      for (int ab = 0; ab < W * W; ab++) {
+        double sum = K[ab];
+        for (int l = 0; l < G; l++) sum += gI[l] * T[l * W * W + ab];
+        K[ab] = sum;
+      }
+    }
+  }
+}
+
 /** A number at random that depends on the place alone. */
 double noise(const LatticeIndex &index, int a)
 {
@@ -107,7 +157,8 @@ Matrix inverse_of(const Matrix &A)
 struct SplineMultigrid::Levels {
   const Grid &grid;
   LatticeRanks &ranks;
-  const int width, order, dim, few;
+  const int width, order, dim, few, all;
+  bool whole = false;           // the first level below has the nodes themselves, and is factorized
   int period[3] = {0, 0, 0};    // of the first coarse level
 
   LinearSystem *system = nullptr;
@@ -127,8 +178,7 @@ struct SplineMultigrid::Levels {
   std::vector<int> rim_of_ranks;     // those of all ranks, by their number
   std::vector<int> rim_local;        // of nodes
   std::vector<double> rim_element;
-  std::vector<Block> rim_blocks;
-  std::unordered_map<uint64_t, int> rim_block_at;
+  Blocks rim_blocks;
   RimFactors rim_factors;
   std::vector<double> rim_x, rim_b;
 
@@ -145,8 +195,7 @@ struct SplineMultigrid::Levels {
       place;    // coarse nodes of these, and the place of a coarse node in that list
   std::vector<double> element, G, T;
   bool held = false;
-  std::vector<Block> blocks;
-  std::unordered_map<uint64_t, int> block_at;
+  Blocks blocks;
 
   struct Level {
     Sparse A, to_next;    // the latter: [unknown][unknown of the next level]
@@ -165,23 +214,17 @@ struct SplineMultigrid::Levels {
     void by_blocks(int width, const double *r, double *z);
   };
   std::vector<Level> coarse;
-  CholeskyFactors factors;
+  EnvelopeFactors factors;
 
-  Levels(const Grid &grid, LatticeRanks &ranks, int width, int order, int few) :
-      grid(grid), ranks(ranks), width(width), order(order), dim(grid.lattice.dim), few(few)
+  Levels(const Grid &grid, LatticeRanks &ranks, int width, int order, int few, int all) :
+      grid(grid), ranks(ranks), width(width), order(order), dim(grid.lattice.dim), few(few),
+      all(all)
   {
   }
 
   const double *projection_of(int64_t node) const
   {
     return projection.data() + node * width * width;
-  }
-  static Block &block(std::vector<Block> &blocks, std::unordered_map<uint64_t, int> &at, int row,
-                      int column)
-  {
-    const auto inserted = at.emplace((uint64_t) row << 32 | (uint64_t) column, (int) blocks.size());
-    if (inserted.second) blocks.push_back({row, column, {}});
-    return blocks[inserted.first->second];
   }
   /** P from, or P^T from. */
   void project(int64_t node, const double *from, bool transposed, double *to) const
@@ -195,7 +238,6 @@ struct SplineMultigrid::Levels {
         to[a] += (transposed ? P[b * width + a] : P[a * width + b]) * from[b];
     }
   }
-  Block &block(int row, int column) { return block(blocks, block_at, row, column); }
   LatticeIndex index_of(int64_t node) const
   {
     int at[3];
@@ -222,8 +264,8 @@ struct SplineMultigrid::Levels {
 };
 
 SplineMultigrid::SplineMultigrid(const Grid &grid, LatticeRanks &ranks, int width, int order,
-                                 int few) :
-    on(new Levels(grid, ranks, width, order, few > 0 ? few : FEW[grid.lattice.dim]))
+                                 int few, int all) :
+    on(new Levels(grid, ranks, width, order, few > 0 ? few : FEW[grid.lattice.dim], all))
 {
 }
 
@@ -232,7 +274,8 @@ SplineMultigrid::~SplineMultigrid() = default;
 void SplineMultigrid::begin(const double *projection, const double *blocks)
 {
   const auto before = std::move(on);
-  on.reset(new Levels(before->grid, before->ranks, before->width, before->order, before->few));
+  on.reset(new Levels(before->grid, before->ranks, before->width, before->order, before->few,
+                      before->all));
   const int64_t nnodes = on->grid.nnodes();
   const int w = on->width;
   on->plain.assign(nnodes, 1);
@@ -243,12 +286,13 @@ void SplineMultigrid::begin(const double *projection, const double *blocks)
         for (int b = 0; b < w; b++)
           if (projection[(node * w + a) * w + b] != (a == b ? 1.0 : 0.0)) on->plain[node] = 0;
   }
-  on->find_parents();
   on->find_rim(blocks);
+  on->find_parents();
   on->invert_blocks(blocks);
 }
 
-/** Which nodes of this rank are in the rim: all ranks know all nodes that have a stiffness. */
+/** Which nodes of this rank are in the rim: all ranks know all nodes that have a stiffness. A system that is factorized as a whole
+ *  needs none. */
 void SplineMultigrid::Levels::find_rim(const double *given)
 {
   const int w = width;
@@ -260,14 +304,16 @@ void SplineMultigrid::Levels::find_rim(const double *given)
   std::vector<LatticeIndex> owned;
   for (int64_t node = 0; node < grid.nnodes(); node++)
     if (grid.owns(node) && exists(node)) owned.push_back(index_of(node));
-  const auto all = ranks.gather(owned);
+  const auto everywhere = ranks.gather(owned);
+  rim_number.assign(grid.nnodes(), -1);
+  whole = everywhere.size() * w <= (std::size_t) all;
+  if (whole) return;
   int cells[3] = {0, 0, 0};
   for (int d = 0; d < dim; d++) cells[d] = grid.lattice.periodic[d] ? grid.lattice.ncell[d] : 0;
-  const auto at_surface = rim_of(all, dim, order + 1, cells);
-  for (const auto &index : all)
+  const auto at_surface = rim_of(everywhere, dim, order + 1, cells);
+  for (const auto &index : everywhere)
     if (at_surface.count(lattice_key(index))) rim.add(index);
   rim_factors.start(rim.index, dim, width);
-  rim_number.assign(grid.nnodes(), -1);
   std::vector<int> list;
   for (int64_t node = 0; node < grid.nnodes(); node++) {
     const auto found = exists(node) ? rim.number.find(lattice_key(index_of(node)))
@@ -287,9 +333,13 @@ void SplineMultigrid::Levels::find_parents()
   for (int d = 0; d < dim; d++) period[d] = lattice.periodic[d] ? (lattice.ncell[d] + 1) / 2 : 0;
   first.assign(1, 0);
   for (int64_t node = 0; node < grid.nnodes(); node++) {
-    each_parent(order, dim, index_of(node), period, [&](const LatticeIndex &parent, double weight) {
-      parts.push_back({mine.add(parent), weight});
-    });
+    if (whole)
+      parts.push_back({mine.add(index_of(node)), 1.0});
+    else
+      each_parent(order, dim, index_of(node), period,
+                  [&](const LatticeIndex &parent, double weight) {
+                    parts.push_back({mine.add(parent), weight});
+                  });
     first.push_back(parts.size());
   }
   place.assign(mine.index.size(), -1);
@@ -324,7 +374,7 @@ void SplineMultigrid::Levels::flush()
       const double *const K = element.data() + (I * n + J) * w * w;
       // one triangle
       const bool lower = local[I] >= local[J];
-      auto &to = lower ? block(local[I], local[J]) : block(local[J], local[I]);
+      auto &to = lower ? blocks.at(local[I], local[J]) : blocks.at(local[J], local[I]);
       for (int a = 0; a < w; a++)
         for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
     }
@@ -340,8 +390,7 @@ void SplineMultigrid::Levels::flush()
       if (!plain[j]) K = (K * Eigen::Map<const Matrix>(projection_of(j), w, w)).eval();
       const bool lower = row >= column;
       if (!lower) K.transposeInPlace();
-      auto &to = lower ? block(rim_blocks, rim_block_at, row, column)
-                       : block(rim_blocks, rim_block_at, column, row);
+      auto &to = lower ? rim_blocks.at(row, column) : rim_blocks.at(column, row);
       for (int a = 0; a < w; a++)
         for (int b = 0; b < w; b++) to.value[a * w + b] += K(a, b);
     }
@@ -358,29 +407,21 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
   if ((int) o.nodes.size() != n || !std::equal(nodes, nodes + n, o.nodes.begin()))
     o.start(n, nodes);
   const int w = o.width, m = w * ngrad, nc = o.local.size();
+  double symmetric[81];
+  for (int i = 0; i < m; i++)
+    for (int j = 0; j < m; j++)
+      symmetric[i * m + j] = 0.5 * (stiffness[i * m + j] + stiffness[j * m + i]);
   const auto C = [&](int i, int j) {
-    return 0.5 * (stiffness[i * m + j] + stiffness[j * m + i]);
+    return symmetric[i * m + j];
   };
   o.T.assign(m * w, 0.0);
-  // of functions with these gradients [ngrad]: one triangle of the blocks [number][number]
-  const auto add_blocks = [&](int number, const auto &gradient_of, std::vector<double> &element) {
-    for (int J = 0; J < number; J++) {
-      const double *const gJ = gradient_of(J);
-      for (int i = 0; i < m; i++)
-        for (int b = 0; b < w; b++) {
-          double sum = 0.0;
-          for (int l = 0; l < ngrad; l++) sum += C(i, l * w + b) * gJ[l];
-          o.T[i * w + b] = sum;
-        }
-      for (int I = J; I < number; I++) {
-        const double *const gI = gradient_of(I);
-        double *const K = element.data() + (I * number + J) * w * w;
-        for (int l = 0; l < ngrad; l++)
-          for (int ab = 0; ab < w * w; ab++) K[ab] += gI[l] * o.T[l * w * w + ab];
-      }
-    }
+  const auto add = [&](int number, const auto &gradient_of, std::vector<double> &element) {
+    const auto with = w == 3 ? &add_blocks<3, 3, decltype(gradient_of)>
+        : ngrad == 3         ? &add_blocks<2, 3, decltype(gradient_of)>
+                             : &add_blocks<2, 2, decltype(gradient_of)>;
+    with(number, gradient_of, symmetric, element.data());
   };
-  add_blocks(
+  add(
       o.rim_local.size(),
       [&](int J) {
         return gradient + o.rim_local[J] * ngrad;
@@ -395,7 +436,7 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
         double *const g = o.G.data() + o.place[o.parts[k].node] * ngrad;
         for (int l = 0; l < ngrad; l++) g[l] += o.parts[k].weight * gradient[i * ngrad + l];
       }
-    add_blocks(
+    add(
         nc,
         [&](int J) {
           return o.G.data() + J * ngrad;
@@ -450,7 +491,7 @@ void SplineMultigrid::Levels::add_masses(const double *mass)
     for (int i = first[node]; i < first[node + 1]; i++)
       for (int j = first[node]; j < first[node + 1]; j++) {
         if (parts[j].node > parts[i].node) continue;
-        auto &to = block(parts[i].node, parts[j].node);
+        auto &to = blocks.at(parts[i].node, parts[j].node);
         for (int ab = 0; ab < w * w; ab++)
           to.value[ab] += parts[i].weight * parts[j].weight * mass[node] * PP[ab];
       }
@@ -463,7 +504,7 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
   // nodes in the order of ranks, those that have a stiffness
   const int w = width;
   std::vector<char> used(mine.index.size(), 0);
-  for (const auto &b : blocks) used[b.row] = used[b.column] = 1;
+  for (const auto &b : blocks.list) used[b.row] = used[b.column] = 1;
   std::vector<LatticeIndex> given;
   for (std::size_t k = 0; k < used.size(); k++)
     if (used[k]) given.push_back(mine.index[k]);
@@ -477,7 +518,7 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
     }
   of_ranks = ranks.gather(list);
 
-  for (auto &b : blocks) {
+  for (auto &b : blocks.list) {
     b.row = number[b.row];
     b.column = number[b.column];
     if (b.row >= b.column) continue;
@@ -487,9 +528,8 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
       for (int j = 0; j < w; j++) turned[i * w + j] = b.value[j * w + i];
     std::copy_n(turned, w * w, b.value);
   }
-  const auto of_all = ranks.gather(blocks);
+  const auto of_all = ranks.gather(blocks.list);
   blocks = {};
-  block_at = {};
 
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(of_all.size() * w * w * 2);
@@ -631,12 +671,18 @@ void SplineMultigrid::Levels::invert_blocks(const double *given)
     if (!(scale > 0.0)) continue;
     in_system[node] = 1;
     if (plain[node]) {
-      if (rim_number[node] < 0)
+      if (rim_number[node] < 0 && !whole)
         Eigen::Map<Matrix>(inverse.data() + node * w * w, w, w) = inverse_of(D);
       continue;
     }
     const Matrix P = Eigen::Map<const Matrix>(projection_of(node), w, w);
     const Matrix rest = Matrix::Identity(w, w) - P, held = scale * rest.transpose() * rest;
+    if (whole) {
+      const int k = parts[first[node]].node;
+      auto &to = blocks.at(k, k);
+      for (int ab = 0; grid.owns(node) && ab < w * w; ab++) to.value[ab] += held(ab / w, ab % w);
+      continue;
+    }
     if (rim_number[node] >= 0) {
       if (grid.owns(node))
         Eigen::Map<Matrix>(held_part.data() + (std::size_t) rim_number[node] * w * w, w, w) = held;
@@ -653,7 +699,7 @@ void SplineMultigrid::Levels::factorize_rim(const double *mass)
   const int w = width;
   for (const int64_t node : rim_owned) {
     const int k = rim_number[node];
-    auto &to = block(rim_blocks, rim_block_at, k, k);
+    auto &to = rim_blocks.at(k, k);
     Matrix PP = Matrix::Identity(w, w);
     if (!plain[node]) PP = Eigen::Map<const Matrix>(projection_of(node), w, w);
     PP = (PP.transpose() * PP).eval();
@@ -661,9 +707,8 @@ void SplineMultigrid::Levels::factorize_rim(const double *mass)
       to.value[ab] +=
           held_part[(std::size_t) k * w * w + ab] + (mass ? mass[node] * PP(ab / w, ab % w) : 0.0);
   }
-  const auto of_all = ranks.gather(rim_blocks);
+  const auto of_all = ranks.gather(rim_blocks.list);
   rim_blocks = {};
-  rim_block_at = {};
   for (const auto &b : of_all) rim_factors.add(b.row, b.column, b.value);
   usable = rim_factors.factorize() && usable;
   rim_b.resize(rim.index.size() * w);
@@ -716,12 +761,20 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
   o.system = &system;
   o.flush();
   if (mass) o.add_masses(mass);
-  o.factorize_rim(mass);
+  if (!o.whole) o.factorize_rim(mass);
   LatticeNodes all;
   o.merge_ranks(all);
-  o.coarsen(std::move(all));
-  o.usable = o.usable && factorize(o.coarse.back().A, o.factors);
-  if (o.usable) o.estimate_largest();
+  if (o.whole)
+    o.coarse.back().x = o.coarse.back().b = Eigen::VectorXd::Zero(o.coarse.back().A.rows());
+  else
+    o.coarsen(std::move(all));
+  // symmetric: its rows are columns
+  const Sparse &last = o.coarse.back().A;
+  const Eigen::Map<const Eigen::SparseMatrix<double>> columns(
+      last.rows(), last.cols(), last.nonZeros(), last.outerIndexPtr(), last.innerIndexPtr(),
+      last.valuePtr());
+  o.usable = o.usable && factorize(columns, o.factors);
+  if (o.usable && !o.whole) o.estimate_largest();
 }
 
 void SplineMultigrid::Levels::smooth(const double *r, double *z, bool from_zero)
@@ -741,7 +794,7 @@ void SplineMultigrid::Levels::cycle(std::size_t which)
 {
   auto &level = coarse[which];
   if (which + 1 == coarse.size()) {
-    if (level.b.size() > 0) level.x = factors.solve(level.b);
+    if (level.b.size() > 0) factors.solve(level.b.data(), level.x.data());
     return;
   }
   const auto smooth_level = [&](bool from_zero) {
@@ -773,12 +826,14 @@ void SplineMultigrid::precondition(const double *r, double *z)
     return;
   }
   std::fill_n(z, nnodes * w, 0.0);
-  o.smooth(r, z, true);
+  o.rest.assign(nnodes * w, 0.0);
+  if (!o.whole) {
+    o.smooth(r, z, true);
+    o.system->apply(z, o.rest.data());
+  }
 
   // residuals of the nodes that this rank owns go to its part of the coarse level, and those of all ranks to the level
 
-  o.rest.resize(nnodes * w);
-  o.system->apply(z, o.rest.data());
   auto &partial = o.partial;
   partial.assign(o.number.size() * w, 0.0);
   for (int64_t node = 0; node < nnodes; node++) {
@@ -812,7 +867,7 @@ void SplineMultigrid::precondition(const double *r, double *z)
     o.project(node, motion, false, free);
     for (int a = 0; a < w; a++) z[node * w + a] += free[a];
   }
-  o.smooth(r, z, false);
+  if (!o.whole) o.smooth(r, z, false);
 }
 
 bool SplineMultigrid::usable() const
@@ -822,7 +877,7 @@ bool SplineMultigrid::usable() const
 
 int SplineMultigrid::levels() const
 {
-  return 1 + on->coarse.size();
+  return on->coarse.size() + (on->whole ? 0 : 1);
 }
 
 double SplineMultigrid::largest_eigenvalue() const
@@ -835,10 +890,9 @@ double SplineMultigrid::memory_usage() const
   const auto &o = *on;
   // a node of a hash map: what it has, and a pointer in it and to it
   constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
-  double bytes = o.parts.capacity() * sizeof(Part) + memory_of(o.factors) +
+  double bytes = o.parts.capacity() * sizeof(Part) + o.factors.memory_usage() +
       o.rim_factors.memory_usage() + o.plain.capacity() + o.in_system.capacity() +
-      (o.blocks.capacity() + o.rim_blocks.capacity()) * sizeof(Block) +
-      (o.block_at.size() + o.rim_block_at.size()) * HASHED +
+      o.blocks.memory_usage() + o.rim_blocks.memory_usage() +
       (o.rim_owned.capacity() + o.nodes.capacity()) * sizeof(int64_t);
   for (const auto *list : {&o.rim, &o.mine})
     bytes += list->index.capacity() * sizeof(LatticeIndex) + list->number.size() * HASHED;

@@ -33,8 +33,9 @@ namespace MPM_NS {
 class SplineMultigrid {
  public:
   /** width: values of a node, 2 or 3.  order: of the splines, 1 to 3; other functions of points have coarse levels of these all the
-   *  same.  few: unknowns of a level that is factorized, 0: what is fast. */
-  SplineMultigrid(const Grid &, LatticeRanks &, int width, int order, int few = 0);
+   *  same.  few: unknowns of a level that is factorized, 0: what is fast.  all: systems of at most so many unknowns have no levels:
+   *  they are factorized as a whole, so that a solution takes hardly more than one iteration. */
+  SplineMultigrid(const Grid &, LatticeRanks &, int width, int order, int few = 0, int all = 0);
   ~SplineMultigrid();
 
   /** A new operator, for the blocks of nodes that the grid has now.  projection: [node][width][width], P u being free motions of
