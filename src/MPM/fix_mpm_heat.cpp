@@ -13,6 +13,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_contact.h"
+#include "fix_mpm_implicit.h"
 #include "force.h"
 #include "input.h"
 #include "modify.h"
@@ -462,7 +463,9 @@ MPMConduction &FixMPMHeat::of(const MPMField &field) const
 
 void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
-  if (place == MPMPlan::AFTER_SOLVE)
+  // points strain at the end of a step with the temperatures that they have then: an implicit step must know these before
+  const bool is_implicit = !find_fixes<FixMPMImplicit>(lmp).empty();
+  if (place == (is_implicit ? MPMPlan::BEFORE_SOLVE : MPMPlan::AFTER_SOLVE))
     plan.together("conduction of heat", [this]() {
       conduct();
     });

@@ -75,6 +75,7 @@ class FixMPMHeat :
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
   bool looks_beyond_points() const override;
+  bool precedes_motion() const override { return true; }    // of an implicit step
   double stable_dt(const MPMField &field, tagint &tag) const override;
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
