@@ -227,6 +227,31 @@ SERIAL_TEST(Front, Moves)
   EXPECT_NEAR(measured("molten", liquid), 0.392162, 0.004);
 }
 
+// a body around a hot cylinder, and a ring around a hot ring, free outside: surfaces that lines of both axes cross share these
+// conditions, and must not hold more than there is; explicit steps are the reference
+SERIAL_TEST(Hole, AsInExplicitSteps)
+{
+  for (const char *grid : {"shape gimp", "shape cubic axisymmetric yes"}) {
+    const auto heat = [&](const std::string &time, int steps) {
+      Scene run(plane("lj", "f p", "0 1.7 0 1.3", 1, 0.05) +
+                "region hole cylinder z 0.6 0.7 0.3 INF INF\n"
+                "region rest cylinder z 0.6 0.7 0.3 INF INF side out\n"
+                "region block block 0.1 1.43 0.2 1.17 INF INF\nregion body intersect 2 block rest\n"
+                "fix grid all mpm 0.08 origin 0.01 0.02 dtcheck no " +
+                std::string(grid) +
+                "\ncreate_points 1 region body ppc 2 outside ignore\n"
+                "fix m all mpm/material density 1 eos linear 1e-9 thermal conducting 1 0 1\n"
+                "fix axis all mpm/boundary xlo slip\n"
+                "fix heat all mpm/heat surface convection 3 0.5 region hole temperature 1 " +
+                time + strprintf("\ntimestep %.17g\nrun %d\n", 0.16 / steps, steps));
+      return run.fix("heat")->compute_scalar();
+    };
+    const double exact = heat("stages 64", 80);
+    EXPECT_NEAR(measured("short steps", heat("time sdirk2", 80) / exact), 1.0, 2e-3);
+    EXPECT_NEAR(measured("long steps", heat("time sdirk2", 8) / exact), 1.0, 0.01);
+  }
+}
+
 TEST(Ranks, Agree)
 {
   const std::string walls =

@@ -616,13 +616,11 @@ int FixMPMHeat::count_stages()
 
   // a node can be at faces, in contacts with several bodies, and at a surface; that of one field is not another's. What
   // costs no stage needs no limit
-  static constexpr double BELOW_ONE_STEP = 0.95, IMPLICIT = 100.0, IN_A_STEP = 1000.0;
+  static constexpr double BELOW_ONE_STEP = 0.95;
   int most_at_a_node = 0;
   for (auto &field : fields) most_at_a_node = std::max(most_at_a_node, exchanges(*field));
   const double dt = fields[0]->field.step_dt(),
-               cap = solver
-      ? std::max(IMPLICIT * greatest, IN_A_STEP / dt)
-      : std::max(greatest, BELOW_ONE_STEP / (dt * std::max(most_at_a_node, 1)));
+               cap = std::max(greatest, BELOW_ONE_STEP / (dt * std::max(most_at_a_node, 1)));
   const double *rates = all.data() + NRATE * fields.size();
   const bool has_lines = !contacts.empty() || !skins.empty();
   if (has_lines) find_edges();
