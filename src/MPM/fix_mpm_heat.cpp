@@ -13,6 +13,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_contact.h"
+#include "fix_mpm_implicit.h"
 #include "force.h"
 #include "input.h"
 #include "modify.h"
@@ -25,6 +26,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -123,11 +125,26 @@ Options MPMHeatOptions::declare(int dim)
                        "terms of the inverse of the matrix of capacities")}}})});
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
+  o.add(
+      "time",
+      {word(
+          in_time.time,
+          {{"explicit", MPMDiffusionOptions::EXPLICIT, "in stages (RKL2), of second order in time"},
+           {"euler", MPMDiffusionOptions::EULER, "backward Euler: implicit, first order in time"},
+           {"sdirk2", MPMDiffusionOptions::SDIRK2,
+            "two implicit stages, of second order in time"}})});
+  o.add("tolerance",
+        {number(in_time.tolerance, "R", {0.0, 1.0, false, false}, "",
+                "of implicit steps: heat that is not in balance at nodes, over that of the step")});
   o.add("grains", {yes_no(grains)},
         "points exchange heat with grains, by the temperatures and heat flows of atoms");
   o.refuse([=] {
-    OptionRules rules = {{!source.empty() && source.compare(0, 2, "v_") != 0, "source",
-                          "must be a variable, v_name: {source}"}};
+    const bool is_explicit = in_time.time == MPMDiffusionOptions::EXPLICIT;
+    OptionRules rules = {
+        {!source.empty() && source.compare(0, 2, "v_") != 0, "source",
+         "must be a variable, v_name: {source}"},
+        {!is_explicit, "stages", "is of explicit steps: remove it, or use time explicit"},
+        {is_explicit, "tolerance", "is of implicit steps: remove it, or use time euler or sdirk2"}};
     for (std::size_t k = 0; k < pairs.size(); k++) {
       const auto &[F, H, now] = pairs[k];
       rules.push_back({F[0] == F[1], "contact", "needs two different bodies: {contact}"});
@@ -194,7 +211,8 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
 
 int FixMPMHeat::setmask()
 {
-  return grains ? POST_INTEGRATE | POST_FORCE | END_OF_STEP : 0;
+  const int report = in_time.time == MPMDiffusionOptions::EXPLICIT ? 0 : (int) POST_RUN;
+  return report | (grains ? POST_INTEGRATE | POST_FORCE | END_OF_STEP : 0);
 }
 
 /* ----------------------------------------------------------------------
@@ -278,6 +296,11 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
 {
   fields.clear();
   steps.clear();
+  solver.reset();
+  if (in_time.time != MPMDiffusionOptions::EXPLICIT) {
+    MPMDiffusion &equations = *this;
+    solver = std::make_unique<MPMDiffusionSolver>(lmp, equations, in_time);
+  }
   steps.add(in_step, present);
   for (auto *field : plan.fields) {
     const auto &o = field->options;
@@ -300,6 +323,7 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
     if (gradients) field->slopes.push_back(&gradients);
     fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
     fields.back()->init(sigma(), !surfaces.empty() || !pairs.empty());
+    if (solver) fields.back()->faces.hold_exactly();
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
   }
   init_contacts();
@@ -439,7 +463,9 @@ MPMConduction &FixMPMHeat::of(const MPMField &field) const
 
 void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
-  if (place == MPMPlan::AFTER_SOLVE)
+  // points strain at the end of a step with the temperatures that they have then: an implicit step must know these before
+  const bool is_implicit = !find_fixes<FixMPMImplicit>(lmp).empty();
+  if (place == (is_implicit ? MPMPlan::BEFORE_SOLVE : MPMPlan::AFTER_SOLVE))
     plan.together("conduction of heat", [this]() {
       conduct();
     });
@@ -617,14 +643,16 @@ int FixMPMHeat::count_stages()
     most = std::max(most, std::min(cap, *rates++));
   }
   greatest += most;
+  fastest = greatest;
+  if (solver) return 0;
 
   const double limit = MPMSuperStep::explicit_limit(greatest);
   const int stages = MPMSuperStep::count(dt, limit, most_stages);
   if (stages > most_stages)
     error->all(FLERR, Error::NOLASTLINE,
                "The time step {:.6g} is {:.4g} times the explicit limit {:.4g} of the conduction "
-               "of heat, which needs more than {} stages: use fix mpm/dt, a smaller timestep, or "
-               "fix mpm/heat ... stages",
+               "of heat, which needs more than {} stages: use fix mpm/dt, a smaller timestep, "
+               "fix mpm/heat ... stages, or implicit steps, fix mpm/heat ... time sdirk2",
                dt, dt / limit, limit, most_stages);
   return stages;
 }
@@ -650,6 +678,94 @@ void FixMPMHeat::find_rates()
   }
 }
 
+/* ----------------------------------------------------------------------
+   the same equations for implicit steps
+------------------------------------------------------------------------- */
+
+bool FixMPMHeat::linearize()
+{
+  int mine = 1, all;
+  for (auto *part : parts) mine &= part->faces.linearize(part->temperature);
+  for (const auto &contact : contacts) mine &= contact->is_symmetric();
+  for (auto &skin : skins) mine &= skin->linearize();
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, world);
+  return all;
+}
+
+void FixMPMHeat::find_changes()
+{
+  for (auto *part : parts) {
+    part->find_changes();
+    part->faces.add_changes(part->temperature, part->rate);
+  }
+  if (contacts.empty() && skins.empty()) return;
+  Heats nowhere(MPMHeatFaces::NFACE + 1);
+  double between = 0.0;
+  for (auto &body : bodies)
+    if (body->conduction) body->begin_stage();
+  for (const auto &contact : contacts) contact->exchange(between);
+  for (const auto &skin : skins) skin->exchange_changes();
+  for (auto &body : bodies) {
+    if (!body->conduction) continue;
+    body->end_stage();
+    body->conduction->faces.hold_rates(body->conduction->rate, nowhere);
+  }
+}
+
+void FixMPMHeat::project(int part, std::vector<double> &change)
+{
+  Heats nowhere(MPMHeatFaces::NFACE + 1);
+  parts[part]->faces.hold_rates(change, nowhere);
+}
+
+void FixMPMHeat::each_term(int k, double dt, const Term &use)
+{
+  const auto &part = *parts[k];
+  part.each_term(use);
+  part.faces.each_term(std::max(part.bound_of_rates(), 1.0 / dt), use);
+  for (const auto &body : bodies) {
+    if (body->conduction != &part) continue;
+    for (const auto &contact : contacts) contact->each_term(*body, use);
+    for (const auto &skin : skins)
+      if (&skin->body == body.get()) skin->each_term(use);
+  }
+}
+
+void FixMPMHeat::solve()
+{
+  solver->clear();
+  solver->add(in_step, present);
+  parts.clear();
+  double greatest = 0.0;
+  for (auto &field : fields) {
+    if (!field->conducts()) continue;
+    parts.push_back(field.get());
+    solver->add(field->field, field->scalar);
+    greatest = std::max(greatest, field->bound_of_rates());
+  }
+  const auto &report = solver->advance(dt_last, greatest, fastest);
+  iterations[STEPS]++;
+  iterations[NEWTON] += report.newton;
+  iterations[LINEAR] += report.linear;
+  if (!report.converged)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/heat {}: no solution for the temperatures in step {} after {} iterations "
+               "of Newton's method and {} of the linear solver: {}. Use a smaller timestep, a "
+               "larger tolerance, or time explicit",
+               id, update->ntimestep, report.newton, report.linear, report.failure);
+}
+
+void FixMPMHeat::post_run()
+{
+  const double n = iterations[STEPS];
+  if (comm->me || n == 0.0 || update->nsteps == 0) return;
+  utils::logmesg(lmp,
+                 "Fix mpm/heat {}: {:.2f} Newton iterations in a step, {:.1f} of the linear solver "
+                 "in each\n",
+                 id, iterations[NEWTON] / n,
+                 iterations[LINEAR] / std::max(1.0, iterations[NEWTON]));
+}
+
 void FixMPMHeat::conduct()
 {
   evaluate_variables();
@@ -660,9 +776,12 @@ void FixMPMHeat::conduct()
   for (auto &field : fields)
     if (field->conducts()) field->faces.hold(field->temperature, in_step);
   dt_last = fields[0]->field.step_dt();
-  steps.advance(stages, dt_last, [this]() {
-    find_rates();
-  });
+  if (solver)
+    solve();
+  else
+    steps.advance(stages, dt_last, [this]() {
+      find_rates();
+    });
   for (auto &field : fields) {
     if (field->conducts()) past.got += field->nodes_to_points(gradients);
     field->given.clear();
@@ -679,6 +798,7 @@ void FixMPMHeat::conduct()
 double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
 {
   // other exchange is as fast as conduction at the most
+  if (solver) return std::numeric_limits<double>::max();
   const auto &conduction = of(field);
   const double rate = conduction.greatest_rate_of_points(tag);
   const double others = (double) contacts.size() + (skins.empty() ? 0.0 : 1.0);
@@ -752,6 +872,7 @@ double FixMPMHeat::memory_usage()
   double bytes = FixMPMState::memory_usage() + steps.memory_usage() +
       source_values.capacity() * sizeof(double);
   if (grains) bytes += grain_heat->memory_usage();
+  if (solver) bytes += solver->memory_usage();
   for (const auto &field : fields) bytes += field->memory_usage();
   for (const auto &body : bodies) bytes += body->memory_usage();
   for (const auto &contact : contacts) bytes += contact->memory_usage();

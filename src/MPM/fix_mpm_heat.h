@@ -16,6 +16,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #define LMP_FIX_MPM_HEAT_H
 
 #include "mpm_conduction.h"
+#include "mpm_diffusion_solver.h"
 #include "mpm_grain_heat.h"
 #include "mpm_heat_contact.h"
 #include "mpm_heat_surface.h"
@@ -24,6 +25,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "mpm_state.h"
 #include "mpm_super_step.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -40,6 +42,7 @@ struct MPMHeatOptions {
   std::string source;    ///< variable, without v_; empty: none
   MPMHeatTransfer transfer;
   int most_stages = 32;
+  MPMDiffusionOptions in_time;
   bool grains = false;
 
   MPM_NS::Options declare(int dimension);
@@ -47,7 +50,11 @@ struct MPMHeatOptions {
 
 /** Conduction of heat in the points of materials with a part thermal conducting, heat through the faces of the
  *  box, surfaces of regions and free surfaces, and heat that bodies (fix mpm) exchange where they touch. */
-class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions {
+class FixMPMHeat :
+    public FixMPMState,
+    public MPMPhysics,
+    private MPMHeatOptions,
+    private MPMDiffusion {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
   int setmask() override;    // conduction is called by fix mpm
@@ -55,6 +62,8 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   void post_integrate() override { grain_heat->show(); }
   void post_force(int) override { grain_heat->note_step(); }
   void end_of_step() override { book(GRAINS, grain_heat->take()); }
+  void setup(int) override { std::fill_n(iterations, (int) NTOTAL, 0.0); }
+  void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   void write_restart(FILE *) override;
@@ -66,6 +75,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
   bool looks_beyond_points() const override;
+  bool precedes_motion() const override { return true; }    // of an implicit step
   double stable_dt(const MPMField &field, tagint &tag) const override;
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
@@ -98,6 +108,12 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
       skins;             // surfaces of fields, if there are conditions
   MPMHeatThin thin;      // bodies; entries: surfaces, then contacts
   MPMSuperStep steps;    // of the temperatures of all fields together
+  // the same, implicit; null: explicit
+  std::unique_ptr<MPMDiffusionSolver> solver;
+  std::vector<MPMConduction *> parts;    // of the solver, in this step
+  double fastest = 0.0;                  // bound of all rates, of exchange, too
+  enum { STEPS, NEWTON, LINEAR, NTOTAL };
+  double iterations[NTOTAL] = {};    // of this run
   Past past = {};
   // heat of the last step, and power in a stage of it, this rank's share: through faces, of sources, of givers, through
   // surfaces, through contacts
@@ -123,7 +139,12 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, private MPMHeatOptions
   int exchanges(const MPMConduction &of_field) const;
   int count_stages();
   void find_edges();
-  void find_rates();
+  void find_rates() override;
+  bool linearize() override;
+  void find_changes() override;
+  void project(int part, std::vector<double> &change) override;
+  void each_term(int part, double dt, const Term &) override;
+  void solve();
   void conduct();
 };
 

@@ -162,7 +162,7 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
        {options.heats(), "heat", "the time step is not in its balance: remove it"},
        {options.every > 1, "every", "implicit steps are long already: use every 1"}});
   for (auto *other : plan.physics)
-    if (other != this && !other->only_loads())
+    if (other != this && !other->only_loads() && !other->precedes_motion())
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "

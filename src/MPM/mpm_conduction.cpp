@@ -475,30 +475,76 @@ void MPMConduction::find_unseen()
 
 /* ---------------------------------------------------------------------- */
 
+/** Gradients of n points become fluxes times volumes, and values 0. */
+void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q) const
+{
+  const double *const V = volumes.data() + first;
+  const double *const share = shares.empty() ? nullptr : shares.data() + first;
+  Conduction room;
+  for (int p = 0; p < n; p++) {
+    const double conducting = share ? V[p] * share[p] : V[p];
+    if (total || t.all.orthotropic) {
+      double k[3][3], flux[3];
+      tensor(t, first + p, k);
+      MathExtra::matvec(k, q[p], flux);
+      for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
+    } else if (layers) {
+      layers->multiply(first + p, q[p]);
+      for (int d = 0; d < 3; d++) q[p][d] *= -conducting;
+    } else {
+      const double factor = -conducting * t.at(first + p, room).conductivity;
+      for (int d = 0; d < 4; d++) q[p][d] *= factor;
+    }
+    q[p][3] = 0.0;
+  }
+}
+
+void MPMConduction::find_changes()
+{
+  scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+    conduct(*thermal(run.material), first, n, q);
+  });
+}
+
+/** Points that see a node from several corners of their domain have it once. */
+void MPMConduction::each_term(const MPMDiffusion::Term &use) const
+{
+  const MPMStencil stencil(field);
+  const int dim = field.lattice.dim;
+  std::vector<int64_t> nodes;
+  std::vector<double> gradients;
+  for (const auto &run : field.map->runs) {
+    const Thermal *const t = thermal(run.material);
+    for (int i = run.first; t && i < run.last; i++) {
+      nodes.clear();
+      gradients.clear();
+      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+        std::size_t k = nodes.size();
+        if (field.domains) k = std::find(nodes.begin(), nodes.end(), node.number) - nodes.begin();
+        if (k == nodes.size()) {
+          nodes.push_back(node.number);
+          gradients.resize(gradients.size() + dim, 0.0);
+        }
+        for (int d = 0; d < dim; d++) gradients[dim * k + d] += node.gradient[d];
+      });
+      double stiffness[9];
+      for (int column = 0; column < dim; column++) {
+        double q[1][4] = {};
+        q[0][column] = -1.0;
+        conduct(*t, i, 1, q);
+        for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
+      }
+      use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
+    }
+  }
+}
+
 void MPMConduction::find_rates(const double *source, Heats &power)
 {
   scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-    const Thermal *const t = thermal(run.material);
-    const double *const V = volumes.data() + first;
-    const double *const share = shares.empty() ? nullptr : shares.data() + first;
-    Conduction room;
-    for (int p = 0; p < n; p++) {
-      const double conducting = share ? V[p] * share[p] : V[p];
-      if (total || t->all.orthotropic) {
-        double k[3][3], flux[3];
-        tensor(*t, first + p, k);
-        MathExtra::matvec(k, q[p], flux);
-        for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
-      } else if (layers) {
-        layers->multiply(first + p, q[p]);
-        for (int d = 0; d < 3; d++) q[p][d] *= -conducting;
-      } else {
-        const double factor = -conducting * t->at(first + p, room).conductivity;
-        for (int d = 0; d < 4; d++) q[p][d] *= factor;
-      }
-      q[p][3] = 0.0;
-    }
+    conduct(*thermal(run.material), first, n, q);
     if (!source) return;
+    const double *const V = volumes.data() + first;
     double sum = 0.0;
     for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
     power[SOURCES] += sum;

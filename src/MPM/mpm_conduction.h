@@ -11,6 +11,7 @@
 
 #include "fix_mpm_material.h"
 #include "material/material.h"
+#include "mpm_diffusion_solver.h"
 #include "mpm_heat_faces.h"
 #include "mpm_layer_mean.h"
 #include "mpm_node_scalar.h"
@@ -62,6 +63,10 @@ class MPMConduction : protected Pointers {
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. */
   void find_rates(const double *source, Heats &power);
+  /** The same for small changes of the temperatures, by conduction alone: the changes of the rates. */
+  void find_changes();
+  /** What each point of this rank adds to the matrix of conduction, see MPMDiffusion::Term. */
+  void each_term(const MPMDiffusion::Term &) const;
   /** Last part: temperatures of points; returns the heat that they have got. */
   double nodes_to_points(const MPMRows &gradients);
 
@@ -122,6 +127,7 @@ class MPMConduction : protected Pointers {
   void keep_present(const std::vector<signed char> &mine);
   double volume_of(int i) const;
   void tensor(const Thermal &, int i, double k[3][3]) const;
+  void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q) const;
   double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;
   double steepness(int i) const;

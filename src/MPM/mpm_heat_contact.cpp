@@ -223,6 +223,31 @@ void MPMHeatContact::limit(double cap)
   }
 }
 
+bool MPMHeatContact::is_symmetric() const
+{
+  for (const auto &place : places)
+    if (place.rate > fastest) return false;
+  return true;
+}
+
+void MPMHeatContact::each_term(const MPMHeatBody &of, const MPMDiffusion::Term &use) const
+{
+  for (const auto &place : places) {
+    if (!(place.rate > 0.0)) continue;
+    const auto &line = place.line[body[1] == &of];
+    const double stiffness = std::min(1.0, fastest / place.rate) * pair.now * place.area;
+    int64_t nodes[MPMHeatBody::MOST];
+    double weights[MPMHeatBody::MOST];
+    int n = 0;
+    for (int k = 0; k < line.n; k++)
+      if (line.weight[k] > 0.0) {
+        nodes[n] = line.node[k];
+        weights[n++] = line.weight[k];
+      }
+    if (stiffness > 0.0) use(n, nodes, 1, weights, &stiffness);
+  }
+}
+
 void MPMHeatContact::exchange(double &power) const
 {
   for (const auto &place : places) {

@@ -10,6 +10,7 @@
 #define LMP_MPM_HEAT_CONTACT_H
 
 #include "declare/option.h"
+#include "mpm_diffusion_solver.h"
 #include "mpm_heat_body.h"
 #include "pointers.h"
 
@@ -48,6 +49,10 @@ class MPMHeatContact : protected Pointers {
   void limit(double cap);
   /** Gives heat to both bodies, whose rates have all other heat already; adds the power from a to b of this rank. */
   void exchange(double &power) const;
+  /** Is it symmetric on this rank? */
+  bool is_symmetric() const;
+  /** What this rank adds to the matrix of conduction of a body, as if the other one had its temperature. */
+  void each_term(const MPMHeatBody &, const MPMDiffusion::Term &) const;
 
   double memory_usage() const;
 

@@ -314,7 +314,7 @@ double MPMHeatFaces::softness(const Face &face, const Line &line) const
             : std::clamp(fastest / (line.rate - fastest), 1.0 / STIFFEST, STIFFEST));
 }
 
-void MPMHeatFaces::solve(const Group &group, const std::vector<double> &temperature,
+void MPMHeatFaces::solve(const Group &group, bool changes, const std::vector<double> &temperature,
                          std::vector<double> &rate, Heats &power) const
 {
   const auto &lines = group.lines;
@@ -332,7 +332,7 @@ void MPMHeatFaces::solve(const Group &group, const std::vector<double> &temperat
     }
     if (condition.kind != MPMHeatCondition::TEMPERATURE)
       P[i] += softness(*face, *line) * std::min(1.0, STIFFEST * fastest / line->rate) * line->area *
-          condition.flux(T, sigma);
+          flux(changes, *face, *line, T);
     for (std::size_t k = 0; k < i; k++) P[i] -= L[n * i + k] * P[k];
     P[i] /= L[n * i + i];
   }
@@ -452,6 +452,13 @@ double MPMHeatCondition::flux(double T, double sigma) const
   return now[0] * sigma * (square(square(now[1])) - square(square(T)));
 }
 
+double MPMHeatCondition::derivative(double T, double sigma) const
+{
+  if (kind <= FLUX) return 0.0;
+  if (kind == CONVECTION) return now[0];
+  return 4.0 * now[0] * sigma * MathSpecial::cube(T);
+}
+
 double MPMHeatCondition::slope(double T, double sigma) const
 {
   if (kind <= FLUX) return 0.0;
@@ -467,9 +474,11 @@ template <class F> void MPMHeatFaces::visit_held(const F &f) const
     for (const auto &line : face.lines)
       if (line.response > 0.0) f(face, line);
   };
-  for (const auto &face : faces) visit(face);
-  if (!crossing) return;
-  for (auto face = faces.rbegin() + 1; face < faces.rend(); ++face) visit(*face);
+  for (int turn = 0; turn < (crossing ? turns : 1); turn++) {
+    for (const auto &face : faces) visit(face);
+    if (!crossing) return;
+    for (auto face = faces.rbegin() + 1; face < faces.rend(); ++face) visit(*face);
+  }
 }
 
 void MPMHeatFaces::hold(std::vector<double> &temperature, Heats &heat) const
@@ -483,8 +492,52 @@ void MPMHeatFaces::hold(std::vector<double> &temperature, Heats &heat) const
   });
 }
 
-void MPMHeatFaces::add_rates(const std::vector<double> &temperature, std::vector<double> &rate,
-                             Heats &power) const
+/** Heat that comes in per area, or its change for a change of the temperature. */
+double MPMHeatFaces::flux(bool changes, const Face &face, const Line &line, double T) const
+{
+  return changes ? -line.slope * T : conditions[face.face].flux(T, sigma);
+}
+
+bool MPMHeatFaces::linearize(const std::vector<double> &temperature)
+{
+  bool symmetric = true;
+  for (auto &face : faces)
+    for (auto &line : face.lines) {
+      if (!(line.area > 0.0)) continue;
+      double T = 0.0;
+      for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
+      line.slope = conditions[face.face].derivative(T, sigma);
+      symmetric = symmetric && !is_limited(line);
+    }
+  return symmetric;
+}
+
+void MPMHeatFaces::add_changes(const std::vector<double> &change, std::vector<double> &rate) const
+{
+  Heats power(NFACE + 1);
+  add(true, change, rate, power);
+}
+
+/** Ranks that have a node of a line have the line: it belongs to the first of its nodes with a capacity. */
+void MPMHeatFaces::each_term(double least, const MPMDiffusion::Term &use) const
+{
+  static constexpr double STIFF = 100.0;
+  for (const auto &face : faces) {
+    const bool held = conditions[face.face].kind == MPMHeatCondition::TEMPERATURE;
+    for (const auto &line : face.lines) {
+      if (!(line.response > 0.0)) continue;
+      int k = 0;
+      while (k < face.n && !(line.change[k] > 0.0)) k++;
+      if (k == face.n || !field.grid.owns(line.node[k])) continue;
+      const double stiffness = held ? STIFF * least / line.response
+                                    : std::min(line.area * line.slope, fastest / line.response);
+      if (stiffness > 0.0) use(face.n, line.node, 1, line.weight, &stiffness);
+    }
+  }
+}
+
+void MPMHeatFaces::add(bool changes, const std::vector<double> &temperature,
+                       std::vector<double> &rate, Heats &power) const
 {
   const auto visit = [&](bool limited, const auto &power_of) {
     for (const auto &face : faces) {
@@ -494,7 +547,7 @@ void MPMHeatFaces::add_rates(const std::vector<double> &temperature, std::vector
         if (!(line.area > 0.0) || line.joint || is_limited(line) != limited) continue;
         double T = 0.0;
         for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
-        const double more = power_of(line, face.n, line.area * condition.flux(T, sigma));
+        const double more = power_of(line, face.n, line.area * flux(changes, face, line, T));
         for (int k = 0; k < face.n; k++) rate[line.node[k]] += more * line.change[k];
         power[face.face] += more * line.owned;
       }
@@ -510,7 +563,7 @@ void MPMHeatFaces::add_rates(const std::vector<double> &temperature, std::vector
     const double slower = fastest / line.rate;
     return slower * P - (1.0 - slower) * drift / line.response;
   });
-  for (const auto &group : groups) solve(group, temperature, rate, power);
+  for (const auto &group : groups) solve(group, changes, temperature, rate, power);
   hold_rates(rate, power);
 }
 

@@ -10,6 +10,7 @@
 #define LMP_MPM_HEAT_FACES_H
 
 #include "declare/option.h"
+#include "mpm_diffusion_solver.h"
 #include "pointers.h"
 
 #include <cstdint>
@@ -32,7 +33,9 @@ struct MPMHeatCondition {
   /** Heat that comes in per area at a temperature of the surface, if that is not prescribed. sigma: the constant of
    *  Stefan and Boltzmann. */
   double flux(double temperature, double sigma) const;
-  /** How much this falls with the temperature, at the most between it and that outside. */
+  /** How much this falls with the temperature. */
+  double derivative(double temperature, double sigma) const;
+  /** The same, at the most between it and that outside. */
   double slope(double temperature, double sigma) const;
 };
 
@@ -52,6 +55,8 @@ class MPMHeatFaces : protected Pointers {
 
   /** Start of a run: where the faces are. sigma: the constant of Stefan and Boltzmann. */
   void init(double sigma);
+  /** Prescribed temperatures are kept exactly also where faces meet: a step may be so long that what they lose in one counts. */
+  void hold_exactly() { turns = 20; }
   /** Is there a face that is not insulated? */
   bool any() const { return !faces.empty(); }
   /** Number of axes with faces whose temperature follows that outside. */
@@ -81,7 +86,17 @@ class MPMHeatFaces : protected Pointers {
   void hold(std::vector<double> &temperature, Heats &) const;
   /** Add what comes through faces to the rates of temperatures, which have all other heat of the field already, and hold
    *  those that are prescribed; adds the power. */
-  void add_rates(const std::vector<double> &temperature, std::vector<double> &rate, Heats &) const;
+  void add_rates(const std::vector<double> &temperature, std::vector<double> &rate,
+                 Heats &power) const
+  {
+    add(false, temperature, rate, power);
+  }
+  /** From here on add_changes() is for small changes of these temperatures. Is all of it symmetric on this rank? */
+  bool linearize(const std::vector<double> &temperature);
+  void add_changes(const std::vector<double> &change, std::vector<double> &rate) const;
+  /** What this rank adds to the matrix of conduction, with prescribed temperatures as stiff exchange: of the size least
+   *  [1/time] times this many, and more. */
+  void each_term(double least, const MPMDiffusion::Term &) const;
   /** Change the rates so that temperatures that are prescribed stay; adds the power. */
   void hold_rates(std::vector<double> &rate, Heats &) const;
 
@@ -97,6 +112,7 @@ class MPMHeatFaces : protected Pointers {
     double response;        // of the temperature at the face to heat: sum of weight * change
     double area;            // of the material that touches the face
     double rate;            // at which the temperature at the face follows that outside
+    double slope;           // fall of the heat per area with the temperature, of add_changes()
     bool joint;             // its power is that of the equations of a group in this step
   };
   struct Face {
@@ -121,6 +137,7 @@ class MPMHeatFaces : protected Pointers {
   double sigma = 0.0;
   std::vector<Face> faces;
   bool crossing = false;    // prescribed temperatures at faces normal to several axes
+  int turns = 1;            // that these take
   std::vector<Group> groups;
   double fastest = 0.0;    // limit of the rates
   double last[3] = {};     // rates of the last step
@@ -134,8 +151,11 @@ class MPMHeatFaces : protected Pointers {
   void set_up(Group &) const;
   bool is_limited(const Line &line) const { return line.rate > fastest; }
   double softness(const Face &, const Line &) const;
-  void solve(const Group &, const std::vector<double> &temperature, std::vector<double> &rate,
-             Heats &) const;
+  void add(bool changes, const std::vector<double> &temperature, std::vector<double> &rate,
+           Heats &) const;
+  double flux(bool changes, const Face &, const Line &, double T) const;
+  void solve(const Group &, bool changes, const std::vector<double> &temperature,
+             std::vector<double> &rate, Heats &) const;
   template <class F> void visit_held(const F &) const;
 };
 

@@ -419,7 +419,50 @@ void MPMHeatSurfaces::limit(double cap, double conduction)
   }
 }
 
+bool MPMHeatSurfaces::linearize()
+{
+  bool symmetric = true;
+  for (auto &place : places) {
+    if (!(place.share > 0.0)) continue;
+    const auto &condition = conditions[place.condition].condition;
+    place.slope = condition.derivative(body.temperature(place.line), sigma);
+    symmetric = symmetric && !(place.rate > fastest);
+  }
+  return symmetric;
+}
+
+void MPMHeatSurfaces::each_term(const MPMDiffusion::Term &use) const
+{
+  for (const auto &place : places) {
+    if (!(place.share > 0.0)) continue;
+    const auto &line = place.line;
+    const bool held = conditions[place.condition].condition.kind == MPMHeatCondition::TEMPERATURE;
+    const double most = fastest * place.share / line.response,
+                 stiffness = held ? most : std::min(most, place.area * place.slope);
+    int64_t nodes[MPMHeatBody::MOST];
+    double weights[MPMHeatBody::MOST];
+    int n = 0;
+    for (int k = 0; k < line.n; k++)
+      if (line.weight[k] > 0.0) {
+        nodes[n] = line.node[k];
+        weights[n++] = line.weight[k];
+      }
+    if (stiffness > 0.0) use(n, nodes, 1, weights, &stiffness);
+  }
+}
+
 void MPMHeatSurfaces::exchange(double *power) const
+{
+  exchange(false, power);
+}
+
+void MPMHeatSurfaces::exchange_changes() const
+{
+  std::vector<double> power(conditions.size());
+  exchange(true, power.data());
+}
+
+void MPMHeatSurfaces::exchange(bool changes, double *power) const
 {
   for (const auto &place : places) {
     if (!(place.share > 0.0)) continue;
@@ -429,12 +472,12 @@ void MPMHeatSurfaces::exchange(double *power) const
     double P;
     const bool limited = place.rate > fastest;
     if (condition.kind == MPMHeatCondition::TEMPERATURE) {
-      P = std::min(place.rate, fastest) * (condition.now[0] - T);
+      P = std::min(place.rate, fastest) * ((changes ? 0.0 : condition.now[0]) - T);
       if (limited) P -= body.drift(line);
       P *= place.share / line.response;
     } else {
       const double slower = limited ? fastest / place.rate : 1.0;
-      P = slower * place.area * condition.flux(T, sigma);
+      P = slower * place.area * (changes ? -place.slope * T : condition.flux(T, sigma));
       if (slower < 1.0) P -= (1.0 - slower) * place.share * body.drift(line) / line.response;
     }
     body.give(line, P);

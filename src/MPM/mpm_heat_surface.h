@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_HEAT_SURFACE_H
 #define LMP_MPM_HEAT_SURFACE_H
 
+#include "mpm_diffusion_solver.h"
 #include "mpm_heat_body.h"
 #include "mpm_heat_faces.h"
 #include "mpm_region_surface.h"
@@ -58,6 +59,11 @@ class MPMHeatSurfaces : protected Pointers {
   /** Gives heat to the body, whose rates have all other heat already; adds the power of this rank, one value for each
    *  condition. */
   void exchange(double *power) const;
+  /** From here on exchange_changes() is for small changes of the present temperatures. Is all of it symmetric on this rank? */
+  bool linearize();
+  void exchange_changes() const;
+  /** What this rank adds to the matrix of conduction. */
+  void each_term(const MPMDiffusion::Term &) const;
 
   double memory_usage() const;
 
@@ -68,6 +74,7 @@ class MPMHeatSurfaces : protected Pointers {
     MPMHeatBody::Line line;
     double share, area;    // of this axis, and of this rank
     double rate;           // at which the temperature follows that outside
+    double slope;          // fall of the heat per area with the temperature, of exchange_changes()
     double into[3];        // unit normal into the body
   };
   struct Wall {
@@ -89,6 +96,7 @@ class MPMHeatSurfaces : protected Pointers {
   std::vector<Place> places;
   MPMHeatShares shares;
 
+  void exchange(bool changes, double *power) const;
   bool near_wall(Wall &, const int *block) const;
   template <class F> void each_pair(const F &f) const;
   void find_wall(int condition, Wall &, MPMHeatThin *);

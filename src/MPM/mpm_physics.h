@@ -65,6 +65,9 @@ class MPMPhysics {
   /** Does it nothing but load points with forces (atom->f), add_stress(), and, where these depend on the deformation, follow()? It
    *  goes with steps of any kind then. */
   virtual bool only_loads() const { return false; }
+  /** Is all that it does to points and forces there before the momentum equation of a step whose stress is solved for, as what it
+   *  reads of the motion is that of steps before? */
+  virtual bool precedes_motion() const { return false; }
 
   /** Loads that depend on the deformation of a point, for a solver that looks for the state of the end of a step. Has any of the
    *  points [first,last) one? If so, for n points from first on with the deformation gradients F [n][9], row-major: add what
