@@ -158,6 +158,18 @@ TEST(EnergyWatch, IsSilentAtRest)
   EXPECT_EQ(told_by(scene).warnings, 0);
 }
 
+// A load of five steps: a free block has the momentum of all of them, and no energy without work. With the velocities at the start of each
+// step alone, a fifth of its energy would be
+TEST(EnergyWatch, KnowsTheWorkOfAShortLoad)
+{
+  Scene run(space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
+            body("block 2 6 0 4 0 4", "density 2 neohookean 100 0.3", "1.0 gain error 1e-9") +
+            "variable f equal 3*(step<5)\nvariable fx atom v_f*mass\n"
+            "fix load all addforce v_fx 0 0\ntimestep 0.01\n");
+  EXPECT_EQ(run.error("run 400\n"), "");
+  EXPECT_NEAR(run.v()[0][0], 5 * 3.0 * 0.01, 1e-12);
+}
+
 // Of many points each step looks at the forces on a part: with 1600 (of a rank) at one in three
 TEST(EnergyWatch, KnowsTheWorkOnManyPoints)
 {

@@ -70,6 +70,64 @@ SERIAL_TEST(Layers, InSeries)
     }
 }
 
+// the same with the inertia of the water, with drag by the square of the flow (in one layer, in both, and both laws alike but for it), and
+// with soils that can dry, whose pores are full here
+SERIAL_TEST(Layers, InSeriesWithOtherLaws)
+{
+  struct Case {
+    const char *name, *first, *second, *more;
+    double dt, end;    // time step for 10 cells
+    double exact;
+  };
+  // 0.5 (w/k + b w^2) of both is 1
+  const auto root = [](double a, double b) {
+    return 2.0 / (a + std::sqrt(a * a + 4.0 * b));
+  };
+  const double drag = 0.5 * (10.0 + 100.0);
+  const Case cases[] = {
+      {"u-v-p", "constant 0.2", "constant 0.02", "formulation u-v-p", 0.03, 60.0, 2.0 / drag},
+      {"forchheimer", "constant 0.1 forchheimer number 1000", "constant 0.01", "stages 100", 1.0,
+       80.0, root(drag, 500.0)},
+      {"both", "constant 0.1 forchheimer number 100", "constant 0.1 forchheimer number 2000",
+       "stages 100", 1.0, 130.0, root(10.0, 1050.0)},
+      {"u-v-p and forchheimer", "constant 0.2 forchheimer number 1000", "constant 0.02",
+       "formulation u-v-p", 0.03, 60.0, root(0.5 * drag, 500.0)},
+      {"retention", "constant 0.1 retention gardner 1.0", "constant 0.01 retention gardner 1.0",
+       "stages 100 initial 0.1", 0.1, 80.0, 1.0 / drag},
+  };
+  for (const auto &c : cases)
+    for (const double offset : {0.0, 0.3, 0.5}) {
+      double error[2];
+      for (const int n : {10, 20}) {
+        Scene run(plate(
+            n,
+            {{"block 0 0.5 INF INF INF INF", c.first}, {"block 0.5 1 INF INF INF INF", c.second}},
+            4.0 / n, offset, std::string("xlo pressure 1.0 xhi pressure 0.0 ") + c.more));
+        const double q = flow(run, c.dt * 10.0 / n, c.end) * n / 4.0 / c.exact;
+        error[n == 20] =
+            std::fabs(measured(strprintf("%s, offset %g, %d cells", c.name, offset, n), q) - 1.0);
+      }
+      EXPECT_LT(error[0], 0.005);
+      EXPECT_LT(error[1], 0.0025);
+    }
+}
+
+// beside each other, each lets through what it does alone
+SERIAL_TEST(Layers, InParallelWithOtherLaws)
+{
+  for (const char *more : {"stages 100", "formulation u-v-p"})
+    for (const double offset : {0.0, 0.5}) {
+      Scene run(plate(12,
+                      {{"block INF INF 0 0.5 INF INF", "constant 0.1 forchheimer number 1000"},
+                       {"block INF INF 0.5 1 INF INF", "constant 0.01"}},
+                      1.0, offset, std::string("xlo pressure 1.0 xhi pressure 0.0 ") + more));
+      const double exact = 0.5 * (2.0 / (10.0 + std::sqrt(100.0 + 4.0 * 1000.0)) + 0.01);
+      EXPECT_NEAR(measured(strprintf("%s, offset %g", more, offset),
+                           flow(run, more[0] == 's' ? 0.5 : 0.025, 200.0) / exact),
+                  1.0, 1e-3);
+    }
+}
+
 // the same as values of a variable in one soil, and with one that no water goes through
 SERIAL_TEST(Layers, OfAFormula)
 {
@@ -190,6 +248,20 @@ TEST(Water, IsKept)
   run.commands("timestep 1e-5\nrun 200\n");
   EXPECT_NEAR(water.mass() / mass, 1.0, 1e-14);
   EXPECT_NEAR(stored() / before, 1.0, 1e-9);
+}
+
+// ranks agree on interfaces where water has inertia and drag by the square of its flow
+TEST(Ranks, AgreeWithInertia)
+{
+  const std::string scene =
+      plate(16,
+            {{"block 0 0.3 0 1 INF INF", "constant 0.1 forchheimer number 100"},
+             {"sphere 0.6 0.5 0 0.25", "constant 2.0"}},
+            1.0, 0.3, "xlo pressure 1.0 formulation u-v-p initial v_p") +
+      "velocity g2 set -0.4 0.1 0\ntimestep 1e-3\n" + PORE;
+  OnRanks run(replaced(scene, "fix water", "variable p atom y\nfix water"), "run 60\n");
+  EXPECT_LT(run.difference(), 1e-12);
+  EXPECT_LT(water_difference(run.serial, run.parallel), 1e-11);
 }
 
 // a soil without points in this field changes no bit

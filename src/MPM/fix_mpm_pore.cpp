@@ -13,6 +13,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_rigid.h"
 #include "force.h"
 #include "input.h"
 #include "material/material.h"
@@ -381,16 +382,20 @@ void FixMPMPore::init()
   }
 }
 
-/** Rigid bodies touch nodes inside of them, while the force of the water is at all nodes next to their surface. */
+/** Rigid bodies bear the total stress. As they act on nodes inside of them alone, soil next to them is pressed together by more than
+ *  the load where nodes are off their surface, and neither the stress of its grains nor the pressure of its water there is that of the
+ *  soil further away: what grains bear at the surface cannot be told. */
 void FixMPMPore::warn_of_contact() const
 {
   if (comm->me || wet.empty()) return;
   for (const auto *fix : modify->get_fix_by_style("^mpm/rigid$"))
-    error->warning(FLERR,
-                   "Fix mpm/rigid {} takes the pressure of pore water for one between grains: "
-                   "friction and separation of soils of fix mpm/pore {} are those of the total "
-                   "stress",
-                   fix->id, id);
+    if (dynamic_cast<const FixMPMRigid *>(fix)->has_friction())
+      error->warning(
+          FLERR,
+          "Fix mpm/rigid {}: friction on soils of fix mpm/pore {} is that of the total stress, "
+          "with the pressure of the water: use friction 0, or, for a body whose motion is "
+          "given, fix mpm/boundary with the region",
+          fix->id, id);
 }
 
 void FixMPMPore::init_physics(MPMPlan &plan)

@@ -81,6 +81,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   bool decides_contact(const MPMField &) const override { return kind == SEPARATE; }
   void act(double dt, Stage) override;
 
+  bool has_friction() const { return friction > 0.0; }
   /** Largest time step: no point of the body crosses a cell. */
   double stable_dt() const;
 

@@ -56,6 +56,11 @@ void MPMEnergyWatch::step()
 {
   if (run.steps % CHECK_EVERY == 0) check();
   add_force_work();
+}
+
+void MPMEnergyWatch::moved()
+{
+  add_force_work();
   run.steps++;
 }
 
@@ -66,14 +71,15 @@ void MPMEnergyWatch::finish()
 }
 
 /* ----------------------------------------------------------------------
-   work of forces in this step. To take all points in some steps costs the same, but is wrong where a body of a
+   half of the work of forces in this step: at the velocities before it, or, when points have moved, at those after it. At those
+   before it alone, a load of N steps would have 1/N too little work. To take all points in some steps costs the same, but is wrong where a body of a
    few cells vibrates: its period is a few of these steps. Forces that elements have added are internal
 ------------------------------------------------------------------------- */
 
 void MPMEnergyWatch::add_force_work()
 {
   const int met = number_met();
-  run.force_work += force_work(parts[0], 0, met) + force_work(parts[1], met, atom->nlocal);
+  run.force_work += 0.5 * (force_work(parts[0], 0, met) + force_work(parts[1], met, atom->nlocal));
 }
 
 /** Pair styles act on atoms in neighbor lists, which may be those of a group that is first in memory; with every, on

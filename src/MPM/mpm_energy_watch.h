@@ -40,6 +40,8 @@ class MPMEnergyWatch : protected Pointers {
   void start() { run = {}; }
   /** Start of a step of the cycle, where positions, velocities, and forces belong to one time. */
   void step();
+  /** In the same step: points have their new velocities, and still the forces and the places in memory of its start. */
+  void moved();
   /** End of a run. */
   void finish();
   /** A line about the energy of the run for its summary; empty where too little is known. */

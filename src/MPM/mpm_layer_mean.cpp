@@ -44,7 +44,6 @@ using namespace MPM_NS;
 
 // differences of means, and slopes of them per node spacing, below which a point sees one conductivity only
 static constexpr double SAME = 1.0e-9;
-static constexpr double LEAST = 1.0e-100;    // conductivity; its inverse has a square
 
 void MPMLayerMean::find(const Fill &fill)
 {
@@ -90,5 +89,24 @@ void MPMLayerMean::find(const Fill &fill)
       m.less += values[p] - m.along;
       m.along = values[p];
     }
+  });
+}
+
+void MPMLayerMean::find_means(const Fill &fill, std::vector<double> &values)
+{
+  values.resize(field.atom->nmax);
+  nodes.points_to_nodes(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
+        double value[BATCH];
+        if (!fill(run, first, n, value, points.capacity)) return false;
+        for (int p = 0; p < n; p++) {
+          points.row[p][3] = value[p];
+          points.volume[p] = 0.0;
+        }
+        return true;
+      },
+      false);
+  nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *mean) {
+    std::copy_n(mean, n, values.begin() + first);
   });
 }

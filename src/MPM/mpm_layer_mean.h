@@ -27,6 +27,8 @@ class MPMLayerMean {
 
   /** A mean across an interface is not above so many times the conductivity of the point itself. */
   static constexpr double MOST = 4.0;
+  /** Smaller conductivities count as this; its inverse has a square. */
+  static constexpr double LEAST = 1.0e-100;
 
   /** along: means along interfaces, too, which may be much above the conductivity of the point. */
   MPMLayerMean(MPMField &field, bool along) : field(field), nodes(field), means_along(along) {}
@@ -35,6 +37,13 @@ class MPMLayerMean {
   void init() { nodes.init(false, true); }
   /** The means of this rank's points in this step. Collective. */
   void find(const Fill &);
+  /** Means of other values over about a node spacing, [n]; fill as in find(), with a value of any kind. Collective. */
+  void find_means(const Fill &, std::vector<double> &values);
+  /** Is point i next to an interface? If so: the unit normal of this, and the conductivities along and across it. */
+  bool at_interface(int i) const { return means[i].less != 0.0; }
+  const double *normal(int i) const { return means[i].normal; }
+  double along(int i) const { return means[i].along; }
+  double across(int i) const { return means[i].along - means[i].less; }
   /** The greatest conductivity of a point. */
   double most(int i) const { return means[i].along + std::max(0.0, -means[i].less); }
   /** Bound of this over the conductivity of the point itself, from that of the greatest of all points. */

@@ -117,25 +117,27 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
   }
 }
 
-/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp),
- *  where the flow is the gradient times a number. In soil that dries the permeability changes by orders of
- *  magnitude within a front, and with means across it water would not get into dry soil. */
+/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp). In soil that dries
+ *  these are of full pores, and what suction leaves of them is that of each point: it changes by orders of magnitude within a front,
+ *  and with means across that water would not get into dry soil. The square of the flow has a mean across interfaces, too; along
+ *  them points have their own resistance then, as flows with one gradient and different laws have no common one. */
 void MPMPore::init_layers()
 {
   layers.reset();
-  if (motion || suction || !quadratic.empty()) return;
   bool differ = false;
   double greatest = 0.0, fastest_soil = 0.0;
   for (const auto &s : soils) {
     const auto &first = soils.front().of;
     differ = differ || s.of.law == MPMPoreSoil::FORMULA || s.of.law != first.law ||
-        s.of.permeability != first.permeability;
+        s.of.permeability != first.permeability || s.of.quadratic != first.quadratic ||
+        s.of.diameter != first.diameter;
     greatest = std::max(greatest, s.of.permeability);
     fastest_soil = std::max(fastest_soil, s.of.permeability / s.of.storage_at(1.0, water));
   }
   if (!differ) return;
   // with formulas the permeabilities are not known, while capacities hardly differ
-  const bool along = greatest <= MPMLayerMean::MOST * fastest_soil * least_storage;
+  const bool along =
+      !motion && quadratic.empty() && greatest <= MPMLayerMean::MOST * fastest_soil * least_storage;
   layers = std::make_unique<MPMLayerMean>(field, along);
   layers->init();
 }
@@ -193,25 +195,66 @@ double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, cons
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPore::find_layers(const double *formula)
+/** Bound of the mobility of a point with layers, k: its own. */
+double MPMPore::most_of_layers(int i, double k) const
 {
+  return quadratic.empty() ? layers->most(i) : std::max(k, 1.0 / linear_mean[i]);
+}
+
+/** With drag by the square of the flow, interfaces are where the resistance changes at the flow that points have by their gradient. */
+void MPMPore::find_layers(const MPMRows &state, const double *formula)
+{
+  const int dim = field.lattice.dim;
+  const double density = water.density * force->mvv2e * force->nktv2p;
   volumes.resize(atom->nmax);
-  layers->find([&](const MPMPointMap::Run &run, int first, int n, double *k, double *V) {
-    const Soil *const s = soil(run.material);
-    if (!s) return false;
-    double room[BATCH];
-    const double *const ratios = field.jacobians.get(field, first, n, room);
-    for (int p = 0; p < n; p++) {
-      k[p] = mobility(*s, first + p, ratios[p], formula);
-      V[p] = volumes[first + p] = ratios[p] * atom->vfrac[first + p];
-    }
-    return true;
-  });
+  const auto each =
+      [&](const auto
+              &value) {    // value(soil, point, J, permeability) of points, and their volumes
+        return
+            [&, value](const MPMPointMap::Run &run, int first, int n, double *values, double *V) {
+              const Soil *const s = soil(run.material);
+              if (!s) return false;
+              double room[BATCH];
+              const double *const ratios = field.jacobians.get(field, first, n, room);
+              for (int p = 0; p < n; p++) {
+                const int i = first + p;
+                V[p] = volumes[i] = ratios[p] * atom->vfrac[i];
+                values[p] = value(s->of, i, ratios[p], mobility(*s, i, ratios[p], formula));
+              }
+              return true;
+            };
+      };
+  if (quadratic.empty()) {
+    layers->find(each([](const MPMPoreSoil &, int, double, double k) {
+      return k;
+    }));
+    return;
+  }
+  layers->find(each([&](const MPMPoreSoil &s, int i, double J, double k) {
+    double square = 0.0;
+    for (int d = 0; d < dim; d++)
+      square += (state[i][1 + d] - weight(d)) * (state[i][1 + d] - weight(d));
+    return secant_mobility(k, s.quadratic_at(J, density), sqrt(square));
+  }));
+  layers->find_means(each([](const MPMPoreSoil &, int, double, double k) {
+                       return 1.0 / std::max(k, MPMLayerMean::LEAST);
+                     }),
+                     linear_mean);
+  layers->find_means(each([&](const MPMPoreSoil &s, int, double J, double) {
+                       return s.quadratic_at(J, density);
+                     }),
+                     quadratic_mean);
+}
+
+MPMPoreResistance MPMPore::at_interface(int i) const
+{
+  if (quadratic.empty()) return {{1.0 / layers->across(i), 1.0 / layers->along(i)}, {0.0, 0.0}};
+  return {{linear_mean[i], volumes[i] / conductance[i]}, {quadratic_mean[i], quadratic[i]}};
 }
 
 void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 {
-  if (layers) find_layers(formula);
+  if (layers) find_layers(state, formula);
   const int dim = field.lattice.dim;
   for (auto *list : {&in_forces, &capacity, &conductance, &mean, &squeezed})
     list->resize(atom->nmax);
@@ -254,7 +297,13 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
         }
         double most = fastest;
         for (int p = 0; p < n; p++) {
-          const double greatest = layers ? V[p] * layers->most(first + p) : K[p];
+          double greatest = K[p];
+          if (layers) {
+            const int i = first + p;
+            const double k = mobility(*s, i, J[p], formula);
+            if (k > 0.0) volumes[i] = K[p] / k;
+            greatest = volumes[i] * most_of_layers(i, k);
+          }
           if (greatest > most * C[p]) most = greatest / C[p];    // hardly ever: no division
         }
         const double *mine = state[first];
@@ -352,7 +401,13 @@ void MPMPore::take_off()
     const Soil *const s = soil(run.material);
     for (int i = run.first; s && i < run.last; i++) {
       const double J = field.points->jacobian(i);
-      motion->begin_point(i, pores(*s, i, J, conductance[i] / (J * atom->vfrac[i])));
+      const auto here = pores(*s, i, J, conductance[i] / (J * atom->vfrac[i]));
+      if (layers && layers->at_interface(i)) {
+        const auto r = at_interface(i);
+        motion->begin_point(i, here, &r, layers->normal(i));
+      } else {
+        motion->begin_point(i, here);
+      }
     }
   }
   motion->take_off();
@@ -419,6 +474,17 @@ void MPMPore::move_water()
   surface.take_flow(of_flow);
 }
 
+/** From the gradient that drives it, in place. */
+static void flow_at_interface(const MPMPoreResistance &r, const double *normal, double *q)
+{
+  const double across = MPM_NS::dot(q, normal);
+  double along[3], push[2] = {fabs(across), 0.0};
+  for (int d = 0; d < 3; d++) along[d] = q[d] - across * normal[d];
+  push[1] = sqrt(MPM_NS::dot(along, along));
+  const double w = r.flow(push, 0.0);
+  for (int d = 0; d < 3; d++) q[d] = across * normal[d] / r.at(0, w) + along[d] / r.at(1, w);
+}
+
 void MPMPore::find_rates(std::vector<double> &inflow)
 {
   const double dt = field.step_dt(), cell_in_step = field.lattice.h / dt;
@@ -447,11 +513,17 @@ void MPMPore::find_rates(std::vector<double> &inflow)
       } else {
         double K = layers ? volumes[i] : conductance[i];
         for (int d = 0; d < 3; d++) q[p][d] = along[d] - q[p][d];
-        if (layers) layers->multiply(i, q[p]);
-        if (!quadratic.empty() && K > 0.0) {
+        const bool between = layers && layers->at_interface(i);
+        if (between && !quadratic.empty()) {
+          flow_at_interface(at_interface(i), layers->normal(i), q[p]);
+        } else if (layers && quadratic.empty()) {
+          layers->multiply(i, q[p]);
+        } else if (!quadratic.empty() && conductance[i] > 0.0) {
           const double V = field.points->jacobian(i) * atom->vfrac[i];
           const double size = sqrt(MPM_NS::dot(q[p], q[p]));
-          K = V * secant_mobility(K / V, quadratic[i], size);
+          K = V * secant_mobility(conductance[i] / V, quadratic[i], size);
+        } else if (layers) {
+          K = 0.0;
         }
         for (int d = 0; d < 3; d++) q[p][d] *= K;
       }
@@ -576,8 +648,8 @@ double MPMPore::memory_usage() const
       nodes.memory_usage() + surface.memory_usage() + (motion ? motion->memory_usage() : 0.0);
   if (suction) bytes += suction->memory_usage();
   if (layers) bytes += layers->memory_usage();
-  for (const auto *list :
-       {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic, &volumes, &of_flow})
+  for (const auto *list : {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic,
+                           &volumes, &linear_mean, &quadratic_mean, &of_flow})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

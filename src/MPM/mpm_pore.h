@@ -112,17 +112,21 @@ class MPMPore : protected Pointers {
   std::vector<double> mean;           // [n] pressure by the nodes, at the start
   std::vector<double> squeezed;       // [n] rate of the volume of water that the motion drives out
   std::vector<double> quadratic;      // [n] of the resistance, if there is any
-  std::vector<double> volumes;        // [n] with layers
-  std::vector<double> of_flow;        // [node][8] next to the surface
+  std::vector<double> volumes;        // [n] with layers, times the relative permeability
+  std::vector<double> linear_mean,
+      quadratic_mean;             // [n] with layers: resistances across interfaces
+  std::vector<double> of_flow;    // [node][8] next to the surface
 
   void init_layers();
-  void find_layers(const double *formula);
+  void find_layers(const MPMRows &state, const double *formula);
   void points_to_nodes(const MPMRows &state, const double *formula);
   const Soil *soil(const FixMPMMaterial *) const;
   double rate_of_waves() const;
   double rate_of_lag() const;
   double mobility(const Soil &, int i, double J, const double *formula) const;
   double weight(int d) const;
+  MPMPoreResistance at_interface(int i) const;
+  double most_of_layers(int i, double k) const;
   MPMPoreMotion::Pores pores(const Soil &, int i, double J, double mobility) const;
   double at_surface(const Soil &, int i, double J, double mobility, const double *row) const;
 };

@@ -151,7 +151,8 @@ void MPMPoreMotion::add_gradients(std::vector<double> &of_nodes, const Wanted &w
   }
 }
 
-void MPMPoreMotion::begin_point(int i, const Pores &pores)
+void MPMPoreMotion::begin_point(int i, const Pores &pores, const MPMPoreResistance *r,
+                                const double *normal)
 {
   const int dim = field.lattice.dim;
   double *const mine = &lead[3 * (std::size_t) i];
@@ -165,6 +166,10 @@ void MPMPoreMotion::begin_point(int i, const Pores &pores)
     w[d] = flow[i][d] / pores.J;
     free[d] = force->ftm2v * gravity[d] - unit * mine[d];
   }
+  if (r) {
+    begin_at_interface(i, pores, *r, normal, w, free);
+    return;
+  }
   if (pores.quadratic > 0.0) {
     double square = 0.0;
     for (int d = 0; d < dim; d++) square += (w[d] + gain * free[d]) * (w[d] + gain * free[d]);
@@ -175,6 +180,36 @@ void MPMPoreMotion::begin_point(int i, const Pores &pores)
   const double x = fading(pores, resistance);
   share[i] = mean_of_fading(x) * pores.porosity * density * pores.volume;
   for (int d = 0; d < dim; d++) mine[d] = free[d] - unit * resistance * w[d];
+}
+
+/** Drag differs across and along the interface, and so does the mean of its decay; what the acceleration of the soil
+ *  takes of the flow is that of the stronger one in both. */
+void MPMPoreMotion::begin_at_interface(int i, const Pores &pores, const MPMPoreResistance &r,
+                                       const double *normal, const double *w, const double *free)
+{
+  double *const mine = &lead[3 * (std::size_t) i];
+  const double unit = acceleration(), gain = pores.porosity * field.step_dt();
+  double pushed[3], parts[2][3], of_flow[2][3], push[2];
+  for (int d = 0; d < 3; d++) pushed[d] = w[d] + gain * free[d];
+  const double across = dot(pushed, normal), flow_across = dot(w, normal);
+  for (int d = 0; d < 3; d++) {
+    parts[0][d] = dot(free, normal) * normal[d];
+    parts[1][d] = free[d] - parts[0][d];
+    of_flow[0][d] = flow_across * normal[d];
+    of_flow[1][d] = w[d] - of_flow[0][d];
+  }
+  push[0] = fabs(across) / (gain * unit);
+  push[1] = sqrt(std::max(0.0, dot(pushed, pushed) - across * across)) / (gain * unit);
+  const double flows = r.flow(push, 1.0 / (gain * unit));
+  double mean[2];
+  for (int k = 0; k < 2; k++) mean[k] = mean_of_fading(fading(pores, r.at(k, flows)));
+  const double least = std::min(mean[0], mean[1]);
+  share[i] = least * pores.porosity * density * pores.volume;
+  for (int d = 0; d < 3; d++) {
+    mine[d] = 0.0;
+    for (int k = 0; k < 2; k++)
+      mine[d] += mean[k] / least * (parts[k][d] - unit * r.at(k, flows) * of_flow[k][d]);
+  }
 }
 
 /* ----------------------------------------------------------------------

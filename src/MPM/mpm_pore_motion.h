@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_PORE_MOTION_H
 #define LMP_MPM_PORE_MOTION_H
 
+#include "mpm_pore_soil.h"
 #include "mpm_rows.h"
 #include "pointers.h"
 
@@ -49,7 +50,9 @@ class MPMPoreMotion : protected Pointers {
   /** Nodes have mass. [node][8] gradients of pressure that drive the water to the surface, 0. Before
    *  begin_point(). */
   void add_gradients(std::vector<double> &of_nodes, const Wanted &);
-  void begin_point(int i, const Pores &);
+  /** r, normal: at an interface of soils, instead of the resistance of the pores. */
+  void begin_point(int i, const Pores &, const MPMPoreResistance *r = nullptr,
+                   const double *normal = nullptr);
   /** Flow per gradient of pressure that a step makes in point i from rest: the mobility, or less where there
    *  is no time to speed up. */
   double response(int i, const Pores &) const;
@@ -84,6 +87,8 @@ class MPMPoreMotion : protected Pointers {
 
   double acceleration() const;
   double fading(const Pores &, double resistance) const;
+  void begin_at_interface(int i, const Pores &, const MPMPoreResistance &, const double *normal,
+                          const double *w, const double *free);
   void to_points(std::vector<double> &of_nodes, const Wanted &);
   template <class Weigh> void sum(std::vector<double> &to, const Wanted &, const Weigh &);
 };

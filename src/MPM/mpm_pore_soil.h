@@ -83,5 +83,28 @@ inline double secant_mobility(double mobility, double quadratic, double gradient
   return 2.0 * mobility / (1.0 + std::sqrt(1.0 + 4.0 * quadratic * mobility * mobility * gradient));
 }
 
+/** Resistance to the flow at an interface of soils, across and along it: the gradient of the pressure that drives a flow w is
+ *  linear w + quadratic |w| w along each of both. */
+struct MPMPoreResistance {
+  double linear[2], quadratic[2];
+
+  double at(int k, double flow) const { return linear[k] + quadratic[k] * flow; }
+  /** Size of the flow with |flow_k| = push_k/(free + at(k, flow)). */
+  double flow(const double *push, double free) const
+  {
+    const auto next = [&](double w) {
+      const double a = push[0] / (free + at(0, w)), b = push[1] / (free + at(1, w));
+      return std::sqrt(a * a + b * b);
+    };
+    double low = 0.0, high = next(0.0);
+    if (quadratic[0] == 0.0 && quadratic[1] == 0.0) return high;
+    for (int turn = 0; turn < 60 && high - low > 1.0e-14 * high; turn++) {
+      const double middle = 0.5 * (low + high);
+      (next(middle) > middle ? low : high) = middle;
+    }
+    return high;
+  }
+};
+
 }    // namespace LAMMPS_NS
 #endif

@@ -34,5 +34,5 @@ void LAMMPS_NS::put_to_rest(MPMField &field, double taken[2])
     if (nC) std::fill_n(field.affine->C[i], nC, 0.0);
     if (nQ) std::fill_n(field.affine->Q[i], nQ, 0.0);
   }
-  taken[1] -= power * field.step_dt();
+  taken[1] -= 0.5 * power * field.step_dt();
 }

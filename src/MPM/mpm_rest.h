@@ -13,8 +13,9 @@ namespace LAMMPS_NS {
 class MPMField;
 
 /** All points of a field stop, with their affine parts. What they lose is not lost by transfers: it is taken from the ledger,
- *  and added to taken[0]; taken[1] gets minus the work of the forces of this step. That is counted with the velocities of
- *  points at the start of each step (MPMEnergyWatch), a step late, and so would not be. [energy] */
+ *  and added to taken[0]. taken[1] gets minus half of the work of the forces of this step: the stress of points follows from the whole
+ *  displacement, while the work of forces is counted with the mean of the velocities before and after it, of which the next step
+ *  would add the other half. [energy] */
 void put_to_rest(MPMField &, double taken[2]);
 
 }    // namespace LAMMPS_NS

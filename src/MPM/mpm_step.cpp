@@ -180,6 +180,10 @@ void map_back(MPMPlan &plan)
 
 void end(MPMPlan &plan)
 {
+  const auto watch = [&plan]() {
+    plan.watch.moved();
+  };
+  plan.together("energy watch", watch, with<&Options::watches_gain>);
   plan.place(MPMPlan::AFTER_MOTION);
   const auto look = [](MPMField &field) {
     field.fracture_watch->step();
