@@ -37,6 +37,21 @@ TEST(Axisymmetric, VolumesAreThoseOfRings)
   EXPECT_NEAR(run.sums().mass, 2.0 * PI * (9.0 - 1.0) * 4.0, 1e-11);
 }
 
+// points that were there before the fix have areas in the place of volumes: a wrong number of old, which now has a warning
+SERIAL_TEST(Axisymmetric, PointsOfThePlaneAreTold)
+{
+  const std::string body =
+      "region body block 1 3 1 5 INF INF\ncreate_points 1 region body spacing 0.25\n";
+  const std::string fix =
+      "fix grid all mpm 0.5 axisymmetric yes\nfix axis all mpm/boundary xlo slip\n";
+  const std::string rest =
+      "fix m all mpm/material density 2.0 neohookean 10.0 0.3\ntimestep 1e-3\nrun 0\n";
+  const std::string start = plane("lj", "f f", "0 6 0 6", 1, 0.15);
+  const std::string words = "same volume at all radii";
+  EXPECT_EQ(lines_that_say(start + body + fix + rest, words).size(), 1u);
+  EXPECT_EQ(lines_that_say(start + fix + body + rest, words).size(), 0u);
+}
+
 /* ----------------------------------------------------------------------
    v = (a r, b z) is reproduced everywhere, at the axis and at surfaces: strain and stress are
    uniform to round-off, and equal around the axis and across it

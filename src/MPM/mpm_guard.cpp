@@ -198,6 +198,30 @@ void MPMGuard::check_points() const
       "are not cubes"};
   for (int kind = NONE; kind < NKINDS; kind++)
     if (all[kind]) error->all(FLERR, refusals[kind], all[kind], example_all[kind], field.id());
+  if (field.options.axisymmetric) check_rings();
+}
+
+/** Points that create_points made before the fix have areas in the place of the volumes of rings, the same at all radii. */
+void MPMGuard::check_rings() const
+{
+  constexpr double SAME = 1.0e-9, FAR = 2.0;
+  constexpr double NONE = std::numeric_limits<double>::max();
+  double mine[4] = {-NONE, -NONE, -NONE, -NONE}, all[4];    // most, minus least: volume, radius
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    const double values[2] = {atom->vfrac[i], atom->x[i][0]};
+    for (int k = 0; k < 2; k++) {
+      mine[2 * k] = std::max(mine[2 * k], values[k]);
+      mine[2 * k + 1] = std::max(mine[2 * k + 1], -values[k]);
+    }
+  }
+  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_MAX, world);
+  if (comm->me == 0 && all[0] <= -(1.0 + SAME) * all[1] && all[2] > -FAR * all[3])
+    error->warning(
+        FLERR,
+        "Points of fix mpm {} axisymmetric have the same volume at all radii, which rings "
+        "of one section have not: use create_points after the fix",
+        field.id());
 }
 
 /* ----------------------------------------------------------------------

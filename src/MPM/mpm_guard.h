@@ -94,6 +94,8 @@ class MPMGuard : protected Pointers {
   bigint nbad_total = 0;
   bigint npoints = 0;    // of all fields and ranks, at the start of the run
 
+  void check_rings() const;
+
   void check_fixes() const;
   void check_skin() const;
   void delete_points(std::vector<tagint> &, bool warn);    // and forget them
