@@ -334,12 +334,13 @@ TEST(RimFactors, AreThereOrSaySo)
     EnvelopeFactors factors;
     const bool there = factorize(A, factors);
     if (there) {
-      // what is factorized is positive definite
-      const double b[2] = {1.0, -1.0};
-      double x[2];
-      factors.solve(b, x);
-      EXPECT_GT(x[0] * b[0] + x[1] * b[1], 0.0);
-      // an entry below the diagonal, and the diagonal
+      // what is factorized is positive definite, in all directions
+      for (double angle = 0.0; angle < 3.14; angle += 0.1) {
+        const double b[2] = {std::cos(angle), std::sin(angle)};
+        double x[2];
+        factors.solve(b, x);
+        EXPECT_GT(x[0] * b[0] + x[1] * b[1], 0.0);
+      }
       EXPECT_GE(factors.memory_usage(), 3 * sizeof(double));
     }
     return there;
