@@ -350,6 +350,20 @@ TEST(MeshGrid, RanksAndRestart)
     }
 }
 
+// Output sees history variables and energies of points on a mesh
+SERIAL_TEST(MeshGrid, Output)
+{
+  const ScratchFile file("bar.msh", bar(QUADS, 2));
+  Scene run(scene(2, file.name, "eos linear 1 strength j2 0.4 0.01",
+                  "frame total velocity xlo 0 0 velocity xhi 0.01 0"));
+  run.commands("compute p all mpm/atom eplastic energy\ncompute sum all reduce sum c_p[1] c_p[2]\n"
+               "thermo_style custom step c_sum[1] c_sum[2]\ntimestep 0.01\nrun 1000\n");
+  auto *sum = run.lmp->modify->get_compute_by_id("sum");
+  sum->compute_vector();
+  EXPECT_GT(sum->vector[0], 0.01 * run.gather().size());    // of 2.5 %
+  EXPECT_NEAR(sum->vector[1], entry(run, 2), 1e-12);
+}
+
 SERIAL_TEST(MeshGrid, BadInput)
 {
   const ScratchFile file("bad.msh", tube(TRIANGLES, 4));
@@ -372,6 +386,10 @@ SERIAL_TEST(MeshGrid, BadInput)
        {fix + "scheme usf", "scheme"},
        {fix + "frame total\nunfix m\nrun 1", "has no material"},
        {fix + "\nfix n all nve\nrun 1", "are also integrated by fix n"},
+       {fix + "\nfix grid all mpm 0.5\nrun 1", "cannot be in one run"},
+       {fix + "\nfix d all deform 1 x erate 0.1\nrun 1", "requires a box of constant size"},
+       {fix + "\nfix h all mpm/heat\nrun 1", "acts on points of a fix mpm only"},
+       {fix + "\ncompute e all mpm/energy\nrun 1", "has its energies in its own vector"},
        {fix + "\ndisplace_atoms all move 3 0 0\nrun 1", "is outside of the mesh"},
        {fix + "\ntimestep 10\nrun 1", "is above the limit"},
        {fix + "\ngroup none empty\nunfix g\nfix g none mpm/mesh " + file.name + "\nrun 1",

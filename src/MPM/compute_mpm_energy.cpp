@@ -47,7 +47,10 @@ ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(
 void ComputeMPMEnergy::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
-    error->all(FLERR, Error::NOLASTLINE, "Compute {} of style mpm/energy requires a fix mpm", id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Compute {} of style mpm/energy requires a fix mpm; fix mpm/mesh has its energies "
+               "in its own vector",
+               id);
   if (find_accounts() != accounts)
     error->all(FLERR, Error::NOLASTLINE,
                "Compute {} of style mpm/energy does not have the entries of all physics: define it "

@@ -171,20 +171,26 @@ void FixMPMMesh::init()
           FLERR, Error::NOLASTLINE,
           "Fix mpm/mesh has no periodic images of its mesh: use boundary f, s, or m along {}",
           (char) ('x' + d));
+  if (domain->box_change_size || domain->box_change_shape)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/mesh requires a box of constant size and shape: remove the fix that changes it");
+  for (const auto *other : modify->get_fix_by_style("^mpm$"))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh {} and fix mpm {} cannot be in one run, as the energies of materials "
+               "would be those of both: give all "
+               "bodies meshes, or all of them lattices",
+               id, other->id);
   for (const auto *other : find_fixes<MPMPhysics>(lmp)) {
     const auto *ifix = dynamic_cast<const Fix *>(other);
-    if (modify->get_fix_by_style("^mpm$").empty())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix {} {} acts on points of a fix mpm only, not on those of fix mpm/mesh {}: remove it",
-          ifix->style, ifix->id, id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix {} {} acts on points of a fix mpm only, not on those of fix mpm/mesh {}: remove it",
+        ifix->style, ifix->id, id);
   }
 
   points = MPMPoints::get(atom);
-  materials = find_fixes<FixMPMMaterial>(lmp);
-  int nhistory = 1;
-  for (const auto *material : materials) nhistory = std::max(nhistory, material->nhistory);
-  history.resize((std::size_t) nhistory * BATCH);
+  find_materials();
   kernels = BatchKernels::select(mesh->dim);
   bool can_run = kernels != nullptr;
   for (auto *material : materials)
@@ -202,6 +208,14 @@ void FixMPMMesh::init()
   if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
   if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
   atom->sortfreq = 0;
+}
+
+void FixMPMMesh::find_materials()
+{
+  materials = find_fixes<FixMPMMaterial>(lmp);
+  int nhistory = 1;
+  for (const auto *material : materials) nhistory = std::max(nhistory, material->nhistory);
+  history.resize((std::size_t) nhistory * BATCH);
 }
 
 bool FixMPMMesh::is_point(int i) const
@@ -263,7 +277,7 @@ void FixMPMMesh::check_points()
 /** Points without any stress get the pressure of their equation of state, as those of fix mpm. */
 void FixMPMMesh::give_initial_stress()
 {
-  for_batches([&](const int *list, int n, const FixMPMMaterial *material) {
+  for_batches(order, [&](const int *list, int n, const FixMPMMaterial *material) {
     load_state(list, n, material);
     batch->time = elapsed_time(*update);
     material->material->initial_stress(*batch);
@@ -532,11 +546,11 @@ void FixMPMMesh::map_back()
    points are
 ------------------------------------------------------------------------- */
 
-template <class Visit> void FixMPMMesh::for_batches(Visit visit) const
+template <class Visit> void FixMPMMesh::for_batches(const std::vector<int> &of, Visit visit) const
 {
   for (auto *material : materials) {
     int list[BATCH], n = 0;
-    for (const int i : order) {
+    for (const int i : of) {
       if (material_of(i) != material) continue;
       list[n++] = i;
       if (n < BATCH) continue;
@@ -557,7 +571,7 @@ void FixMPMMesh::move_and_strain()
     for (const int node : ranks.nodes)
       for (int d = 0; d < dim; d++) positions[node][d] += dt * strains[node][d];
   Batch &b = *batch;
-  for_batches([&](const int *list, int n, FixMPMMaterial *material) {
+  for_batches(order, [&](const int *list, int n, FixMPMMaterial *material) {
     double L[9 * BATCH] = {}, F[9 * BATCH], tau[6 * BATCH], vol0[BATCH];
     for (int p = 0; p < n; p++) {
       const int i = list[p];
@@ -620,6 +634,18 @@ void FixMPMMesh::load_state(const int *list, int n, const FixMPMMaterial *materi
   }
 }
 
+void FixMPMMesh::visit_batches(int group_bits, const BatchVisitor &visit)
+{
+  find_materials();
+  std::vector<int> of;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_point(i) && (atom->mask[i] & group_bits)) of.push_back(i);
+  for_batches(of, [&](const int *list, int n, const FixMPMMaterial *material) {
+    load_state(list, n, material);
+    visit(*batch, list, *material);
+  });
+}
+
 /* ----------------------------------------------------------------------
    h/(c + |v|) with the height of the cell; in the total frame it shrinks with the smallest stretch, and points stay in their
    cells
@@ -629,7 +655,7 @@ double FixMPMMesh::stable_dt(tagint &tag) const
 {
   double smallest = std::numeric_limits<double>::max(), c[BATCH];
   tag = 0;
-  for_batches([&](const int *list, int n, const FixMPMMaterial *material) {
+  for_batches(order, [&](const int *list, int n, const FixMPMMaterial *material) {
     load_state(list, n, material);
     material->material->wave_speed(*batch, c);
     for (int p = 0; p < n; p++) {
@@ -687,7 +713,7 @@ double FixMPMMesh::compute_vector(int k)
       mine += 0.5 * force->mvv2e * atom->rmass[i] * dot(atom->v[i], atom->v[i]);
   } else if (k == 1) {
     double energy[BATCH];
-    for_batches([&](const int *list, int n, const FixMPMMaterial *material) {
+    for_batches(order, [&](const int *list, int n, const FixMPMMaterial *material) {
       load_state(list, n, material);
       material->material->stored_energy(*batch, energy);
       for (int p = 0; p < n; p++) mine += atom->vfrac[list[p]] * energy[p] / force->nktv2p;

@@ -19,6 +19,7 @@ FixStyle(mpm/mesh,FixMPMMesh);
 #include "mesh/background_mesh.h"
 #include "mpm_mesh_conditions.h"
 #include "mpm_mesh_ranks.h"
+#include "mpm_point_batches.h"
 #include "mpm_state.h"
 #include "mpm_step_limit.h"
 
@@ -70,6 +71,9 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   void write_restart(FILE *) override;
   void restart(char *) override;
   double stable_dt(tagint &tag) const override;
+
+  /** The present state of its points of a group, see visit_point_batches(); also between runs. */
+  void visit_batches(int group_bits, const BatchVisitor &);
 
  private:
   /** Sums of points at a node. */
@@ -126,7 +130,8 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   void move_and_strain();
   void give_initial_stress();
   void check_dt();
-  template <class Visit> void for_batches(Visit) const;
+  void find_materials();
+  template <class Visit> void for_batches(const std::vector<int> &of, Visit) const;
   void load_state(const int *list, int n, const FixMPMMaterial *) const;
 };
 

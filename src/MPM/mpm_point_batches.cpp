@@ -11,8 +11,10 @@
 #include "atom.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_mesh.h"
 #include "material/material.h"
 #include "mpm_field.h"
+#include "mpm_physics.h"
 #include "mpm_points.h"
 
 #include <memory>
@@ -75,4 +77,5 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
       flush();
     }
   }
+  for (auto *mesh : find_fixes<FixMPMMesh>(lmp)) mesh->visit_batches(groupbit, visit);
 }
