@@ -182,7 +182,10 @@ TEST(RigidBodies, Refused)
            Mistake{shape + "fix tool grain mpm/rigid shape density 2.0 slip\nrun 3\n",
                    "use group all"},
            Mistake{"fix tool all mpm/rigid shape density 2.0 slip\n" + shape + "run 3\n",
-                   "needs a region of style mpm/mesh: shape"},
+                   "region shape does not exist"},
+           Mistake{
+               "region ball sphere 4 4 8 1\nfix tool all mpm/rigid ball density 2.0 slip\nrun 3\n",
+               "mpm/mesh"},
            Mistake{rigid + "unfix c\nunfix floor\nunfix F1\nunfix F2\nunfix surf\nrun 3\n",
                    "Fix mpm/rigid needs a fix mpm"},
        })

@@ -107,6 +107,12 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   const int dim = domain->dimension;
   auto *const any = domain->get_region_by_id(region_id);
   if (!any) error->all(FLERR, 3, "Fix mpm/rigid region {} does not exist", region_id);
+  if (dim == 2 && dynamic_cast<RegMPMMesh *>(any))
+    error->all(FLERR, 3,
+               "Fix mpm/rigid region {} of style mpm/mesh is for 3d: in 2d, move a region with fix "
+               "mpm/boundary, or let another one "
+               "float in a flow of fix mpm/incompressible",
+               region_id);
   double volume, lo[3], hi[3];
   constexpr int VOIGT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   if (auto *region = dim == 3 ? dynamic_cast<RegMPMMesh *>(any) : nullptr) {
