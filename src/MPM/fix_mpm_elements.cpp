@@ -29,6 +29,8 @@
 #include "mpm_options.h"
 #include "mpm_points.h"
 #include "mpm_time_limit.h"
+#include "neighbor.h"
+#include "pair.h"
 #include "update.h"
 
 #include <algorithm>
@@ -385,7 +387,10 @@ void FixMPMElements::init()
 
   // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
 
-  comm->cutghostuser = std::max(comm->cutghostuser, largest_extent());
+  const double extent =
+      largest_extent();    // less than that of a pair style is a warning of LAMMPS
+  if (!force->pair || extent > force->pair->cutforce + neighbor->skin)
+    comm->cutghostuser = std::max(comm->cutghostuser, extent);
 }
 
 /* ----------------------------------------------------------------------
