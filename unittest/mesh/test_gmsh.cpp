@@ -106,7 +106,7 @@ TEST(Mesh, Format41)
   EXPECT_EQ(mesh.elements[1].physical, 2);
   EXPECT_EQ(mesh.elements[2].physical, 0);
   EXPECT_DOUBLE_EQ(mesh.size(mesh.elements[1]), -1.0);
-  mesh.orient(2);
+  mesh.orient(3);
   EXPECT_DOUBLE_EQ(mesh.size(mesh.elements[1]), 1.0);
   EXPECT_DOUBLE_EQ(mesh.size(mesh.elements[2]), 1.0 / 6.0);
   mesh.keep(3, "solid");

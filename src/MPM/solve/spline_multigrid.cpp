@@ -103,7 +103,7 @@ struct Blocks {
 /** Adds to one triangle of the element, blocks [number][number] of [W][W], what functions with the gradients [G] have by the stiffness C [G
  *  W][G W]. */
 template <int W, int G, class F>
-void add_blocks(int number, const F &gradient_of, const double *C, double *element)
+void add_blocks(int number, F gradient_of, const double *C, double *element)
 {
   constexpr int M = W * G;
   for (int J = 0; J < number; J++) {
@@ -416,9 +416,13 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
   };
   o.T.assign(m * w, 0.0);
   const auto add = [&](int number, const auto &gradient_of, std::vector<double> &element) {
-    const auto with = w == 3 ? &add_blocks<3, 3, decltype(gradient_of)>
-        : ngrad == 3         ? &add_blocks<2, 3, decltype(gradient_of)>
-                             : &add_blocks<2, 2, decltype(gradient_of)>;
+    using Gradient = decltype(gradient_of);
+    // [width][ngrad]: scalars, and displacements in the plane and in space
+    static constexpr void (*table[3][3])(int, Gradient, const double *, double *) = {
+        {add_blocks<1, 1, Gradient>, add_blocks<1, 2, Gradient>, add_blocks<1, 3, Gradient>},
+        {add_blocks<2, 1, Gradient>, add_blocks<2, 2, Gradient>, add_blocks<2, 3, Gradient>},
+        {add_blocks<3, 1, Gradient>, add_blocks<3, 2, Gradient>, add_blocks<3, 3, Gradient>}};
+    const auto with = table[w - 1][ngrad - 1];
     with(number, gradient_of, symmetric, element.data());
   };
   add(
