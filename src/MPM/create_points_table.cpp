@@ -32,6 +32,20 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+/** The type with a label, or -1: LAMMPS's function for it had another name until 2025. */
+template <class Map>
+static auto type_of_label(const Map &map, const std::string &label, int)
+    -> decltype(map.find_type(label, Atom::ATOM))
+{
+  return map.find_type(label, Atom::ATOM);
+}
+template <class Map>
+static auto type_of_label(const Map &map, const std::string &label, long)
+    -> decltype(map.find(label, Atom::ATOM))
+{
+  return map.find(label, Atom::ATOM);
+}
+
 using Columns = MPMPointColumns;
 
 static constexpr int CHUNK = 1 << 14;    // rows that are sent at a time
@@ -147,7 +161,7 @@ void CreatePointsTable::read(const CreatePointsTableOptions &given, int type,
     const auto at = std::find(table.names.begin(), table.names.end(), name);
     if (at == table.names.end())
       fail(fmt::format("has no column {}, which keyword {} has; there are {}", name, keyword,
-                       utils::join(table.names, " ")));
+                       utils::join_words(table.names, " ")));
     return at - table.names.begin();
   };
   for (const auto &factor : given.factors) {
@@ -236,7 +250,7 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
       if (value >= 0.0)
         mine = value <= atom->ntypes ? (int) value : 0;
       else
-        mine = atom->labelmapflag ? atom->lmap->find_type(word, Atom::ATOM) : 0;
+        mine = atom->labelmapflag ? type_of_label(*atom->lmap, word, 0) : 0;
       if (given.part && mine != given.part) continue;
       if (mine < 1 || mine > atom->ntypes || (value >= 0.0 && value != mine))
         fail(fmt::format("row {} has type {}, but types are 1 to {}{}", row + 1, word, atom->ntypes,
