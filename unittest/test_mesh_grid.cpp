@@ -155,9 +155,10 @@ SERIAL_TEST(MeshGrid, TubeUnderPressure)
         }
         error[n == 12] =
             measured(strprintf("error with %d cells, %s", n, frame.c_str()), sqrt(square / all));
-        // what holds the quarter is the pressure on the bore
-        EXPECT_NEAR(entry(run, 6), -p, 1e-4 * p);
-        EXPECT_NEAR(entry(run, 8), -p, 1e-4 * p);
+        // what holds the quarter is the pressure on the bore, which in the total frame is that of the body by now
+        const double u = (1 + nu) / E * p / 3.0 * ((1 - 2 * nu) + 4.0);
+        const double bore = frame == "total" ? 1.0 + u : 1.0;
+        for (const int k : {6, 8}) EXPECT_NEAR(entry(run, k), -p * bore, 1e-6 * p);
       }
       EXPECT_LT(error[1], 0.005);
       EXPECT_GT(log2(error[0] / error[1]), 1.7);
@@ -197,8 +198,8 @@ SERIAL_TEST(MeshGrid, TubeAtFiniteStrain)
         const double slope = (m * s[3] - s[0] * s[1]) / (m * s[2] - s[0] * s[0]);
         return sqrt(s[1] / m + slope * (R - s[0] / m));
       };
-      EXPECT_NEAR(measured("a", at(low, n[0], 1.0)) / a, 1.0, 0.01);
-      EXPECT_NEAR(measured("b", at(high, n[1], 4.0)) / b, 1.0, 0.01);
+      EXPECT_NEAR(measured("a", at(low, n[0], 1.0)) / a, 1.0, 0.004);
+      EXPECT_NEAR(measured("b", at(high, n[1], 4.0)) / b, 1.0, 0.004);
     }
 }
 
@@ -272,7 +273,7 @@ SERIAL_TEST(MeshGrid, EnergyAndMomentum)
       run.commands("run 10000\n");
       const double now = entry(run, 1) + entry(run, 2), work = entry(run, 3);
       measured("energy that is lost", (before + work - now) / before);
-      EXPECT_NEAR(before + work - now, 0.0, 0.03 * before);
+      EXPECT_NEAR(before + work - now, 0.0, 0.01 * before);
       const auto p1 = momentum(run);
       EXPECT_NEAR(p1[0], p0[0], 1e-12);
       EXPECT_NEAR(p1[1], p0[1] + 10.0 * 1e-4 * run.gather().size(), 1e-11);
@@ -300,7 +301,7 @@ SERIAL_TEST(MeshGrid, SlipAlongACurve)
     if (turn == 0) run.commands("run 400\n");    // 0.02 of the radius
   }
   // walls push along their normals only, which are right to the second order of the angle of a side
-  EXPECT_NEAR(spin[1] / spin[0], 1.0, 2e-3);
+  EXPECT_NEAR(measured("spin that is left", spin[1] / spin[0]), 1.0, 2e-3);
 }
 
 // Sides of one group that meet at a right angle hold their corner along both normals

@@ -220,6 +220,21 @@ bool MPMHeatBody::find_response(Line &line) const
   return true;
 }
 
+/** Nodes without weight may have no capacity, and are not in the system. */
+void MPMHeatBody::Line::add_term(double stiffness, const MPMDiffusion::Term &use) const
+{
+  if (!(stiffness > 0.0)) return;
+  int64_t nodes[MOST];
+  double weights[MOST];
+  int count = 0;
+  for (int k = 0; k < n; k++)
+    if (weight[k] > 0.0) {
+      nodes[count] = node[k];
+      weights[count++] = weight[k];
+    }
+  use(count, nodes, 1, weights, &stiffness);
+}
+
 double MPMHeatBody::temperature(const Line &line) const
 {
   double T = 0.0;

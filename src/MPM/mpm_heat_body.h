@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_HEAT_BODY_H
 #define LMP_MPM_HEAT_BODY_H
 
+#include "mpm_diffusion_solver.h"
 #include "mpm_node_profile.h"
 #include "pointers.h"
 
@@ -34,6 +35,9 @@ class MPMHeatBody : protected Pointers {
     double place;           ///< of that surface on the line, in node spacings
     double response;        ///< of the temperature there to heat: sum of weight^2/capacity
     double conducting;      ///< share of it where there is material that conducts
+
+    /** What an exchange with this stiffness is for a solver; none without stiffness. */
+    void add_term(double stiffness, const MPMDiffusion::Term &) const;
   };
 
   MPMField &field;

@@ -236,15 +236,7 @@ void MPMHeatContact::each_term(const MPMHeatBody &of, const MPMDiffusion::Term &
     if (!(place.rate > 0.0)) continue;
     const auto &line = place.line[body[1] == &of];
     const double stiffness = std::min(1.0, fastest / place.rate) * pair.now * place.area;
-    int64_t nodes[MPMHeatBody::MOST];
-    double weights[MPMHeatBody::MOST];
-    int n = 0;
-    for (int k = 0; k < line.n; k++)
-      if (line.weight[k] > 0.0) {
-        nodes[n] = line.node[k];
-        weights[n++] = line.weight[k];
-      }
-    if (stiffness > 0.0) use(n, nodes, 1, weights, &stiffness);
+    line.add_term(stiffness, use);
   }
 }
 

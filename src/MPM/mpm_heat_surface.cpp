@@ -439,15 +439,7 @@ void MPMHeatSurfaces::each_term(const MPMDiffusion::Term &use) const
     const bool held = conditions[place.condition].condition.kind == MPMHeatCondition::TEMPERATURE;
     const double most = fastest * place.share / line.response,
                  stiffness = held ? most : std::min(most, place.area * place.slope);
-    int64_t nodes[MPMHeatBody::MOST];
-    double weights[MPMHeatBody::MOST];
-    int n = 0;
-    for (int k = 0; k < line.n; k++)
-      if (line.weight[k] > 0.0) {
-        nodes[n] = line.node[k];
-        weights[n++] = line.weight[k];
-      }
-    if (stiffness > 0.0) use(n, nodes, 1, weights, &stiffness);
+    line.add_term(stiffness, use);
   }
 }
 
