@@ -19,8 +19,8 @@ class MPMNodeAction {
  public:
   /** Phases that are in the same place share their momentum first, then what else exchanges it between materials, and
    *  walls, which hold nodes for good, have the last word: else contact would push points through them. Only mouths go through
-   *  walls. */
-  enum Turn { PHASES, EXCHANGE, BETWEEN_BODIES, RIGID_BODIES, WALLS, MOUTHS };
+   *  walls. Nodes that follow others come after all of these. */
+  enum Turn { PHASES, EXCHANGE, BETWEEN_BODIES, RIGID_BODIES, WALLS, MOUTHS, TIED_NODES };
   virtual Turn turn() const { return EXCHANGE; }
 
   /** Collective, at the start of a run: check and prepare; called by fix mpm in its init(). */

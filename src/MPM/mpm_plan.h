@@ -31,7 +31,8 @@ class MPMPlan : protected Pointers {
   /** Places in each of the lists where stages of other physics go, in the order of definition. */
   enum Place {
     BEFORE_POINTS_TO_NODES,    ///< positions and forces of the start of the step
-    BEFORE_SOLVE,              ///< nodes have mass and momentum, summed over ranks
+    AFTER_POINTS_TO_NODES,    ///< nodes have what points of this rank gave them, not yet summed over ranks and images
+    BEFORE_SOLVE,    ///< nodes have mass and momentum, summed over ranks
     AFTER_MOMENTUM,    ///< the momentum equation gave them velocities, which node actions have not seen
     AFTER_SOLVE,      ///< nodes have their new velocities, points are where they were
     BEFORE_STRAIN,    ///< of usl and musl: the same, with the velocities that strain the points

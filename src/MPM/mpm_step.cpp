@@ -46,6 +46,7 @@ void points_to_nodes(MPMPlan &plan, const char *name, Content content)
   plan.each(name, [content](MPMField &field) {
     MPMStages::points_to_nodes(field, content);
   });
+  plan.place(MPMPlan::AFTER_POINTS_TO_NODES);
   plan.each("sum over ranks", [content](MPMField &field) {
     sum_nodes(field, content);
   });

@@ -1,0 +1,290 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_refine.h"
+
+#include "comm.h"
+#include "error.h"
+#include "fix_mpm_boundary.h"
+#include "fix_mpm_contact.h"
+#include "fix_mpm_dashpot.h"
+#include "fix_mpm_relax.h"
+#include "fix_mpm_rigid.h"
+#include "modify.h"
+#include "mpm_field.h"
+#include "mpm_options.h"
+#include "mpm_point_map.h"
+#include "mpm_two_scale.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/refine COARSE FINE ...
+------------------------------------------------------------------------- */
+
+FixMPMRefine::FixMPMRefine(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  if (igroup != 0)
+    error->all(FLERR, 1,
+               "Fix mpm/refine acts on nodes, which have no group: use group all; the fields whose "
+               "points are one body are named");
+  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/refine", error);
+  for (int i = 3; i < narg; i++) {
+    const std::string name = arg[i];
+    if (std::find(ids.begin(), ids.end(), name) != ids.end())
+      error->all(FLERR, i, "Fix mpm/refine {}: the field {} is named twice", id, name);
+    ids.push_back(name);
+  }
+  vector_flag = 1;
+  size_vector = 2 * ((int) ids.size() - 1);
+  global_freq = 1;
+  extvector = 1;
+}
+
+FixMPMRefine::~FixMPMRefine() = default;
+
+/* ----------------------------------------------------------------------
+   missing fields are found here; with them, they call init_action()
+------------------------------------------------------------------------- */
+
+void FixMPMRefine::init()
+{
+  for (const auto &name : ids)
+    if (!MPMField::find(lmp, name))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/refine {}: {} is not the ID of a fix mpm: define one fix mpm for the "
+                 "points on each lattice",
+                 id, name);
+}
+
+void FixMPMRefine::init_action()
+{
+  FixMPMRefine::init();
+  pairs.clear();
+  fields.clear();
+  for (const auto &name : ids) fields.push_back(MPMField::find(lmp, name));
+  for (auto *other : find_fixes<FixMPMRefine>(lmp))
+    if (other != this)
+      for (const auto &name : ids)
+        if (std::find(other->ids.begin(), other->ids.end(), name) != other->ids.end())
+          error->all(FLERR, Error::NOLASTLINE,
+                     "Fix mpm/refine {} and {} have the field {} in common: name all fields of a "
+                     "body in one of them, from the coarsest lattice to the finest",
+                     id, other->id, name);
+  for (std::size_t k = 0; k + 1 < fields.size(); k++) {
+    check(*fields[k], *fields[k + 1]);
+    pairs.push_back(std::make_unique<MPMTwoScale>(lmp, *fields[k], *fields[k + 1],
+                                                  k ? pairs[k - 1].get() : nullptr));
+  }
+
+  // records of nodes are added
+
+  const bool keep = std::any_of(fields.begin(), fields.end(), [&](const auto *field) {
+    return field->keep_old ||
+        adds_change(field->options.transfer) != adds_change(fields[0]->options.transfer);
+  });
+  for (auto *field : fields) field->keep_old = keep;
+}
+
+void FixMPMRefine::check(MPMField &coarse, MPMField &fine) const
+{
+  const auto &oc = coarse.options;
+  for (auto *field : {&coarse, &fine}) {
+    const auto &o = field->options;
+    refuse_field(
+        lmp, *this, *field,
+        {{o.shape != LINEAR && o.shape != QUADRATIC && o.shape != CUBIC, "this shape",
+          "its functions are no sums of functions of half the width: use shape linear, quadratic, "
+          "or cubic"},
+         {!is_affine(o.transfer) || o.polypic, "this transfer",
+          "points must have the gradient of the velocity for nodes at the rim of a lattice: use "
+          "transfer apic, aflip, or tpic"},
+         {o.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
+          "use apic, aflip, or tpic"},
+         {o.stress_before(), "scheme usf and usavg", "use usl or musl"},
+         {o.most_distorted > 0.0, "a reference that is renewed",
+          "its lattices would part: use frame total without, or frame updated"},
+         {o.modified_edges, "edges modified", "use edges plain"},
+         {o.smooths_volumes(), "smooth", "leave it out"},
+         {o.has_light_nodes(), "light", "leave it out"}});
+  }
+  const auto &of = fine.options;
+  const auto refuse = [&](bool broken, const std::string &what) {
+    if (broken)
+      error->all(FLERR, Error::NOLASTLINE, "Fix mpm/refine {}: fix mpm {} and {} must have {}", id,
+                 coarse.id(), fine.id(), what);
+  };
+  refuse(oc.shape != of.shape, "the same shape function");
+  refuse(oc.total != of.total, "the same frame");
+  refuse(std::fabs(2.0 * fine.lattice.h - coarse.lattice.h) > 1.0e-10 * coarse.lattice.h,
+         fmt::format("node spacings in the ratio 2: use {:.16g} for {}, or name a field between "
+                     "them",
+                     0.5 * coarse.lattice.h, fine.id()));
+  if (!MPMTwoScale::fits(coarse, fine)) {
+    std::string where;
+    for (int d = 0; d < coarse.lattice.dim; d++)
+      where += fmt::format(" {:.16g}", MPMTwoScale::fine_origin(coarse, d));
+    refuse(true,
+           fmt::format("lattices that fit, which those of this shape do when fix mpm {} has "
+                       "origin{}",
+                       fine.id(), where));
+  }
+}
+
+/* ----------------------------------------------------------------------
+   what acts on nodes acts on those of all fields, and tied ones follow; what exchanges something between places would miss
+   those
+------------------------------------------------------------------------- */
+
+void FixMPMRefine::check_others(const MPMPlan &plan) const
+{
+  for (auto *action : plan.actions) {
+    auto *ifix = dynamic_cast<Fix *>(action);
+    const auto *contact = dynamic_cast<FixMPMContact *>(action);
+    if (contact)
+      for (const auto &a : ids)
+        for (const auto &b : ids)
+          if (a != b && contact->couples(a, b))
+            error->all(FLERR, Error::NOLASTLINE,
+                       "Fix mpm/refine {}: the fields {} and {} are one body, which fix "
+                       "mpm/contact {} takes for two: leave one of them out there",
+                       id, a, b, ifix->id);
+    if (!contact && !dynamic_cast<FixMPMRefine *>(action) &&
+        !dynamic_cast<FixMPMBoundary *>(action) && !dynamic_cast<FixMPMRigid *>(action) &&
+        !dynamic_cast<FixMPMDashpot *>(action))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/refine {} does not go with fix {} {}, which would miss what nodes at the "
+                 "rim of a lattice have: remove one of them",
+                 id, ifix->style, ifix->id);
+  }
+  for (auto *physics : plan.physics) {
+    auto *ifix = dynamic_cast<Fix *>(physics);
+    if (!physics->only_loads() && !dynamic_cast<FixMPMRefine *>(physics) &&
+        !dynamic_cast<FixMPMRelax *>(physics) && !dynamic_cast<FixMPMDashpot *>(physics))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/refine {} does not go with fix {} {}, whose values at nodes would not be "
+                 "continuous from one lattice to the other: remove one of them",
+                 id, ifix->style, ifix->id);
+  }
+}
+
+void FixMPMRefine::init_physics(MPMPlan &plan)
+{
+  check_others(plan);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRefine::add_stages(MPMPlan &plan, MPMPlan::Place place)
+{
+  if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
+    plan.together("tied nodes", [this]() {
+      find_tied();
+    });
+  if (place == MPMPlan::AFTER_POINTS_TO_NODES)
+    plan.together("tied nodes", [this]() {
+      for (int k = (int) pairs.size() - 1; k >= 0; k--)
+        pairs[k]->to_parents(k + 1 < (int) pairs.size() ? pairs[k + 1].get() : nullptr);
+    });
+}
+
+void FixMPMRefine::act(double, Stage)
+{
+  for (auto &pair : pairs) pair->from_parents();
+}
+
+void FixMPMRefine::find_tied()
+{
+  for (auto &pair : pairs) pair->find_tied();
+  if (warned) return;
+  warned = true;
+  for (auto &pair : pairs) {
+    bigint all[2], mine[2] = {pair->count.tied, pair->count.free};
+    MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (comm->me || (all[0] && all[1])) continue;
+    if (all[0])
+      error->warning(FLERR,
+                     "Fix mpm/refine {}: no node of fix mpm {} is free, as points of {} are in all "
+                     "cells that its points reach: it has no effect; keep the points of the fields "
+                     "in regions of their own, of several cells",
+                     id, pair->fine.id(), pair->coarse.id());
+    else
+      error->warning(FLERR,
+                     "Fix mpm/refine {}: no node of fix mpm {} is tied: its points and those of {} "
+                     "do not meet",
+                     id, pair->fine.id(), pair->coarse.id());
+  }
+}
+
+/* ----------------------------------------------------------------------
+   each field has nodes for the sake of the finer ones: all are renewed together
+------------------------------------------------------------------------- */
+
+void FixMPMRefine::couple_topology()
+{
+  if (std::any_of(fields.begin(), fields.end(), [](const auto *field) {
+        return !field->map->valid;
+      }))
+    for (auto *field : fields) field->map->valid = false;
+}
+
+void FixMPMRefine::blocks_found()
+{
+  const bool keep = std::any_of(fields.begin(), fields.end(), [](const auto *field) {
+    return field->keep_old_now;
+  });
+  for (auto *field : fields) {
+    if (field->keep_old_now == keep) continue;
+    field->keep_old_now = keep;
+    field->choose_kernels();
+  }
+}
+
+int FixMPMRefine::level(const MPMField &field) const
+{
+  return (int) (std::find(fields.begin(), fields.end(), &field) - fields.begin());
+}
+
+void FixMPMRefine::extend_topology(MPMField &field)
+{
+  const int mine = level(field);
+  for (int finer = mine + 1; finer < (int) fields.size(); finer++)
+    pairs[mine]->extend_coarse(*fields[finer], finer - mine);
+}
+
+void FixMPMRefine::topology_changed(MPMField &field)
+{
+  if (level(field) == (int) fields.size()) return;
+  for (auto &pair : pairs) pair->topology_changed();
+}
+
+/* ----------------------------------------------------------------------
+   for each pair of fields: nodes of the finer one that are tied, and those that are free
+------------------------------------------------------------------------- */
+
+double FixMPMRefine::compute_vector(int n)
+{
+  double mine = 0.0, all;
+  if (n / 2 < (int) pairs.size()) {
+    const auto &count = pairs[n / 2]->count;
+    mine = (double) (n % 2 ? count.free : count.tied);
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMPMRefine::memory_usage()
+{
+  double bytes = 0.0;
+  for (const auto &pair : pairs) bytes += pair->memory_usage();
+  return bytes;
+}

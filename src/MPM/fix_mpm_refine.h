@@ -1,0 +1,70 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/refine,FixMPMRefine);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_REFINE_H
+#define LMP_FIX_MPM_REFINE_H
+
+#include "fix.h"
+#include "mpm_node_action.h"
+#include "mpm_physics.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMTwoScale;
+
+/** Makes one body of the points of several fields (fix mpm), each on a lattice of half the node spacing of the one before:
+ *  see MPMTwoScale for each pair of them. */
+class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
+ public:
+  FixMPMRefine(class LAMMPS *, int, char **);
+  ~FixMPMRefine() override;
+  int setmask() override { return 0; }    // called by fix mpm
+  void init() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+
+  // both interfaces have these three
+
+  void extend_topology(MPMField &) override;
+  void topology_changed(MPMField &) override;
+  bool looks_beyond_points() const override { return true; }    // parents of nodes in reach
+
+  Turn turn() const override { return TIED_NODES; }
+  void init_action() override;
+  void couple_topology() override;
+  void blocks_found() override;
+  bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override { return false; }
+  void act(double dt, Stage) override;
+
+  void init_physics(MPMPlan &) override;
+  void add_stages(MPMPlan &, MPMPlan::Place) override;
+
+ private:
+  std::vector<std::string> ids;    // of the fix mpm, from the coarsest on
+  std::vector<MPMField *> fields;
+  std::vector<std::unique_ptr<MPMTwoScale>> pairs;    // of each of them and the next one
+  bool warned = false;
+
+  void check(MPMField &coarse, MPMField &fine) const;
+  void check_others(const MPMPlan &) const;
+  void find_tied();
+  int level(const MPMField &) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

@@ -1,0 +1,93 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_TWO_SCALE_H
+#define LMP_MPM_TWO_SCALE_H
+
+#include "mpm_field.h"
+#include "pointers.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** Two fields whose points are one body: the lattice of one has half the node spacing of the other.
+ *
+ *  A B-spline is a sum of B-splines of half the width. A node of the fine lattice whose function reaches a cell with points of
+ *  the coarse field is tied: its velocity is what that sum gives it of its parents, the coarse nodes with a part in it; it
+ *  has neither mass nor momentum of its own, but its parents have these with the same weights. All other fine nodes are free.
+ *  The functions of free nodes vanish where coarse points are, so that velocities are continuous, and functions are a
+ *  partition of unity and reproduce linear velocities everywhere: these are truncated hierarchical B-splines (C. Giannelli, B.
+ *  Juettler, H. Speleers, Comput. Aided Geom. Des. 29 (2012) 485), with cells that points choose, in each step where they
+ *  move on the lattice. */
+class MPMTwoScale : protected Pointers {
+ public:
+  /** before: the pair whose fine field is this coarse one, or null. */
+  MPMTwoScale(class LAMMPS *, MPMField &coarse, MPMField &fine, const MPMTwoScale *before);
+
+  MPMField &coarse, &fine;
+
+  /** Nodes of the fine lattice in coarse node spacings from one of the coarse lattice, of the kind that the shape asks for? */
+  static bool fits(const MPMField &coarse, const MPMField &fine);
+  /** Where the fine lattice of a coarse one can have its origin, on one axis. */
+  static double fine_origin(const MPMField &coarse, int axis);
+
+  /** Activate blocks of the coarse grid with all that nodes of a finer one (this pair's, or of the next ones) have to do with. */
+  void extend_coarse(const MPMField &finer, int levels) const;
+  void topology_changed() { lists_valid = false; }
+  /** Which fine nodes are tied, by where points are now. Collective. */
+  void find_tied();
+
+  /** What this rank's points gave to tied nodes goes to their parents, with the affine part of it. after: the pair whose coarse
+   *  field is this fine one, for which that has been done, or null. */
+  void to_parents(const MPMTwoScale *after);
+  /** Velocities of tied nodes, also the old ones. */
+  void from_parents();
+
+  /** Nodes that are tied and free, of those that this rank counts. */
+  struct Count {
+    bigint tied = 0, free = 0;
+  } count;
+  double memory_usage() const;
+
+ private:
+  struct Tied {
+    int64_t node;       // of the fine grid
+    int first, last;    // its parents
+  };
+  struct Parent {
+    int64_t node;    // of the coarse grid, canonical
+    double weight;
+    double r[3];    // from the fine node to it [distance]
+  };
+
+  const MPMTwoScale *const before;
+  MPM_NS::NodeField
+      &marks;       // of coarse cells with points, at their lower node or in the middle of them
+  int offset[3];    // of fine nodes from coarse ones, in quarters of the coarse spacing
+  bool lists_valid = false;
+  std::vector<Tied> tied;
+  std::vector<Parent> parents;
+  std::vector<int> tied_of;           // [fine node] its place in tied, or -1
+  std::vector<char> block_is_tied;    // [fine block] has it tied nodes?
+  struct Share {                      // of a point in a tied node
+    int tied, point;
+    double weight;
+  };
+  std::vector<Share> shares;
+  std::vector<double> affine;    // [tied][dim*dim] sums of N m C over points
+
+  void mark_cells();
+  void find_shares();
+  int64_t canonical_node(const MPM_NS::Grid &, const int index[3]) const;
+  void sum_affine(const MPMTwoScale *after);
+};
+
+}    // namespace LAMMPS_NS
+#endif
