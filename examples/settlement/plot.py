@@ -37,7 +37,7 @@ for line in open(sorted(glob.glob("log.*"))[-1]):
     if len(words) == 8 and words[0].isdigit() and "." not in words[0] and words[1] != "by":
         rows.append([float(word) for word in words])
 rows = np.array(sorted({row[0]: row for row in rows}.values()))
-rows, end = rows[:-1], rows[-1]
+rows, end = rows[rows[:, 1] < 2000.0], rows[-1]
 
 figure, (ground, curve) = plt.subplots(1, 2, figsize=(12, 3.6), gridspec_kw={"width_ratios": [1.7, 1]})
 x, y, p = np.loadtxt("clay.txt", skiprows=9).T
@@ -59,7 +59,7 @@ figure.tight_layout()
 figure.savefig("settlement.png", dpi=90)
 
 S, P = ramp(degree, t), ramp(pressure, t)
-for days in (30.0, 180.0, 360.0, 540.0, 1080.0):
+for days in (30.0, 130.0, 330.0, 530.0, 1130.0):
     i = np.argmin(abs(t - days))
     print("day %5.0f: settlement %.4f of the end, Terzaghi %.4f; pressure at the rock %.4f of the load, Terzaghi %.4f"
           % (t[i], rows[i, 2] / end[2], S[i], rows[i, 4] / q, P[i]))

@@ -261,7 +261,6 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
   double carried, all;
   if (joint) joint->set_pressure();
   if (!tangent.forces(part_of(u), part * dt, inner.data(), carried)) return false;
-  if (joint) now.water = joint->find_residual(u);
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width], pull = inertia * m * (u[k] - from[k]);
     residual[k] = m > 0.0 ? outer[k] + inner[k] - pull : 0.0;
@@ -271,6 +270,7 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
   project_forces(free.data());
   now.unbalanced = sum_of_sizes(free);
   MPI_Allreduce(&carried, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+  if (joint) now.water = joint->find_residual(u, all);
   size = all + sum_of_sizes(outer) + sum_of_sizes(change);
   now.ratio = now.unbalanced == 0.0 ? 0.0 : now.unbalanced / size;
   return std::isfinite(now.unbalanced) && std::isfinite(now.water);

@@ -42,6 +42,7 @@ static constexpr int MOST_SHORTER = 5;          // halvings of a correction
 static constexpr double LARGER = 2.0;           // what is left after one that is taken all the same
 static constexpr double GAINED = 0.1;       // left of a solution that is not as accurate as wanted
 static constexpr double HELD = 1.0e-6;      // sum of squares of a unit motion that walls take
+static constexpr double SMALL = 1.0e-2;     // part of the tolerance, of pressures next to stress
 static constexpr double LEAST = 1.0e-15;    // of volumes: round-off
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};    // as in mpm_implicit.cpp
 
@@ -89,6 +90,12 @@ void MPMImplicit::Joint::begin_step()
   part_left = 0.0;
   motion.tangent.set_pressure(of_points.data());
   find_free_axes();
+  double mine[2] = {water.response(), 0.0}, all[2];
+  for (const auto &run : motion.field.map->runs)
+    for (int i = run.first; i < run.last; i++) mine[1] += motion.lmp->atom->vfrac[i];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, motion.lmp->world);
+  response = all[0];
+  volume = all[1];
 }
 
 /** In statics, what nothing holds along an axis of a periodic box can be anywhere there. Its stiffness is singular, and what a solution
@@ -128,24 +135,32 @@ void MPMImplicit::Joint::set_pressure()
   water.to_points(p, of_points.data());
 }
 
-double MPMImplicit::Joint::find_residual(const std::vector<double> &u)
+double MPMImplicit::Joint::find_residual(const std::vector<double> &u, double forces)
 {
   motion.tangent.volume_changes(u.data(), dV.data());
   double mine = water.find_residual(p, dV.data(), left.data());
   MPI_Allreduce(&mine, &carried, 1, MPI_DOUBLE, MPI_SUM, motion.lmp->world);
+  const double stress =
+      forces * motion.field.lattice.h / (motion.field.step_data().stress_scale * volume);
+  round_off = SMALL * motion.options.tolerance * stress * response;
   for (std::size_t k = 0; k < first.size(); k++) left[k] -= part_left * first[k];
   for (std::size_t k = 0; k < left.size(); k++) room[k] = std::sqrt(std::fabs(left[k]));
   const double *const x = room.data();
   Flow(*this).products(1, &x, &x, &sum);
-  return sum == 0.0 ? 0.0 : sum / carried;
+  return sum <= round_off ? 0.0 : sum / carried;
+}
+
+/** The sum of volumes that may be left. Where all water is at rest, pressures are noise, of this small part of the stress. */
+double MPMImplicit::Joint::enough() const
+{
+  return std::max(std::max(motion.options.tolerance, LEAST) * carried, round_off);
 }
 
 double MPMImplicit::Joint::excess() const
 {
-  const double enough = std::max(motion.options.tolerance, LEAST) * carried;
   const double of_forces = motion.now.unbalanced > 0.0 ? motion.now.unbalanced / motion.enough_force
                                                        : 0.0,
-               of_volumes = sum > 0.0 ? sum / enough : 0.0;
+               of_volumes = sum > 0.0 ? sum / enough() : 0.0;
   return std::max(of_forces, of_volumes);
 }
 
@@ -243,8 +258,7 @@ SolveReport MPMImplicit::Joint::solve(const SolveGoal &goal)
 {
   const int64_t n = motion.nreals();
   prepare();
-  const double enough = std::max(motion.options.tolerance, LEAST) * carried;
-  weight = enough > 0.0 && motion.enough_force > 0.0 ? motion.enough_force / enough : 1.0;
+  weight = enough() > 0.0 && motion.enough_force > 0.0 ? motion.enough_force / enough() : 1.0;
   rhs.resize(size());
   std::vector<double> b(size());
   std::copy_n(motion.free.data(), n, b.data());

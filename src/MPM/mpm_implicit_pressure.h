@@ -28,10 +28,11 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
 
   /** Points have the present pressure in their forces. */
   void set_pressure();
-  /** What is left of the equations at p and the motion u; returns its ratio to all volumes in them. */
-  double find_residual(const std::vector<double> &u);
+  /** What is left of the equations at p and the motion u, with the sum of forces by stress (MPMTangent::forces()); returns its ratio to all volumes in them. */
+  double find_residual(const std::vector<double> &u, double forces);
   /** What is left of forces and volumes, in parts of what may be left, the larger one. */
   double excess() const;
+  double enough() const;
   /** Nodes that walls hold move first: the change of forces, and volumes that this takes. */
   void move_walls(const std::vector<double> &u, double *forces);
   /** Corrections of both, that of the motion in motion.change. */
@@ -55,10 +56,12 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   MPMNodePressure &water;
   MPM_NS::FlexibleGMRES solver{60};
   MPM_NS::SplineMultigrid levels;
-  bool prepared = false;                                   // the levels, in this step
-  double part_left = 0.0;                                  // of what is left at first
-  double sum = 0.0, carried = 0.0;                         // of what is left, and of all volumes
-  double weight = 1.0;                                     // of volumes in products of vectors
+  bool prepared = false;                  // the levels, in this step
+  double response = 0.0, volume = 0.0;    // of a unit of pressure; of all points
+  double round_off = 0.0;                 // volumes that pressures are not known better than
+  double part_left = 0.0;                 // of what is left at first
+  double sum = 0.0, carried = 0.0;        // of what is left, and of all volumes
+  double weight = 1.0;                    // of volumes in products of vectors
   std::vector<double> p, kept, left, first, correction;    // [node]
   std::vector<double> rhs, solution, mass, room, none;
   std::vector<double> of_points, dp, dV;    // [n]

@@ -38,6 +38,8 @@ class MPMNodePressure {
   /** r: right minus left side with the changes of volume dV [n]. Returns the sum of all volumes in it on this rank, before they cancel.
    *  Collective. */
   virtual double find_residual(const std::vector<double> &p, const double *dV, double *r) = 0;
+  /** What a unit of pressure of all nodes, at random, would be in the residual, of this rank. */
+  virtual double response() const = 0;
   /** y: left minus right side of small changes of the pressure, and, unless null, of volumes, around the values of the last
    *  residual. Collective. */
   virtual void find_changes(const double *p, const double *dV, double *y) = 0;

@@ -80,6 +80,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   const std::vector<double> &capacities() const override { return solve->capacity; }
   void to_points(const std::vector<double> &p, double *of_points) override;
   double find_residual(const std::vector<double> &p, const double *dV, double *r) override;
+  double response() const override;
   void find_changes(const double *p, const double *dV, double *y) override;
   void each_term(const Term &) override;
   void find_masses(const std::vector<double> &moduli, std::vector<double> &mass) override;

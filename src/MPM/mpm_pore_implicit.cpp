@@ -117,6 +117,16 @@ double MPMPore::find_residual(const std::vector<double> &p, const double *dV, do
   return taken + s.dt * s.carried;
 }
 
+double MPMPore::response() const
+{
+  const double h = field.lattice.h;
+  double sum = 0.0;
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last && soil(run.material); i++)
+      sum += capacity[i] + solve->dt * conductance[i] / (h * h);
+  return sum;
+}
+
 /** Flow of a point by minus the gradient of the pressure, times its volume, in place. */
 void MPMPore::conduct(int i, double *q) const
 {
