@@ -38,7 +38,8 @@ FEWER_STEPS = {"grains-on-block": 1000, "impact-on-crystal": 1000, "vortex": 110
                "pouring-honey": 400, "extruder": 8000, "elastic-gate": 26500, "elastic-plate": 4600}    # until the last time of PUBLISHED
 
 # the same with two processes, where it is less than half of these
-FEWER_STEPS_OF_TWO = {"pouring-honey": 150, "elastic-gate": 1500, "elastic-plate": 1500}
+FEWER_STEPS_OF_TWO = {"pouring-honey": 150, "elastic-gate": 1500, "elastic-plate": 1500,
+                      "settlement": 10}    # of each of its runs, which is all of them
 
 # steps with the spacing of the input of those in COARSER, which are compared with the first rows of the log
 FIRST_STEPS = {"taylor-bar": 200, "spall": 1500, "cook-membrane": 4000, "hypervelocity": 500, "ring-collision": 960,

@@ -251,10 +251,10 @@ TEST(Loads, RanksAndRestart)
 // what is not in the balance is refused, and truly named
 SERIAL_TEST(Physics, ThatIsRefused)
 {
-  expect_refused(replaced(tube("pressure v_p", 0.1, 1, "static", "0.2 frame total"),
-                          "compute e all mpm/energy\nthermo_style custom step f_gas[4] c_e\n", ""),
-                 {{"fix water all mpm/pore 2e9 1000 9810 soil rubber 0.4 constant 1e-4",
-                   "would not be in its balance"},
-                  {"fix rest all mpm/relax 1e-5", "would not be in its balance"}},
-                 "run 1\n");
+  expect_refused(
+      replaced(tube("pressure v_p", 0.1, 1, "static", "0.2 frame total"),
+               "compute e all mpm/energy\nthermo_style custom step f_gas[4] c_e\n", ""),
+      {{"fix water all mpm/pore 2e9 1000 9810 soil m 0.4 constant 1e-4", "use frame updated"},
+       {"fix rest all mpm/relax 1e-5", "would not be in its balance"}},
+      "run 1\n");
 }

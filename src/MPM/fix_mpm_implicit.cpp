@@ -131,6 +131,13 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
         plan.fields.size());
   field = plan.fields[0];
   const auto &options = field->options;
+  for (auto *other : plan.physics)
+    if (other->joins_motion() && (time == NEWMARK || time == MIDPOINT))
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit solves for the pressure of fix {} {} at the end of a step, which "
+          "newmark and midpoint are not made of: use static or euler",
+          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
   refuse_field(
       lmp, *this, *field,
       {{options.scheme != MPMFieldOptions::USL, "scheme",
@@ -162,7 +169,8 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
        {options.heats(), "heat", "the time step is not in its balance: remove it"},
        {options.every > 1, "every", "implicit steps are long already: use every 1"}});
   for (auto *other : plan.physics)
-    if (other != this && !other->only_loads() && !other->precedes_motion())
+    if (other != this && !other->only_loads() && !other->precedes_motion() &&
+        !other->joins_motion())
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
@@ -227,7 +235,7 @@ void FixMPMImplicit::step()
   last[LAST_CUTS] = now.cuts;
   last[UNBALANCED] = now.unbalanced / force->ftm2v;
   last[ASYMMETRY] = now.asymmetry;
-  last[RATIO] = now.ratio;
+  last[RATIO] = std::max(now.ratio, now.water);
   last[PARTS] = now.parts;
   last[LAST_INDEFINITE] = now.indefinite;
   total[INDEFINITE] += now.indefinite;

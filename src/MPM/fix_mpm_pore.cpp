@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_implicit.h"
 #include "fix_mpm_material.h"
 #include "fix_mpm_rigid.h"
 #include "force.h"
@@ -278,6 +279,8 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
     error->all(FLERR, 1, "Fix mpm/pore acts on all points of its soils: use group all");
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
+  sets_relax = options.given("relax");
+  sets_stages = options.given("stages");
   if (soils.empty())
     error->all(FLERR, narg - 1,
                "Fix mpm/pore needs a soil: use soil with the ID of a fix mpm/material, its "
@@ -425,6 +428,27 @@ void FixMPMPore::init_physics(MPMPlan &plan)
     steps.add(mine.nodes.value, mine.nodes.rate);
   }
   warn_of_contact();
+  is_implicit = !wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();
+  if (is_implicit) init_implicit();
+}
+
+/** Implicit steps solve for the pressure of nodes in equations that are linear in it. */
+void FixMPMPore::init_implicit() const
+{
+  const auto refuse = [&](bool broken, const char *what, const char *remedy) {
+    if (broken)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/pore {} cannot be used with fix mpm/implicit: {}", what, remedy);
+  };
+  refuse(formulation == U_V_P, "formulation u-v-p",
+         "slow flow has no inertia of its own, use formulation u-p, or explicit steps");
+  refuse(sets_relax, "relax", "it is of the waves of explicit steps, remove it");
+  refuse(sets_stages, "stages", "the flow of an implicit step has none, remove it");
+  for (const auto &soil : soils) {
+    refuse(soil.retention.can_dry(), "retention",
+           "use explicit steps, or leave it out where pores stay full");
+    refuse(!soil.is_linear(), "forchheimer", "use explicit steps, or leave it out for slow flow");
+  }
 }
 
 /** The mass that moves by itself must be less than all, and nodes have their accelerations. */
@@ -462,9 +486,14 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("inertia of pore water", [this]() {
       take_off();
     });
-  if (place == MPMPlan::AFTER_SOLVE)
+  if (place == MPMPlan::AFTER_SOLVE && !is_implicit)
     plan.together("flow of pore water", [this]() {
       flow();
+    });
+  // fix mpm/implicit has left the velocities of the step to nodes by then
+  if (place == MPMPlan::BEFORE_STRAIN && is_implicit)
+    plan.together("flow of pore water", [this]() {
+      take_solution();
     });
 }
 
@@ -624,6 +653,18 @@ void FixMPMPore::flow()
   });
   for (auto *field : wet) field->end_step(pressure);
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
+  dt_last = dt;
+  flows_known = false;
+}
+
+/** The end of an implicit step, whose pressures have been found with the motion. */
+void FixMPMPore::take_solution()
+{
+  const double dt = fields[0]->field.step_dt();
+  std::fill(present.begin(), present.end(), 0.0);
+  for (auto *field : wet) field->take_solution(present);
+  for (auto *field : wet) field->end_step(pressure);
+  for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k] = dt * present[k];
   dt_last = dt;
   flows_known = false;
 }

@@ -79,6 +79,11 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
     if (of(field).has_water()) of(field).surface.extend_topology();
   }
   void topology_changed(MPMField &) override;
+  bool joins_motion() const override { return true; }
+  MPMNodePressure *node_pressure(const MPMField &field) override
+  {
+    return of(field).has_water() ? &of(field) : nullptr;
+  }
   double stable_dt(const MPMField &, tagint &tag) const override;
   double wave_speed(const MPMField &field, int i, double c) const override
   {
@@ -135,10 +140,14 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   double conducted = 0.0, exchanged = 0.0;
   bool rates_known = false;
 
+  bool is_implicit = false;        // the pressure is solved for with the motion
+  bool sets_relax, sets_stages;    // keywords that were given
+
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
   void warn_of_contact() const;
   void init_motion(MPMField &);
+  void init_implicit() const;
   bool can_dry() const;
   void set_initial_pressure();
   void weigh_points();
@@ -148,6 +157,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void find_greatest_rates();
   void know_rates();
   void flow();
+  void take_solution();
 };
 
 }    // namespace LAMMPS_NS

@@ -10,7 +10,9 @@
 
 #include "force.h"
 #include "mpm_field.h"
+#include "mpm_implicit_pressure.h"
 #include "mpm_node_action.h"
+#include "mpm_physics.h"
 #include "mpm_plan.h"
 
 #include <Eigen/Eigenvalues>
@@ -46,9 +48,15 @@ MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions 
         field.grid, ranks, width, stencil_order(field.options.shape), 0, WHOLE[width]);
 }
 
+MPMImplicit::~MPMImplicit() = default;
+
 void MPMImplicit::init()
 {
   tangent.init();
+  joint.reset();
+  for (auto *physics : field.plan->physics)
+    if (auto *const pressure = physics->node_pressure(field))
+      joint = std::make_unique<Joint>(*this, *pressure);
 }
 
 /* ----------------------------------------------------------------------
@@ -251,6 +259,7 @@ const double *MPMImplicit::part_of(const std::vector<double> &u)
 bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
 {
   double carried, all;
+  if (joint) joint->set_pressure();
   if (!tangent.forces(part_of(u), part * dt, inner.data(), carried)) return false;
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width], pull = inertia * m * (u[k] - from[k]);
@@ -261,9 +270,10 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
   project_forces(free.data());
   now.unbalanced = sum_of_sizes(free);
   MPI_Allreduce(&carried, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+  if (joint) now.water = joint->find_residual(u, all);
   size = all + sum_of_sizes(outer) + sum_of_sizes(change);
   now.ratio = now.unbalanced == 0.0 ? 0.0 : now.unbalanced / size;
-  return std::isfinite(now.unbalanced);
+  return std::isfinite(now.unbalanced) && std::isfinite(now.water);
 }
 
 /* ----------------------------------------------------------------------
@@ -353,13 +363,13 @@ void MPMImplicit::prepare_levels()
 }
 
 /** The same for tangents that are not symmetric. GMRES with restarts can come to where it gains nothing any more. */
-SolveReport MPMImplicit::solve_general(const SolveGoal &goal)
+SolveReport MPMImplicit::solve_general(const double *b, double *x, const SolveGoal &goal)
 {
   SolveReport solved;
   for (int done = 0; done < goal.most_iterations;) {
     SolveGoal turn = goal;
     turn.most_iterations = std::min(TURN, goal.most_iterations - done);
-    solved = general.solve(*this, free.data(), change.data(), turn);
+    solved = general.solve(*this, b, x, turn);
     solved.iterations = done += solved.iterations;
     if (solved.outcome != SolveReport::TOO_MANY) break;
     if (solved.residuals.back() > ENOUGH * solved.residuals[0]) break;
@@ -367,15 +377,14 @@ SolveReport MPMImplicit::solve_general(const SolveGoal &goal)
   return solved;
 }
 
-/** The correction in change by the forces in free. Levels take longer to make than to use: those of the first tangents of a step
+/** The correction x by the forces b, without a change of the pressure. Levels take longer to make than to use: those of the first tangents of a step
  *  serve all of its iterations as long as they do well. Nothing outlives the step, as a run that goes on from a restart file
  *  must take the same way. */
-SolveReport MPMImplicit::solve(const SolveGoal &goal)
+SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal)
 {
   const auto attempt = [&]() {
-    std::fill(change.begin(), change.end(), 0.0);
-    return now.asymmetry <= SYMMETRIC ? solver.solve(*this, free.data(), change.data(), goal)
-                                      : solve_general(goal);
+    std::fill_n(x, nreals(), 0.0);
+    return now.asymmetry <= SYMMETRIC ? solver.solve(*this, b, x, goal) : solve_general(b, x, goal);
   };
   const auto find_blocks = [&]() {
     tangent.diagonal(blocks);
@@ -421,12 +430,16 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     now.residuals.push_back(now.unbalanced);
     const double enough = std::max(
         {options.tolerance * size, options.absolute * lmp->force->ftm2v, ROUND_OFF * stiffness});
-    if (now.unbalanced <= enough && !wall_moves) { return CONVERGED; }
+    enough_force = enough;
+    // sizes of what is left by the larger ones of forces and volumes, in parts of what may be left
+    const double left = joint ? joint->excess() * enough : now.unbalanced;
+    if (left <= enough && !wall_moves) { return CONVERGED; }
     if (now.iterations - before == most_iterations) {
       now.failure = "it did not converge";
       return FAILED;
     }
-    if (now.unbalanced > LOST * now.residuals[0] && !wall_moves && now.residuals[0] > 0.0) {
+    if (!joint && now.unbalanced > LOST * now.residuals[0] && !wall_moves &&
+        now.residuals[0] > 0.0) {
       now.failure = "it diverges";
       return FAILED;
     }
@@ -435,19 +448,22 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     // solutions that are more accurate than the tangent is worth
 
     if (last > 0.0) {
-      const double share = now.unbalanced / last, next = 0.9 * share * share,
+      const double share = left / last, next = 0.9 * share * share,
                    safe = 0.9 * accuracy * accuracy;
       accuracy = std::min(options.least_accuracy, safe > 0.1 ? std::max(next, safe) : next);
     }
     accuracy = std::max(accuracy, MOST_ACCURATE);
-    last = now.unbalanced;
+    last = left;
 
     stiffness = tangent.linearize(part_of(u), part * dt);
     now.asymmetry = tangent.asymmetry();
     // at first, walls bring what they hold where it has to be, and all the rest goes with that
 
     if (wall_moves) {
-      tangent.change_of_forces(held.data(), change.data());
+      if (joint)
+        joint->move_walls(held, change.data());
+      else
+        tangent.change_of_forces(held.data(), change.data());
       for (int64_t k = 0; k < nreals(); k++)
         free[k] = mass[k / width] > 0.0
             ? residual[k] + change[k] - inertia * mass[k / width] * held[k]
@@ -456,10 +472,10 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     }
     SolveGoal goal;
     goal.relative = accuracy;
-    if (now.unbalanced > 0.0) goal.relative = std::max(accuracy, 0.1 * enough / now.unbalanced);
+    if (left > 0.0) goal.relative = std::max(accuracy, 0.1 * enough / left);
     goal.relative = std::min(goal.relative, options.least_accuracy);
     goal.most_iterations = (int) options.most_linear;
-    const auto solved = solve(goal);
+    const auto solved = joint ? joint->solve(goal) : solve(free.data(), change.data(), goal);
     std::vector<double> &du = change;
     now.linear += solved.iterations;
     now.iterations++;
@@ -480,11 +496,12 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     if (wall_moves) {
       wall_moves = false;
       for (int64_t k = 0; k < nreals(); k++) u[k] += held[k] + du[k];
+      if (joint) joint->move(1.0);
       if (!find_residual(u, size)) {
         now.failure = "points are inside out when walls have moved";
         return FAILED;
       }
-    } else if (!search(u, slope, size)) {
+    } else if (!(joint ? search_jointly(u, size) : search(u, slope, size))) {
       return FAILED;
     }
   }
@@ -502,11 +519,13 @@ void MPMImplicit::approach(std::vector<double> &u)
   const std::vector<double> whole_outer = outer, whole_way = held;
   std::vector<double> from_here = u, first;
   double part = 1.0, size;
+  if (joint) joint->keep();
   while (true) {
     const double aim = std::min(1.0, now.reached + part);
     outer = whole_outer;
     if (aim < 1.0)
       for (int64_t k = 0; k < nreals(); k++) outer[k] -= (1.0 - aim) * first[k];
+    if (joint && !first.empty()) joint->set_part(aim);
     for (int64_t k = 0; k < nreals(); k++) held[k] = (aim - now.reached) * whole_way[k];
     const int most = (int) options.most_iterations;
     const Outcome outcome = newton(u, first.empty() ? most : std::min(most, IN_A_PART));
@@ -517,16 +536,19 @@ void MPMImplicit::approach(std::vector<double> &u)
       now.converged = aim == 1.0;
       if (now.converged) return;
       from_here = u;
+      if (joint) joint->keep();
       part *= 2.0;
       continue;
     }
     part = 0.5 * (aim - now.reached);
     if (outcome == HOPELESS || part * options.most_parts < 1.0) return;
     u = from_here;
+    if (joint) joint->go_back();
     if (first.empty()) {
       outer = whole_outer;
       find_residual(u, size);
       first = residual;
+      if (joint) joint->set_first();
     }
   }
 }
@@ -540,6 +562,7 @@ double MPMImplicit::step(double step_dt)
   by_levels = false;
   take_nodes();
   find_constraints();
+  if (joint) joint->begin_step();
   tangent.external_forces(outer.data());
   if (!now.failure.empty()) return 0.0;
 
@@ -570,6 +593,7 @@ double MPMImplicit::step(double step_dt)
     }
   }
   approach(u);
+  if (joint) joint->end_step();
   if (now.converged) find_loads(u);
   return give_back(u);
 }
@@ -675,7 +699,7 @@ void MPMImplicit::account()
 double MPMImplicit::memory_usage() const
 {
   double bytes = tangent.memory_usage() + solver.memory_usage() + general.memory_usage() +
-      (multigrid ? multigrid->memory_usage() : 0.0);
+      (multigrid ? multigrid->memory_usage() : 0.0) + (joint ? joint->memory_usage() : 0.0);
   for (const auto *list : {&mass,         &before,     &explicit_velocity,
                            &outer,        &inner,      &from,
                            &wall,         &held,       &start,

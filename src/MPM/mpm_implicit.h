@@ -23,6 +23,7 @@
 
 namespace LAMMPS_NS {
 class MPMField;
+class MPMNodePressure;
 
 /** How a field is stepped. */
 struct MPMImplicitOptions {
@@ -54,7 +55,9 @@ struct MPMImplicitOptions {
    where c, u*, and s are those of the method of time integration (c = 0: statics; s = 1, or 1/2 in the mid-point rule), f_int(u) is that of MPMTangent, and v -> P v
    + w is what all node actions make of velocities. Walls do no work on what P leaves free, so that with the right side
    P^T r = 0 is to be solved for the residual r without them. Newton's method, whose steps are solved for by conjugate
-   gradients. Vectors are [node][dim]; forces are in units of mass times acceleration. */
+   gradients. Vectors are [node][dim]; forces are in units of mass times acceleration.
+
+   Where there is a pressure of nodes (MPMNodePressure), it is found with u by the same iterations (mpm_implicit_pressure.cpp). */
 class MPMImplicit : private MPMNodeSystem {
  public:
   /** What became of a step, and of all steps so far. */
@@ -66,12 +69,14 @@ class MPMImplicit : private MPMNodeSystem {
     double reached = 0.0;       ///< share of the step
     double unbalanced = 0.0;    ///< sum of forces that are left [mass acceleration]
     double ratio = 0.0;         ///< to all forces
+    double water = 0.0;         ///< of what a pressure of nodes leaves of its equations, the same
     double asymmetry = 0.0;     ///< of the tangents
     std::vector<double> residuals;    ///< sums of forces before each iteration of the last part
     std::string failure;
   };
 
   MPMImplicit(class LAMMPS *, MPMField &, const MPMImplicitOptions &);
+  ~MPMImplicit() override;
 
   /** Start of a run. */
   void init();
@@ -116,6 +121,13 @@ class MPMImplicit : private MPMNodeSystem {
       more_loads;    // that follow points: at the start, and what is new at the end
   std::vector<double> residual, free, change, trial, blocks, room, allowed;
 
+  // with a pressure of nodes
+
+  class Joint;
+  std::unique_ptr<Joint> joint;    // null: there is none
+  double enough_force = 0.0;       // what may be left, of the last residual
+  bool search_jointly(std::vector<double> &u, double &size);
+
   int64_t nreals() const { return (int64_t) mass.size() * width; }
   void take_nodes();
   void find_constraints();
@@ -127,8 +139,8 @@ class MPMImplicit : private MPMNodeSystem {
   bool search(std::vector<double> &u, double slope, double &size);
   void prepare_blocks();
   void prepare_levels();
-  MPM_NS::SolveReport solve_general(const MPM_NS::SolveGoal &);
-  MPM_NS::SolveReport solve(const MPM_NS::SolveGoal &);
+  MPM_NS::SolveReport solve_general(const double *b, double *x, const MPM_NS::SolveGoal &);
+  MPM_NS::SolveReport solve(const double *b, double *x, const MPM_NS::SolveGoal &);
   enum Outcome { CONVERGED, FAILED, HOPELESS };    // the latter: parts of the step would fail, too
   Outcome newton(std::vector<double> &u, int most_iterations);
   void approach(std::vector<double> &u);

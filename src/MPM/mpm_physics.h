@@ -22,6 +22,7 @@
 
 namespace LAMMPS_NS {
 class MPMField;
+class MPMNodePressure;
 
 /** Physics that joins the step: heat, pore water, ... Fixes that derive from this class are found by fix
  *  mpm at the start of each run. examples/own-physics has one, line by line. */
@@ -68,6 +69,10 @@ class MPMPhysics {
   /** Is all that it does to points and forces there before the momentum equation of a step whose stress is solved for, as what it
    *  reads of the motion is that of steps before? */
   virtual bool precedes_motion() const { return false; }
+  /** The pressure of nodes that an implicit step solves for together with the motion; null: there is none in this field. If
+   *  joins_motion(), which is known when fixes are defined, the physics has its part in such steps by this alone. */
+  virtual bool joins_motion() const { return false; }
+  virtual MPMNodePressure *node_pressure(const MPMField &) { return nullptr; }
 
   /** Loads that depend on the deformation of a point, for a solver that looks for the state of the end of a step. Has any of the
    *  points [first,last) one? If so, for n points from first on with the deformation gradients F [n][9], row-major: add what

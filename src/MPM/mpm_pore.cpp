@@ -54,6 +54,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -534,12 +535,33 @@ void MPMPore::find_rates(std::vector<double> &inflow)
     }
     inflow[MPMPoreSurface::ENERGY] += power[0] + power[1] + power[2];
   };
+  std::function<void()> more;
   if (surface.any())
-    nodes.find_rates(flow, [&] {
+    more = [&] {
       surface.add_rates(nodes, inflow);
-    });
-  else
-    nodes.find_rates(flow);
+    };
+  if (!solve) {
+    nodes.find_rates(flow, more);
+    return;
+  }
+  solve->carried = 0.0;
+  const double weight_of_water = sqrt(MPM_NS::dot(along, along)) / field.lattice.h;
+  nodes.find_rates(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+        double gradient[BATCH][3];
+        for (int p = 0; p < n; p++)
+          for (int d = 0; d < 3; d++) gradient[p][d] = d < dim ? q[p][d] : 0.0;
+        flow(run, first, n, q);
+        for (int p = 0; p < n; p++) {
+          const int i = first + p;
+          solve->carried += fabs(q[p][3]) +
+              conductance[i] *
+                  (sqrt(MPM_NS::dot(gradient[p], gradient[p])) / field.lattice.h + weight_of_water);
+          for (int d = 0; d < dim; d++)
+            q[p][d] -= solve->smoothing[i] / dt * (gradient[p][d] - solve->gradient[3 * i + d]);
+        }
+      },
+      more);
 }
 
 /* ----------------------------------------------------------------------
@@ -565,7 +587,7 @@ void MPMPore::end_step(const MPMRows &state)
 {
   const int dim = field.lattice.dim;
   const double dt = field.step_dt();
-  const double keep = exp(-rate_of_lag() * dt);
+  const double keep = solve ? solve->keep : exp(-rate_of_lag() * dt);
   nodes.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q, const double *) {
         if (!suction) {
@@ -576,6 +598,7 @@ void MPMPore::end_step(const MPMRows &state)
           for (int p = 0; p < n; p++, mine += 1 + dim) {
             const double now = q[p][3] + keep * (mine[0] - m[p]);
             mass[p] += water.density * (C[p] * (now - mine[0]) - out[p] * dt);
+            if (solve) mass[p] += water.density * C[p] * solve->more[first + p];
             mine[0] = now;
             mine[1] = q[p][0];
             mine[2] = q[p][1];
@@ -650,6 +673,10 @@ double MPMPore::memory_usage() const
   if (layers) bytes += layers->memory_usage();
   for (const auto *list : {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic,
                            &volumes, &linear_mean, &quadratic_mean, &of_flow})
+    bytes += list->capacity() * sizeof(double);
+  if (!solve) return bytes;
+  for (const auto *list : {&solve->start, &solve->capacity, &solve->biot, &solve->gradient,
+                           &solve->smoothing, &solve->more})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

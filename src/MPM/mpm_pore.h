@@ -10,6 +10,7 @@
 #define LMP_MPM_PORE_H
 
 #include "mpm_layer_mean.h"
+#include "mpm_node_pressure.h"
 #include "mpm_node_scalar.h"
 #include "mpm_pore_motion.h"
 #include "mpm_pore_soil.h"
@@ -29,7 +30,7 @@ class FixMPMMaterial;
  *
  *  Points keep rows of 1 + dim reals: the pressure (above that of the air, compression is positive) and
  *  its gradient. */
-class MPMPore : protected Pointers {
+class MPMPore : public MPMNodePressure, protected Pointers {
  public:
   MPMField &field;
   MPMNodeScalar nodes;
@@ -70,6 +71,20 @@ class MPMPore : protected Pointers {
   void find_rates(std::vector<double> &inflow);
   /** Pressures of points at the end of the step, and the mass of the water that they got. */
   void end_step(const MPMRows &state);
+
+  /** Implicit steps of soil and water together (mpm_pore_implicit.cpp): in the place of stages of find_rates(), when the velocities that
+   *  were solved for are those of nodes. Adds the volumes of water that come in for each time, as find_rates(). Collective. */
+  void take_solution(std::vector<double> &inflow);
+  void begin_solve(double dt, bool inertial) override;
+  const std::vector<double> &values_at_start() const override { return solve->start; }
+  const std::vector<double> &capacities() const override { return solve->capacity; }
+  void to_points(const std::vector<double> &p, double *of_points) override;
+  double find_residual(const std::vector<double> &p, const double *dV, double *r) override;
+  double response() const override;
+  void find_changes(const double *p, const double *dV, double *y) override;
+  void each_term(const Term &) override;
+  void find_masses(const std::vector<double> &moduli, std::vector<double> &mass) override;
+  void end_solve(const std::vector<double> &p) override { nodes.value = p; }
 
   /** Bounds of the eigenvalues of minus the rates [1/time] on this rank: by flow between points, and
    *  through the surface, in this step. */
@@ -117,6 +132,21 @@ class MPMPore : protected Pointers {
       quadratic_mean;             // [n] with layers: resistances across interfaces
   std::vector<double> of_flow;    // [node][8] next to the surface
 
+  // of an implicit step
+
+  struct Solve {
+    double dt;
+    double keep;    // share of what nodes do not see of points that is left after the step
+    std::vector<double> start, capacity;    // [node], also of images
+    std::vector<double> biot;               // [n]
+    std::vector<double> gradient;           // [n][3] of the pressure at the start
+    std::vector<double> smoothing;    // [n] volume times what keeps pressures from alternating
+    std::vector<double> more;    // [n] pressure that water left over from the solution would have
+    double carried;              // by flow, for each time
+  };
+  std::unique_ptr<Solve> solve;    // null: explicit steps
+
+  void conduct(int i, double *q) const;
   void init_layers();
   void find_layers(const MPMRows &state, const double *formula);
   void points_to_nodes(const MPMRows &state, const double *formula);

@@ -489,9 +489,9 @@ void MPMPoreSurface::take_flow(const std::vector<double> &of_nodes)
   }
 }
 
-void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflow) const
+void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflow)
 {
-  for (const auto &place : places) {
+  for (auto &place : places) {
     const auto &condition = conditions[place.part];
     double Q = place.area * condition.now;
     const double p = at_surface(scalar, place);
@@ -500,14 +500,27 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
       for (int k = place.first; k < place.first + place.n; k++)
         inside += weight[k] * scalar.value[node[k]];
       const double drop = place.outside - inside;
-      Q = flow_is_given
-          ? place.inflow + LEAK * place.out * (place.outside_at - p)
-          : std::min((drop > 0.0 ? place.in : place.out) * drop, place.area * place.most);
+      const double driven = (drop > 0.0 ? place.in : place.out) * drop,
+                   most = place.area * place.most;
+      Q = flow_is_given ? place.inflow + LEAK * place.out * (place.outside_at - p)
+                        : std::min(driven, most);
+      place.slope = driven > most ? 0.0 : drop > 0.0 ? place.in : place.out;
     }
     for (int k = place.first_at; k < place.first_at + place.n_at; k++)
       scalar.rate[node[k]] += weight[k] * Q;
     inflow[place.part] += Q;
     inflow[ENERGY] += Q * p;
+  }
+}
+
+void MPMPoreSurface::add_changes(MPMNodeScalar &scalar) const
+{
+  for (const auto &place : places) {
+    double inside = 0.0;
+    for (int k = place.first; k < place.first + place.n; k++)
+      inside += weight[k] * scalar.value[node[k]];
+    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+      scalar.rate[node[k]] -= weight[k] * place.slope * inside;
   }
 }
 

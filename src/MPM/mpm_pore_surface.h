@@ -81,7 +81,17 @@ class MPMPoreSurface : protected Pointers {
   bool is_near(int slot) const;
   /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in
    *  for each time, with the energy that this brings. */
-  void add_rates(MPMNodeScalar &, std::vector<double> &inflow) const;
+  void add_rates(MPMNodeScalar &, std::vector<double> &inflow);
+  /** Values of nodes are small changes around those of the last add_rates(): the changes of these rates. Not for water with inertia. */
+  void add_changes(MPMNodeScalar &) const;
+  /** Terms of minus these times dt, as symmetric ones: n nodes with numbers by which their values make one, and what multiplies that. */
+  template <class Use> void each_term(double dt, const Use &use) const
+  {
+    for (const auto &place : places) {
+      const double stiffness = dt * place.slope;
+      if (stiffness > 0.0) use(place.n, &node[place.first], 1, &weight[place.first], &stiffness);
+    }
+  }
 
   double memory_usage() const;
 
@@ -97,6 +107,7 @@ class MPMPoreSurface : protected Pointers {
     double outside_at;          // pressure outside at the surface itself
     double inflow;              // of water with inertia, volume for each time
     double most;                // volume of water that can come in for each area and time
+    double slope;               // of what comes in, by minus the pressure
   };
   MPMField &field;
   const Conditions &conditions;

@@ -219,10 +219,8 @@ void MPMTangent::external_forces(double *force)
   no_force.assign(3 * nmax, 0.0);
   if (nH > nL) hoop_stress.assign(nmax, 0.0);
   find_loads();
-  if (averages()) {
-    mean_stress.assign(nmax, 0.0);
-    added.assign(nmax, 0.0);
-  }
+  if (averages()) mean_stress.assign(nmax, 0.0);
+  if (adds()) added.assign(nmax, 0.0);
   const double *const f = field.rows().f;
   scatter(f, force);
 }
@@ -238,6 +236,7 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
       double square = 0.0;
       for (int k = 0; k < nH; k++) square += s[k] * s[k];
       sum += atom->vfrac[first + p] * std::sqrt(square);
+      if (pressure) sum += atom->vfrac[first + p] * std::fabs(pressure[first + p]);
     }
     if (follows(first, n)) {
       double more[10 * BATCH + 8];
@@ -254,6 +253,11 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
   MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) return false;
   if (averages()) add_averages(u);
+  if (pressure) {
+    for (const auto &run : field.map->runs)
+      for (bigint i = run.first; i < run.last; i++) added[i] = -pressure[i];
+    add_to_stress(u);
+  }
   scatter(loaded ? load_forces.data() : no_force.data(), force);
   return true;
 }
@@ -277,6 +281,12 @@ void MPMTangent::add_averages(const double *u)
   added = mean_stress;
   field.locking->average(added);
   for (std::size_t i = 0; i < added.size(); i++) added[i] -= mean_stress[i];
+  add_to_stress(u);
+}
+
+/** P <- P + c J G */
+void MPMTangent::add_to_stress(const double *u)
+{
   gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
     double F[9 * BATCH], g[10];
     deform(first, n, H);
@@ -292,7 +302,7 @@ void MPMTangent::add_averages(const double *u)
   });
 }
 
-void MPMTangent::differentiate_averages(int first, int n, const double *H)
+void MPMTangent::differentiate_added(int first, int n, const double *H)
 {
   double F[9 * BATCH], low[10], high[10];
   deform(first, n, H);
@@ -437,10 +447,8 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
 double MPMTangent::linearize(const double *u, double dt)
 {
   tangents.resize((std::size_t) atom->nmax * nH * nH);
-  if (averages()) {
-    mean_tangents.resize((std::size_t) atom->nmax * nH);
-    volume_gradients.resize((std::size_t) atom->nmax * nH);
-  }
+  if (averages()) mean_tangents.resize((std::size_t) atom->nmax * nH);
+  if (adds()) volume_gradients.resize((std::size_t) atom->nmax * nH);
   double sum = 0.0, all;
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
     if (run.material->material->has_tangent())
@@ -453,7 +461,7 @@ double MPMTangent::linearize(const double *u, double dt)
       for (int k = 0; k < nH * nH; k++) most = std::max(most, std::fabs(K[k]));
       sum += atom->vfrac[first + p] * most;
     }
-    if (averages()) differentiate_averages(first, n, H);
+    if (adds()) differentiate_added(first, n, H);
     if (follows(first, n)) differentiate_loads(first, n, H);
   });
   sum *= field.step_data().stress_scale / field.lattice.h;
@@ -472,7 +480,7 @@ template <int N> static void multiply(int n, const double *K, const double *H, d
   }
 }
 
-void MPMTangent::change_of_forces(const double *du, double *dforce)
+void MPMTangent::change_of_forces(const double *du, double *dforce, const double *dp, double *dV)
 {
   gather(du, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
     const double *const K = &tangents[(bigint) first * nH * nH];
@@ -488,6 +496,14 @@ void MPMTangent::change_of_forces(const double *du, double *dforce)
         std::copy_n(sum, nL, stress + nL * p);
         hoop_stress[first + p] = sum[nL];
       }
+    for (int p = 0; p < n && dp; p++) {
+      const bigint i = first + p;
+      const double *const g = &volume_gradients[nH * i], *const h = H + nH * p;
+      double change = 0.0;
+      for (int k = 0; k < nH; k++) change += g[k] * h[k];
+      dV[i] = atom->vfrac[i] * change;
+      for (int k = 0; k < nL; k++) P[nL * i + k] -= dp[i] * g[k];
+    }
     for (int p = 0; p < n && (averages() || loaded); p++) {
       const double *const h = H + nH * p;
       if (averages()) {
@@ -505,6 +521,25 @@ void MPMTangent::change_of_forces(const double *du, double *dforce)
   });
   if (averages()) average_changes();
   scatter(loaded ? load_forces.data() : no_force.data(), dforce);
+}
+
+void MPMTangent::volume_changes(const double *u, double *dV)
+{
+  gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
+    for (int p = 0; p < n; p++)
+      dV[first + p] = field.points->jacobian(first + p) * atom->vfrac[first + p] *
+          field.frame->volume_change(first + p, H + nH * p, 1.0);
+  });
+}
+
+void MPMTangent::find_moduli(std::vector<double> &moduli) const
+{
+  moduli.assign(atom->nmax, 0.0);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double *const K = &tangents[i * nH * nH];
+      for (int d = 0; d < dim; d++) moduli[i] += K[(nH + 1) * (dim + 1) * d] / dim;
+    }
 }
 
 /* ---------------------------------------------------------------------- */

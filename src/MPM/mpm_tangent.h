@@ -52,7 +52,19 @@ class MPMTangent : protected Pointers {
    *  points, with the largest entry of each: a strain e everywhere makes forces of e times that, which cancel. Collective. */
   double linearize(const double *u, double dt);
   /** Change of the forces for a small change of that motion. Collective. */
-  void change_of_forces(const double *du, double *dforce);
+  void change_of_forces(const double *du, double *dforce)
+  {
+    change_of_forces(du, dforce, nullptr, nullptr);
+  }
+  /** The same with the changes dp [n] of a pressure that points have besides their stress, and the changes dV [n] of their volumes. */
+  void change_of_forces(const double *du, double *dforce, const double *dp, double *dV);
+  /** A pressure that points have in their forces besides their stress, [n], compression positive; null: none. As a Cauchy stress, it
+   *  acts on the points as they are after the motion. To be set before forces() and linearize(). */
+  void set_pressure(const double *of_points) { pressure = of_points; }
+  /** Changes of the volumes of points by the motion u, [n]. As what has such a pressure, in the plane and in space. Collective. */
+  void volume_changes(const double *u, double *dV);
+  /** [n] Moduli of points that cannot widen, by their tangents, the mean of all axes [pressure]. */
+  void find_moduli(std::vector<double> &moduli) const;
   /** Minus the same, of each node by its own motion alone: [node][dim][dim]. Collective. */
   void diagonal(std::vector<double> &blocks);
   /** Forces of loads that follow the deformation after the motion u, less those that atom->f has. Collective. */
@@ -92,13 +104,16 @@ class MPMTangent : protected Pointers {
   void scatter(const double *forces_of_points, double *force);
   bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
               MPM_NS::Tangent *tangent = nullptr);
-  // with averages of the pressure: mean stress of points and, after linearize(), its derivatives by H [point][nH]; what averages
-  // add to the mean stress; J G [point][nH] with G = F^-T of the places
+  // with averages of the pressure: mean stress of points and, after linearize(), its derivatives by H [point][nH]; what averages, or a
+  // pressure besides the stress, add to the mean stress; J G [point][nH] with G = F^-T of the places
   std::vector<double> mean_stress, mean_tangents, added, added_changes, volume_gradients;
+  const double *pressure = nullptr;
   bool averages() const;
+  bool adds() const { return averages() || pressure; }
   void find_volume_gradient(const double *F, double *g) const;
   void add_averages(const double *u);
-  void differentiate_averages(int first, int n, const double *H);
+  void add_to_stress(const double *u);
+  void differentiate_added(int first, int n, const double *H);
   void average_changes();
 
   void deform(int first, int n, const double *H);

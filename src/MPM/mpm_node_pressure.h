@@ -1,0 +1,58 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_NODE_PRESSURE_H
+#define LMP_MPM_NODE_PRESSURE_H
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** A pressure of nodes, such as that of pore water, which an implicit step finds together with the motion: forces have its value at
+ *  the end of the step, and what fills the volume of points is bound to their volume then. With the values p [node],
+
+      C (p - p_start) = - sum_p a_p dV_p N_ip + dt (what flows to the node with p)
+
+ *  where dV is the change of the volume of a point in the step, and a the share of its pressure that it has in its forces. All terms are
+ *  volumes. Vectors [node] are the same on all ranks that have a node, and at periodic images. */
+class MPMNodePressure {
+ public:
+  /** What adds to a matrix of these equations, see MPMDiffusion::Term. */
+  using Term = std::function<void(int n, const int64_t *nodes, int ngrad, const double *gradient,
+                                  const double *stiffness)>;
+
+  /** An implicit step, with the places of points and the values p_start of its start. inertial: the motion has inertia. Collective. */
+  virtual void begin_solve(double dt, bool inertial) = 0;
+  virtual const std::vector<double> &values_at_start() const = 0;
+  /** [node] C; nodes without it have no pressure. */
+  virtual const std::vector<double> &capacities() const = 0;
+  /** [n] a_p times the value at each point; 0 for points without a part. Collective. */
+  virtual void to_points(const std::vector<double> &p, double *of_points) = 0;
+  /** r: right minus left side with the changes of volume dV [n]. Returns the sum of all volumes in it on this rank, before they cancel.
+   *  Collective. */
+  virtual double find_residual(const std::vector<double> &p, const double *dV, double *r) = 0;
+  /** What a unit of pressure of all nodes, at random, would be in the residual, of this rank. */
+  virtual double response() const = 0;
+  /** y: left minus right side of small changes of the pressure, and, unless null, of volumes, around the values of the last
+   *  residual. Collective. */
+  virtual void find_changes(const double *p, const double *dV, double *y) = 0;
+  /** For a preconditioner: terms of the matrix of find_changes() without C, as symmetric ones, and masses [node] that stand for C and for
+   *  what the soil, with the moduli [n] (pressure) of its points, takes up. Collective. */
+  virtual void each_term(const Term &) = 0;
+  virtual void find_masses(const std::vector<double> &moduli, std::vector<double> &mass) = 0;
+  /** The values of the end of the step. */
+  virtual void end_solve(const std::vector<double> &p) = 0;
+
+ protected:
+  ~MPMNodePressure() = default;    // owned and deleted as something else
+};
+
+}    // namespace LAMMPS_NS
+#endif
