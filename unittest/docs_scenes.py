@@ -196,6 +196,11 @@ def scene_for(lines):
     if mixture:
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
                        for k, name in enumerate(("soil", "water")))
+    if not makes_points and re.search(r"mpm/column|\bcolumn free\b", text):    # ground, and a column beside it
+        grid = "group soil type 1\ngroup column type 2\nfix grid soil mpm 0.01\nfix far column mpm 0.01\n"
+        before += ("region column block 0.07 0.08 0.02 0.05 0.02 0.05\ncreate_points 2 region column spacing 0.005\n"
+                   "group soil type 1\ngroup column type 2\nregion east plane 0.05 0 0 -1 0 0\n")
+        before += "" if "mpm/column" in text else "fix free all mpm/column far y\n"
     if heat_contact:
         before += "fix touch all mpm/contact %s\n" % " ".join(named)
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL

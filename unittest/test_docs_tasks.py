@@ -17,6 +17,7 @@ import docs_scenes
 import mpm_testing as mt
 
 sys.path.insert(0, os.path.join(mt.ROOT, "bench"))
+import absorbing_layers
 import scaling_model
 
 
@@ -285,6 +286,23 @@ def test_scaling():
         for value, theory in zip(times, parts.values()):
             assert abs(value - 1e3 * theory) < 0.006, (row, parts)
         assert abs(efficiency - 100 * scaling_model.efficiency(points, 22)) < 0.6, row
+
+
+def test_absorbing_layers():
+    # dashpots: pressure and shear wave, and energy (benchmark S3)
+    for shear, angle, p, s, energy in ((False, 30, .01604, .00895, .0003), (False, 45, .01384, .07090, .0039),
+                                       (False, 60, .13397, .13397, .0359), (False, 80, .56165, .10486, .3455),
+                                       (True, 20, .02122, .08757, .0083), (True, 30, .13397, .13397, .0359)):
+        found = absorbing_layers.dashpots(shear, angle)
+        assert max(abs(found - (p, s, energy))) < 6e-5, (shear, angle, found)
+    page = mt.read(os.path.join(docs_scenes.PAGES, "fix_mpm_dashpot.rst"))
+    rows = re.findall(r"\* - (dashpots|damping|matched)\n     - (\d+)" + 8 * r"\n     - (\.\d+)", page)
+    assert len(rows) == 5
+    waves = [(False, angle) for angle in (0, 30, 45, 60, 70, 80)] + [(True, 20), (True, 30)]
+    for name, cells, *echoes in rows:
+        for (shear, angle), echo in zip(waves, echoes):
+            found = max(absorbing_layers.far_side(name, int(cells), shear, angle)[:2])
+            assert abs(found - float(echo)) < 6e-4, (name, cells, shear, angle, found)
 
 
 mt.main(globals())

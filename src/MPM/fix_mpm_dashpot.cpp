@@ -31,10 +31,15 @@
    The static support is a dead load with the stress at the start, which is put on the layers of points as that of fix mpm/traction. The
    stress of points next to a face is not quite what nodes bear there (0.3 % of the weight of 20 cells), and that would move the body with
    a constant velocity. What nodes next to the surface lack in the first step so as not to be accelerated is a part of the support, too, at the marks.
+
+   A free field. Where the far side is level ground that is shaken, too, it is a column (fix mpm/column), and v is the velocity relative to it,
+   at the same height, and t_0 changes by what the traction of its stress has changed since the start. Ground that
+   moves like the column feels nothing but the traction that it would have in the middle of level ground.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_dashpot.h"
 
+#include "fix_mpm_column.h"
 #include "math/matrix.h"
 #include "mpm_face.h"
 #include "mpm_field.h"
@@ -64,6 +69,8 @@ static constexpr double FASTEST = 20.0, FASTEST_MLS = 8.0;
 static constexpr int DEPTH =
     3;    // cells below the surface whose nodes count for what the support lacks
 
+static constexpr double UPRIGHT = 1.0e-3;    // slope of a surface at the side of a column
+
 /* ----------------------------------------------------------------------
    fix ID group mpm/dashpot region REG cp cs keyword values ...
 ------------------------------------------------------------------------- */
@@ -90,12 +97,18 @@ Options MPMDashpotOptions::declare(int dim)
         {number(relax, "tau", POSITIVE, "time",
                 "springs besides the dashpots, of stiffness rho c/tau for each area")})
       .standard("none");
+  o.add("column",
+        {text(column, "fix-ID",
+              "of a :doc:`fix mpm/column <fix_mpm_column>`: the far side moves like it")})
+      .standard("none, the far side is at rest");
   MPMFace::declare(o, spacing, area);
   o.refuse([=] {
     return OptionRules{{speed_s >= speed_p, "",
                         "has a speed of shear waves that is not below that of pressure waves"},
                        {dim == 2 && (incoming[2].value != 0.0 || !incoming[2].variable.empty()),
-                        "incoming", "must be along x and y in 2d: {incoming}"}};
+                        "incoming", "must be along x and y in 2d: {incoming}"},
+                       {has_incoming && !column.empty(), "column",
+                        "is the free field, whose waves come to its base: remove incoming here"}};
   });
   return o;
 }
@@ -110,7 +123,7 @@ FixMPMDashpot::FixMPMDashpot(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lm
   extscalar = extvector = 1;
   restart_global = 1;
   dynamic_group_allow = 0;
-  state.declare(rows, "mark", WIDTH);
+  state.declare(rows, "mark", column.empty() ? WIDTH : WIDTH_COLUMN);
   keep_arrays();
 }
 
@@ -130,12 +143,33 @@ void FixMPMDashpot::init()
                  id, style);
 }
 
+/** Its layers and rows must be those of the same step: it comes first. */
+void FixMPMDashpot::find_column()
+{
+  free_field = nullptr;
+  for (auto *ifix : modify->get_fix_list()) {
+    if (ifix == this) break;
+    if (column == ifix->id) free_field = dynamic_cast<FixMPMColumn *>(ifix);
+  }
+  if (!free_field)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/dashpot {}: there is no fix mpm/column with the ID {} before it: define it first",
+        id, column);
+}
+
 /** The nodes are those of this run. */
 void FixMPMDashpot::init_physics(MPMPlan &plan)
 {
   bodies.clear();
+  if (!column.empty()) find_column();
   for (auto *field : plan.fields) {
     const auto &options = field->options;
+    if (free_field)
+      refuse_field(
+          lmp, *this, *field,
+          {{options.total != free_field->ground().options.total, "this frame",
+            "points and column are not at the same height for long: use the same frame for both"}});
     refuse_field(lmp, *this, *field,
                  {{options.modified_edges, "edges modified", "use edges plain, the default"},
                   {options.has_fmpm(), "transfer fmpm",
@@ -174,20 +208,29 @@ void FixMPMDashpot::post_run()
   MPMFace::note_lost(lmp, "Fix mpm/dashpot " + std::string(id), here, known);
 }
 
+/** Of the stress sigma, xx yy zz xy xz yz, on a surface with the normal n. */
+static void traction(const double *sigma, const double *n, double t[3])
+{
+  t[0] = sigma[0] * n[0] + sigma[3] * n[1] + sigma[4] * n[2];
+  t[1] = sigma[3] * n[0] + sigma[1] * n[1] + sigma[5] * n[2];
+  t[2] = sigma[4] * n[0] + sigma[5] * n[1] + sigma[2] * n[2];
+}
+
 void FixMPMDashpot::define()
 {
   const auto *const points = MPMPoints::get(atom);
   double mine[2] = {0.0, 0.0}, all[2];    // area, points with a share
   double most = 0.0, most_of_all;         // stress that is held
+  double ends[3] = {1.0e300, 1.0e300, 0.0},
+         all_ends[3];    // lowest point; minus the highest one, and the steepest normal
   MPMFace face(lmp, domain->get_region_by_id(region), spacing);
-  for (const auto &body : bodies)
+  for (const auto &body : bodies) {
+    if (free_field && body.field == &free_field->ground()) continue;
     face.find(*body.field, groupbit, [&](int i, const MPMFace::Share &share) {
-      double *const row = rows[i], sigma[6];
+      double *const row = rows[i], sigma[6], held[3];
       const double *const n = share.normal;
       points->cauchy(i, sigma);
-      const double held[3] = {sigma[0] * n[0] + sigma[3] * n[1] + sigma[4] * n[2],
-                              sigma[3] * n[0] + sigma[1] * n[1] + sigma[5] * n[2],
-                              sigma[4] * n[0] + sigma[5] * n[1] + sigma[2] * n[2]};
+      traction(sigma, n, held);
       row[AREA] = share.covered;
       row[SHARE] = share.area;
       row[STRESS] = share.stress;
@@ -202,19 +245,69 @@ void FixMPMDashpot::define()
       }
       mine[0] += share.covered;
       mine[1] += 1.0;
+      if (!free_field) return;
+      const double at = body.field->frame->places()[i][free_field->axis];
+      ends[0] = std::min(ends[0], at);
+      ends[1] = std::min(ends[1], -at);
+      ends[2] = std::min(ends[2], -std::fabs(n[free_field->axis]));
+      double free[3];
+      column_traction(i, free);
+      for (int d = 0; d < 3; d++) row[REST + d] = support ? row[HELD + d] - free[d] : 0.0;
     });
+  }
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(&most, &most_of_all, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (free_field) {
+    MPI_Allreduce(ends, all_ends, 3, MPI_DOUBLE, MPI_MIN, world);
+    if (all[1] > 0.0) check_column(all_ends[0], -all_ends[1], -all_ends[2]);
+  }
   face.check("Fix mpm/dashpot " + std::string(id), igroup, area > 0.0);
   const double scale = area > 0.0 ? area / all[0] : 1.0;
   for (int i = 0; i < atom->nlocal; i++)
     for (const int k : {(int) AREA, (int) SHARE, (int) STRESS}) rows[i][k] *= scale;
-  supports = fresh = most_of_all > 0.0;
+  fresh = most_of_all > 0.0;
+  supports = fresh || free_field;
   defined = true;
   for (auto &body : bodies) body.field->map->valid = false;    // marks may need other blocks
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix mpm/dashpot {}: area {:.8g} of {:.0f} points\n", id, all[0] * scale,
                    all[1]);
+}
+
+/* ----------------------------------------------------------------------
+   the column at the far side
+------------------------------------------------------------------------- */
+
+/** lowest, highest: points of the surface; steepest: largest cosine between its normal and the column. */
+void FixMPMDashpot::check_column(double lowest, double highest, double steepest) const
+{
+  if (steepest > UPRIGHT)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/dashpot {}: the surface of region {} is not parallel to the column {}, which "
+        "stands along {}",
+        id, region, column, "xyz"[free_field->axis]);
+  const double margin = free_field->apart();
+  if (lowest < free_field->lowest() - margin || highest > free_field->highest() + margin)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/dashpot {}: points at the surface of region {} are between {:.6g} and {:.6g}, "
+        "but the column {} only between {:.6g} and {:.6g}: ground next to the surface must be "
+        "level, and as high as the column",
+        id, region, lowest, highest, column, free_field->lowest(), free_field->highest());
+}
+
+/** Of its stress, on the surface of the body at point i [force/area]. */
+void FixMPMDashpot::column_traction(int i, double t[3]) const
+{
+  const double *const n = rows[i] + NORMAL;
+  const auto *const field = std::find_if(bodies.begin(), bodies.end(), [i](const Body &body) {
+                              return body.field->is_point(i);
+                            })->field;
+  double s[6];
+  free_field->stress(field->frame->places()[i][free_field->axis], s);
+  traction(s, n, t);
+  for (int d = 0; d < 3; d++) t[d] = d < domain->dimension ? t[d] / force->nktv2p : 0.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -464,6 +557,16 @@ void FixMPMDashpot::push(Body &body, double dt)
         change[d] += w * (record[d] - record[4 + d]);
       }
     }
+    if (free_field) {    // relative to the column, which has the same laws
+      const int axis = free_field->axis;
+      double old[3], more[3];
+      free_field->motion(body.field->frame->places()[mark.point][axis] + row[WAY + axis], old,
+                         more);
+      for (int d = 0; d < dim; d++) {
+        begin[d] -= old[d];
+        change[d] -= more[d];
+      }
+    }
     for (int d = 0; d < dim; d++) {
       begin[d] -= 2.0 * arriving[d];
       if (relax > 0.0) begin[d] += row[MOTION + d] / relax;
@@ -526,6 +629,8 @@ void FixMPMDashpot::apply(Body &body, double dt)
   work += done;
   ledger.boundary += done * force->mvv2e;
   ledger.driven += done * force->mvv2e;
+  if (free_field) tell_watch(body, dt);
+  if (free_field) tell_watch(body, dt);
   if (relax > 0.0)
     for (const auto &mark : body.marks)
       for (int k = mark.first; k < mark.last; k++)
@@ -546,6 +651,38 @@ void FixMPMDashpot::act(double dt, Stage stage)
     push(body, dt);
     apply(body, dt);
   }
+  duration = dt;
+  if (free_field) tell_watch_of_points();
+}
+
+/* ----------------------------------------------------------------------
+   The energy watch takes forces on points times the velocities of these. Those here have a stress besides, whose work it does not know,
+   and with aflip velocities differ from layer to layer: what the watch is to have is the work on the surface. It takes half of
+   the work of forces at the velocities before, and half at those after a step
+------------------------------------------------------------------------- */
+
+void FixMPMDashpot::tell_watch(Body &body, double dt)
+{
+  Grid &grid = body.field->grid;
+  double power = 0.0;
+  for (const auto &mark : body.marks) {
+    const double *const row = rows[mark.point];
+    for (int k = mark.first; k < mark.last; k++) {
+      const double *const record = grid.record(body.nodes[k].number);
+      const double share = 0.5 * row[AREA] * body.nodes[k].weight;
+      for (int d = 0; d < grid.lattice.dim; d++)
+        power += share * row[HELD + d] * (record[d] + record[4 + d]);
+    }
+  }
+  body.field->ledger.driven += dt * power;
+}
+
+void FixMPMDashpot::tell_watch_of_points()
+{
+  double power = 0.0;
+  for (int i = 0; i < atom->nlocal; i++)
+    power += 0.5 * rows[i][SHARE] * dot(rows[i] + HELD, atom->v[i]);
+  bodies[0].field->ledger.driven -= duration * power;
 }
 
 /* ----------------------------------------------------------------------
@@ -562,9 +699,16 @@ void FixMPMDashpot::post_force(int)
   });
   std::fill_n(sums + 3, NSUM - 3, 0.0);
   sums_known = false;
+  if (free_field) tell_watch_of_points();
+  duration = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
-    const double *const row = rows[i];
+    double *const row = rows[i];
     sums[6] += row[AREA];
+    if (free_field && row[SHARE] != 0.0) {
+      double t[3];
+      column_traction(i, t);
+      for (int d = 0; d < 3; d++) row[HELD + d] = row[REST + d] + t[d];
+    }
     for (int d = 0; d < 3 && supports; d++) {
       const double share = row[SHARE] * row[HELD + d];
       atom->f[i][d] += share;

@@ -26,6 +26,8 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 #include <vector>
 
 namespace LAMMPS_NS {
+class FixMPMColumn;
+
 struct MPMDashpotOptions {
   enum Surface { REGION };
 
@@ -36,12 +38,14 @@ struct MPMDashpotOptions {
   MPM_NS::NumberOrVariable incoming[3];
   bool has_incoming = false, support = true;
   double relax = 0.0, spacing = 0.0, area = 0.0;    ///< 0: not given
+  std::string column;    ///< ID of a fix mpm/column that the far side moves like; empty: none
 
   MPM_NS::Options declare(int dimension);
 };
 
 /** Surfaces of bodies behind which the body goes on without end: dashpots take the waves that arrive (Lysmer and
- *  Kuhlemeyer), bring others in, and what the far side bears at the start is held. */
+ *  Kuhlemeyer), bring others in, and what the far side bears at the start is held. It can be at rest, or move like a column of
+ *  ground. */
 class FixMPMDashpot :
     public FixMPMState,
     public MPMNodeAction,
@@ -86,7 +90,10 @@ class FixMPMDashpot :
     HELD,
     MOTION = HELD + 3,
     LACK = MOTION + 3,
-    WIDTH = LACK + 3
+    WIDTH = LACK + 3,
+    // with a column: traction of the support that is not of the column at the start [3]; HELD is the present sum of both
+    REST = WIDTH,
+    WIDTH_COLUMN = REST + 3
   };
 
   struct Node {
@@ -118,9 +125,14 @@ class FixMPMDashpot :
   static constexpr int NSUM = 10;
   double sums[NSUM] = {}, all_sums[NSUM] = {};
   bool sums_known = true;
-  double arriving[3] = {};    // velocity of the waves that come in, in this step
+  double arriving[3] = {};               // velocity of the waves that come in, in this step
+  FixMPMColumn *free_field = nullptr;    // what moves at the far side, or null
+  double duration = 0.0;                 // of the step that points are in
 
   void define();
+  void find_column();
+  void check_column(double lowest, double highest, double steepest) const;
+  void column_traction(int i, double t[3]) const;
   Body &body_of(const MPMField &);
   template <class F> void visit_marks(const Body &, const F &f) const;
   void place_marks(Body &);
@@ -130,6 +142,8 @@ class FixMPMDashpot :
   void complete_supports(double dt);
   void push(Body &, double dt);
   void apply(Body &, double dt);
+  void tell_watch(Body &, double dt);
+  void tell_watch_of_points();
 };
 
 }    // namespace LAMMPS_NS
