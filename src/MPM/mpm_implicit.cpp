@@ -37,9 +37,24 @@ static constexpr int WHOLE[] = {0, 0, 12000, 8500};
 
 /* ---------------------------------------------------------------------- */
 
-MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions &options) :
-    MPMNodeSystem(lmp, field.grid, field.lattice.dim), field(field), options(options),
-    tangent(lmp, field), ranks(lmp, field.grid, *field.nodes.halo)
+MPMImplicitOptions::Coefficients MPMImplicitOptions::coefficients() const
+{
+  double m = 0.0, f = 0.0, end = gamma;
+  if (keeps_acceleration()) {
+    f = time == ALPHA ? rho / (1.0 + rho) : (1.0 - rho) / (1.0 + rho);
+    m = time == ALPHA ? (2.0 * rho - 1.0) / (1.0 + rho) : 0.0;
+    end = 0.5 - m + f;
+  }
+  return {0.25 * (end + 0.5) * (end + 0.5), end, m, f};
+}
+
+/* ---------------------------------------------------------------------- */
+
+MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions &options,
+                         Accelerations &kept) :
+    MPMNodeSystem(lmp, field.grid, field.lattice.dim),
+    field(field), options(options), kept(kept), tangent(lmp, field),
+    ranks(lmp, field.grid, *field.nodes.halo)
 {
   if (options.preconditioner == MPMImplicitOptions::MULTIGRID)
     multigrid = std::make_unique<SplineMultigrid>(
@@ -179,7 +194,7 @@ void MPMImplicit::apply(const double *x, double *y)
   tangent.change_of_forces(x, y);
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width];
-    y[k] = m > 0.0 ? inertia * m * x[k] - part * y[k] : 0.0;
+    y[k] = m > 0.0 ? inertia * m * x[k] - late * part * y[k] : 0.0;
   }
   project_forces(y);
 }
@@ -254,7 +269,8 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
   if (!tangent.forces(part_of(u), part * dt, inner.data(), carried)) return false;
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width], pull = inertia * m * (u[k] - from[k]);
-    residual[k] = m > 0.0 ? outer[k] + inner[k] - pull : 0.0;
+    residual[k] = m > 0.0 ? outer[k] + late * inner[k] - pull : 0.0;
+    if (late < 1.0) residual[k] += early[k];
     change[k] = m > 0.0 ? pull : 0.0;
   }
   free = residual;
@@ -340,9 +356,9 @@ void MPMImplicit::prepare_levels()
   std::vector<double> scaled;
   tangent.each_point(
       [&](int n, const int64_t *nodes, int ngrad, const double *gradient, const double *stiffness) {
-        if (part != 1.0) {
+        if (late * part != 1.0) {
           scaled.assign(stiffness, stiffness + (std::size_t) width * ngrad * width * ngrad);
-          for (double &entry : scaled) entry *= part;
+          for (double &entry : scaled) entry *= late * part;
           stiffness = scaled.data();
         }
         multigrid->add_point(n, nodes, ngrad, gradient, stiffness);
@@ -379,7 +395,7 @@ SolveReport MPMImplicit::solve(const SolveGoal &goal)
   };
   const auto find_blocks = [&]() {
     tangent.diagonal(blocks);
-    for (double &entry : blocks) entry *= part;
+    for (double &entry : blocks) entry *= late * part;
     for (int64_t n = 0; n < (int64_t) mass.size(); n++)
       for (int d = 0; d < width; d++)
         blocks[width * width * n + (width + 1) * d] += inertia * mass[n];
@@ -549,6 +565,7 @@ double MPMImplicit::step(double step_dt)
   held.assign(nreals(), 0.0);
   inertia = 0.0;
   part = options.part_of_motion();
+  late = 1.0;
   if (options.time == MPMImplicitOptions::STATIC) {
     for (int64_t k = 0; k < nreals(); k++) held[k] = dt * wall[k];
   } else {
@@ -558,15 +575,22 @@ double MPMImplicit::step(double step_dt)
     if (constrained) act(start.data());
     inertia = 1.0 / (part * dt * dt);
     for (int64_t k = 0; k < nreals(); k++) u[k] = from[k] = dt * start[k];
-    if (options.time == MPMImplicitOptions::NEWMARK) {
-      const double beta = options.beta();
+    if (options.time == MPMImplicitOptions::NEWMARK || options.keeps_acceleration()) {
+      const auto with = options.coefficients();
       acceleration = explicit_velocity;
       if (constrained) act(acceleration.data());
-      for (int64_t k = 0; k < nreals(); k++) {
-        acceleration[k] = (acceleration[k] - start[k]) / dt;
-        from[k] += dt * dt * (0.5 - beta) * acceleration[k];
+      for (int64_t k = 0; k < nreals(); k++) acceleration[k] = (acceleration[k] - start[k]) / dt;
+      if (options.keeps_acceleration() && kept.known) find_accelerations();
+      for (int64_t k = 0; k < nreals(); k++)
+        from[k] += dt * dt * (0.5 - with.beta / (1.0 - with.of_inertia)) * acceleration[k];
+      inertia *= (1.0 - with.of_inertia) / with.beta;
+      late = 1.0 - with.of_forces;
+      if (late < 1.0) {
+        early.resize(nreals());
+        for (int64_t k = 0; k < nreals(); k++)
+          early[k] = with.of_forces *
+              (mass[k / width] * (explicit_velocity[k] - before[k]) / dt - outer[k]);
       }
-      inertia /= beta;
     }
   }
   approach(u);
@@ -587,8 +611,11 @@ double MPMImplicit::give_back(const std::vector<double> &u)
 {
   const bool newmark = options.time == MPMImplicitOptions::NEWMARK,
              midpoint = options.time == MPMImplicitOptions::MIDPOINT,
-             rests = options.time == MPMImplicitOptions::STATIC;
+             rests = options.time == MPMImplicitOptions::STATIC,
+             keeps = options.keeps_acceleration();
+  const auto with = options.coefficients();
   double kinetic = 0.0;
+  if (keeps) next.assign(nreals(), 0.0);
   push.assign(nreals(), 0.0);
   velocity.resize(nreals());
   double *record = field.grid.nodes();
@@ -600,13 +627,22 @@ double MPMImplicit::give_back(const std::vector<double> &u)
       record[4 + d] = rests ? v : before[k];
       if (newmark && m > 0.0) {
         // with the reactions of the start and the end of the step
-        const double end = inertia * (u[k] - from[k]), late = options.gamma, early = 1.0 - late,
-                     gained = dt * (early * acceleration[k] + late * end),
+        const double end = inertia * (u[k] - from[k]), of_end = options.gamma,
+                     of_start = 1.0 - of_end,
+                     gained = dt * (of_start * acceleration[k] + of_end * end),
                      reaction = acceleration[k] - (explicit_velocity[k] - before[k]) / dt;
-        record[d] = v + late * (record[d] - v) - early * dt * reaction;
+        record[d] = v + of_end * (record[d] - v) - of_start * dt * reaction;
         record[4 + d] = v - (start[k] + gained - before[k]);
       }
       if (midpoint && m > 0.0) record[4 + d] = v - (2.0 * v - start[k] - before[k]);
+      if (keeps && m > 0.0) {
+        // momentum changes by accelerations that are not those of the forces of this step alone
+        const double pull = inertia * (u[k] - from[k]),
+                     end = next[k] =
+                         (pull - with.of_inertia * acceleration[k]) / (1.0 - with.of_inertia);
+        record[4 + d] = v -
+            (start[k] - before[k] + dt * ((1.0 - with.gamma) * acceleration[k] + with.gamma * end));
+      }
       push[k] = m * (record[d] - record[4 + d] - explicit_velocity[k] + before[k]);
       if (m > 0.0 && grid.owns(n)) kinetic += 0.5 * m * v * v;
     }
@@ -626,6 +662,7 @@ void MPMImplicit::finish()
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8)
     for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
   if (options.time == MPMImplicitOptions::MIDPOINT && field.affine) find_end_of_motion();
+  if (options.keeps_acceleration()) keep_accelerations();
 }
 
 /** Ledger: forces of loads that follow points are external ones. */
@@ -645,7 +682,7 @@ void MPMImplicit::account()
 {
   const bool by_mean = options.moves_by_mean();
   // of the forces of the end of the step
-  const double share = options.time == MPMImplicitOptions::NEWMARK ? options.gamma : 1.0;
+  const double share = options.time == MPMImplicitOptions::NEWMARK ? options.gamma : late;
   double internal = 0.0, external = 0.0, transfer = 0.0;
   const double *record = field.grid.nodes();
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
@@ -682,8 +719,9 @@ double MPMImplicit::memory_usage() const
                            &acceleration, &push,       &velocity,
                            &loads,        &more_loads, &residual,
                            &partial,      &of_nodes,   &of_points,
-                           &free,         &change,     &trial,
-                           &blocks,       &room,       &allowed})
+                           &early,        &next,       &free,
+                           &change,       &trial,      &blocks,
+                           &room,         &allowed})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }
