@@ -16,6 +16,7 @@
 #include "mpm_options.h"
 #include "mpm_rest.h"
 #include "mpm_time_limit.h"
+#include "mpm_trial_contact.h"
 #include "transfer/kernels.h"
 
 #include "atom.h"
@@ -84,6 +85,12 @@ Options MPMImplicitOptions::declare()
             {{"blocks", BLOCKS, "conjugate gradients with the stiffness of each node by itself"},
              {"multigrid", MULTIGRID,
               "with that on lattices of twice the spacing, and so on: for many cells"}})});
+  options
+      .add("slip",
+           {number(slip, "D", POSITIVE, "distance",
+                   "friction of walls is that of Coulomb where surfaces slip by much more than "
+                   "this in a step")})
+      .standard("1e-5 node spacings");
   options.add("report", {yes_no(report)}, "forces before each Newton iteration to screen and log");
   options.refuse([=] {
     return OptionRules{
@@ -182,13 +189,28 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
           "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
           "computes in explicit steps would not be in its balance: remove one of them",
           dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
-  for (auto *action : plan.actions)
-    if (!action->is_projection())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit holds nodes by linear constraints, and fix {} {} is none: use fix "
-          "mpm/boundary with stick, or slip without friction, or explicit steps",
-          dynamic_cast<Fix *>(action)->style, dynamic_cast<Fix *>(action)->id);
+  bool rubs = false;
+  for (auto *action : plan.actions) {
+    if (action->is_projection()) continue;
+    const auto *const style = dynamic_cast<Fix *>(action)->style,
+                      *const name = dynamic_cast<Fix *>(action)->id;
+    auto *const contact = action->trial_contact();
+    if (!contact)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit holds nodes by walls, and knows nothing of what fix {} {} does: "
+                 "use fix mpm/boundary, with a region that moves for a rigid body, or explicit "
+                 "steps",
+                 style, name);
+    if (time != STATIC && time != EULER)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit has contact and friction at the end of steps alone, and fix {} "
+                 "{} has one of these: use static or euler, or slip without friction",
+                 style, name);
+    rubs = rubs || contact->has_friction();
+  }
+  if (slip > 0.0 && !rubs)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit slip is of walls with friction, and there are none: remove it");
   field->keep_old = true;
   field->time_limit->bound = false;
   const MPMImplicitOptions &mine = *this;

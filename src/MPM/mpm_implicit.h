@@ -24,6 +24,7 @@
 
 namespace LAMMPS_NS {
 class MPMField;
+class MPMTrialContact;
 
 /** How a field is stepped. */
 struct MPMImplicitOptions {
@@ -39,6 +40,8 @@ struct MPMImplicitOptions {
   double least_accuracy = 1.0e-3;    ///< of linear solutions
   enum Preconditioner { BLOCKS, MULTIGRID };
   Preconditioner preconditioner = BLOCKS;
+  double slip =
+      0.0;    ///< in a step, from which on friction is that of Coulomb [distance]; 0: a share of the node spacing
   bool report = false;    ///< residuals of each step go to the log
 
   MPM_NS::Options declare();
@@ -123,7 +126,13 @@ class MPMImplicit : private MPMNodeSystem {
   double part = 1.0;                 // s
   double late = 1.0;                 // share of the end of the step in forces
   bool constrained = false;
-  double wall_speed = 0.0;     // largest of w
+  double wall_speed = 0.0;                     // largest of w
+  std::vector<MPMTrialContact *> contacts;     // of walls
+  bool rubs = false;                           // one of them has friction
+  double slip = 0.0;                           // from which on it is that of Coulomb
+  double of_pushes = 1.0;                      // scale of the last projection
+  double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of their way in this step
+  std::vector<double> friction;
   int repeats = 1;             // of node actions, until they are a projection
   std::vector<double> mass;    // [node]
   std::vector<double> before, explicit_velocity, outer, inner, from, wall, held;
@@ -144,6 +153,9 @@ class MPMImplicit : private MPMNodeSystem {
   void find_constraints();
   void act(double *velocities);
   void project(double *x);
+  void find_friction(const std::vector<double> &u);
+  bool decide_contact(std::vector<double> &u);
+  void meet_walls(std::vector<double> &u, double share);
   void project_forces(double *f);
   double sum_of_sizes(const std::vector<double> &);
   bool find_residual(const std::vector<double> &u, double &size);
