@@ -361,6 +361,7 @@ void FixMPMBoundary::init()
     }
   }
   motion_step = -1;
+  in_trials = false;
   steps = 0;
   too_thin.begin();
 }
@@ -1219,7 +1220,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
   for (auto &list : nodes) {
     const auto &faces = list.faces;
     auto &ledger = list.field->ledger;
-    if (count && kind == SEPARATE) find_gaps(list, dt);
+    if (count && kind == SEPARATE && !in_trials) find_gaps(list, dt);
     if (count && decides()) find_water(list, dt);
     now = {count,
            stage == MAPPED_BACK || stage == AGAIN,
@@ -1229,28 +1230,52 @@ void FixMPMBoundary::act(double dt, Stage stage)
            0.0,
            0.0,
            (int) (&list - nodes.data()),
-           nullptr};
+           nullptr,
+           nullptr,
+           1.0};
     if (count && wall.uniform && !list.field->kernel.affine)
       now.old_share = list.field->options.flip;
 
     // cuts: at edges, tangential components of one face are normal ones of another: these come last, so
     // that no material gets out
 
+    // in trials: contact of this one
+    const bool tries = in_trials && decides() && list.field == tried;
+    const auto touch = [&](std::size_t k) {
+      now.touch = tries ? &touches[k] : nullptr;
+    };
+    const std::size_t nlines = list.lines.size(), ncrossings = list.crossings.size();
+    if (tries && count) rub_nodes(list.field->grid);
     for (const bool last : {false, true})
-      for (auto &line : list.lines)
-        if (faces[line.face].cut && (!last || kind == STICK || friction > 0.0))
-          act_on_cut(list, line, last);
-    for (auto &line : list.lines)
-      if (!faces[line.face].cut) act_on_column(list, line);
+      for (std::size_t k = 0; k < nlines; k++)
+        if (faces[list.lines[k].face].cut && (!last || kind == STICK || friction > 0.0)) {
+          touch(k);
+          act_on_cut(list, list.lines[k], last);
+        }
+    for (std::size_t k = 0; k < nlines; k++)
+      if (!faces[list.lines[k].face].cut) {
+        touch(k);
+        act_on_column(list, list.lines[k]);
+      }
+    now.touch = nullptr;
     for (const auto &orbit : list.orbits) act_on_orbit(list, orbit);
     held_by_lines.clear();
     if (count) check_width(list);
-    for (auto &crossing : list.crossings) act_on_crossing(list, crossing);
+    for (std::size_t k = 0; k < ncrossings; k++) {
+      touch(nlines + k);
+      act_on_crossing(list, list.crossings[k]);
+    }
     std::sort(held_by_lines.begin(), held_by_lines.end());
-    for (auto &single : list.singles)
-      if (held_by_lines.empty() ||
-          !std::binary_search(held_by_lines.begin(), held_by_lines.end(), single.node))
-        act_on_single(list, single);
+    for (std::size_t k = 0; k < list.singles.size(); k++) {
+      Single &single = list.singles[k];
+      if (!held_by_lines.empty() &&
+          std::binary_search(held_by_lines.begin(), held_by_lines.end(), single.node))
+        continue;
+      touch(nlines + ncrossings + k);
+      now.unit = list.field->grid.record(single.node)[3];
+      act_on_single(list, single);
+    }
+    now.touch = nullptr;
     if (count) ledger.boundary += now.kinetic * force->mvv2e;
     if (count) ledger.driven += now.driven * force->mvv2e;
     if (count && ledger.on) ledger.transfer += now.collided * force->mvv2e;
@@ -1269,6 +1294,11 @@ void FixMPMBoundary::act(double dt, Stage stage)
 double FixMPMBoundary::slide_share(Contact &contact, double push, double of_water,
                                    double needed) const
 {
+  if (now.touch) {
+    contact = now.touch->active ? SLIDING : FREE;
+    if (!now.counting) now.touch->push += now.unit * push;
+    return 0.0;
+  }
   if (!now.decided) {
     contact = SLIDING;
     const double grains = push - of_water;

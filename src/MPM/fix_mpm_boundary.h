@@ -21,6 +21,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "mpm_friction_heat.h"
 #include "mpm_node_action.h"
 #include "mpm_region_surface.h"
+#include "mpm_trial_contact.h"
 #include "mpm_wall_gap.h"
 
 #include <cstdint>
@@ -60,7 +61,11 @@ struct MPMBoundaryOptions {
  *  A face mirrors: nodes beyond it are images of nodes inside. A region acts on each of the nodes
  *  inside it.
  */
-class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOptions {
+class FixMPMBoundary :
+    public Fix,
+    public MPMNodeAction,
+    private MPMTrialContact,
+    private MPMBoundaryOptions {
  public:
   Turn turn() const override { return WALLS; }
   FixMPMBoundary(class LAMMPS *, int, char **);
@@ -81,6 +86,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override;
   bool decides_contact(const MPMField &) const override;
   bool is_projection() const override { return !decides(); }
+  MPMTrialContact *trial_contact() override { return decides() ? this : nullptr; }
   void act(double dt, Stage) override;
 
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
@@ -262,6 +268,15 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
   MPMFirstNote<5> too_thin;    // region: step, index of the field, place
   double reaction[6] = {};     // force and, of regions, torque
 
+  // contact of which a solver decides, see mpm_trial_contact.h: one for each line, crossing, and single, in this order
+  struct Touch {
+    bool open;             // the material touches the wall, or may come to do so
+    bool active = true;    // it is held
+    double push = 0.0, base = 0.0, force = 0.0;    // sum of impulses, that of walls alone; N
+    double slip[3] = {0.0, 0.0, 0.0}, rubs[3] = {0.0, 0.0, 0.0};    // s, and friction
+    double dual[3] = {0.0, 0.0, 0.0};                               // w, see add_friction_change()
+    explicit Touch(bool open) : open(open), active(open) {}
+  };
   struct {                      // what act() does now to the nodes of a field
     bool counting;              // reactions and work
     bool decided;               // contact was decided before in this step (MUSL)
@@ -272,7 +287,40 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, private MPMBoundaryOpti
     double collided;         // ledger: kinetic energy lost where nodes cannot keep their velocity
     int place;               // of the field in the list
     const double *normal;    // of the wall on which nodes slide and become warm; null: they do not
+    Touch *touch;            // null: what touches is decided here
+    double unit;             // of pushes, in impulses
   } now;
+
+  struct Held {    // a node, and its share in the motion of the surface
+    int64_t node;
+    double share;
+  };
+  std::vector<Touch> touches;
+  bool in_trials = false;
+  MPMField *tried = nullptr;
+  const double *motion = nullptr;    // velocities of nodes at the end of the step
+  double trial_dt = 0.0, eps = 0.0, soft = 0.0;
+
+  void begin_trials(MPMField &, double dt, double eps) override;
+  bool has_friction() const override { return friction > 0.0; }
+  void forget_pushes() override;
+  void take_base() override;
+  void take_forces(double scale) override;
+  void add_friction(const double *u, double *force) override;
+  void add_friction_change(const double *du, double scale, double *dforce) override;
+  void add_friction_blocks(double *blocks) override;
+  void add_friction_stiffness(double *stiffness) override;
+  void correct(const double *du) override;
+  bool decide(const double *u) override;
+  void soften(double by) override { soft = by; }
+  void foresee_velocities(const double *v) override { motion = v; }
+  FieldNodes &tried_nodes();
+  template <class Use> void visit_touches(const Use &use);
+  int find_held(const FieldNodes &, int k, Held *held, double *normal) const;
+  void change_of_direction(const Touch &, const double *slip, double *change) const;
+  void find_slip(const Held *, int n, const double *normal, const double *u, bool walls,
+                 double *slip, double &away) const;
+  void rub_nodes(MPM_NS::Grid &);
   std::vector<double>
       water;    // [node][3] impulse of water in pores on the surface of the body; empty: none
   std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for

@@ -23,6 +23,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// node spacings from a wall at which statics has material touch it: nothing would bring it there
+static constexpr double NEXT_TO = 0.25;
+
 /* ---------------------------------------------------------------------- */
 
 MPMWallContact FixMPMBoundary::Face::contact_of(const MPMField &field, double x) const
@@ -65,7 +68,7 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
       MPMWallGap::Sums sums;
       for (int k = 0; k < n; k++)
         if (line.node[k] >= 0) sums.add(face.cut ? face.weight[k] : 1.0, gap.at(line.node[k]));
-      line.touched = sums.touches(face.contact);
+      line.touched = sums.touches(face.contact, in_trials ? NEXT_TO : 0.0);
     }
   }
 }
@@ -102,13 +105,13 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
     if (depth > DEEPEST || !(depth > -0.01))
       continue;    // deep inside, or the distance is not known
     const auto k = (std::size_t) std::lround(std::max(0.0, depth) * PER_CELL);
-    single.touched = gap.at(single.node).touches(contacts[k]);
+    single.touched = gap.at(single.node).touches(contacts[k], in_trials ? NEXT_TO : 0.0);
   }
   for (auto &crossing : list.crossings) {
     MPMWallGap::Sums sums;
     for (int k = 0; k < crossing.n; k++)
       if (crossing.node[k] >= 0) sums.add(crossing.weight[k], gap.at(crossing.node[k]));
-    crossing.touched = sums.touches(list.crossed[crossing.full]);
+    crossing.touched = sums.touches(list.crossed[crossing.full], in_trials ? NEXT_TO : 0.0);
   }
 }
 

@@ -15,12 +15,13 @@
 #include "mpm_node_action.h"
 #include "mpm_options.h"
 #include "mpm_rest.h"
-#include "mpm_state.h"
 #include "mpm_time_limit.h"
+#include "mpm_trial_contact.h"
 #include "transfer/kernels.h"
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "modify.h"
@@ -34,7 +35,7 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
-   fix ID all mpm/implicit static|euler|newmark|midpoint keyword value ...
+   fix ID all mpm/implicit static|euler|newmark|midpoint|alpha|hht keyword value ...
 ------------------------------------------------------------------------- */
 
 Options MPMImplicitOptions::declare()
@@ -47,10 +48,16 @@ Options MPMImplicitOptions::declare()
        {"euler", EULER, "backward Euler: first order in time, damps what is fast"},
        {"newmark", NEWMARK, "Newmark's method: second order and without damping for gamma = 1/2"},
        {"midpoint", MIDPOINT,
-        "mid-point rule: second order, without damping, keeps angular momentum"}}));
+        "mid-point rule: second order, without damping, keeps angular momentum"},
+       {"alpha", ALPHA, "generalised alpha method: second order, damps high frequencies only"},
+       {"hht", HHT, "that of Hilber, Hughes, and Taylor: the same with more damping in between"}}));
   options.add("gamma",
               {number(gamma, "G", {0.5, 1.0, true, true}, "",
                       "of Newmark's method; more than 1/2 damps, in first order")});
+  options.add(
+      "rho",
+      {number(rho, "R", {0.0, 1.0, true, true}, "",
+              "of alpha and hht: the share of the highest frequencies that a step leaves")});
   options.add("tolerance",
               {number(tolerance, "R", {0.0, 1.0, false, false}, "",
                       "forces are balanced when what is left is this share of all forces")});
@@ -78,15 +85,25 @@ Options MPMImplicitOptions::declare()
             {{"blocks", BLOCKS, "conjugate gradients with the stiffness of each node by itself"},
              {"multigrid", MULTIGRID,
               "with that on lattices of twice the spacing, and so on: for many cells"}})});
+  options
+      .add("slip",
+           {number(slip, "D", POSITIVE, "distance",
+                   "friction of walls is that of Coulomb where surfaces slip by much more than "
+                   "this in a step")})
+      .standard("1e-5 node spacings");
   options.add("report", {yes_no(report)}, "forces before each Newton iteration to screen and log");
   options.refuse([=] {
     return OptionRules{
-        {time != NEWMARK, "gamma", "is of Newmark's method: use newmark, or remove it"}};
+        {time != NEWMARK, "gamma", "is of Newmark's method: use newmark, or remove it"},
+        {!keeps_acceleration(), "rho",
+         "is of the methods with a damping of high frequencies: use alpha or hht, or remove it"},
+        {time == HHT && rho < 0.5, "rho",
+         "is at least 0.5 in the method of Hilber, Hughes, and Taylor: use alpha for {rho}"}};
   });
   return options;
 }
 
-FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/implicit steps all points of a fix mpm: use group all");
@@ -99,6 +116,8 @@ FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   restart_global = 1;
   time_depend = 1;
   dynamic_group_allow = 1;
+  if (keeps_acceleration()) state.declare(kept.rows, "acceleration", domain->dimension);
+  keep_arrays();
 }
 
 void FixMPMImplicit::init()
@@ -146,10 +165,12 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
         "forces are balanced with the lumped mass: use transfer apic or flip"},
        {time == STATIC && adds_change(options.transfer), "transfer flip",
         "points have no velocity in statics: use transfer pic, which has the same forces, or apic"},
-       {time == NEWMARK && !(options.transfer == FLIP && options.flip == 1.0), "this transfer",
+       {(time == NEWMARK || keeps_acceleration()) &&
+            !(options.transfer == FLIP && options.flip == 1.0),
+        "this transfer",
         "points move with another velocity than they have at the end of the step: use transfer "
         "flip 1.0, "
-        "or euler instead of newmark"},
+        "or euler or midpoint instead"},
        {time == MIDPOINT && !(options.transfer == FLIP && options.flip == 1.0) &&
             !(options.transfer == APIC && is_mls(options.shape, options.transfer) &&
               !options.strains_by_gradient() && !field->frame->is_total()),
@@ -176,17 +197,40 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
           "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
           "computes in explicit steps would not be in its balance: remove one of them",
           dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
-  for (auto *action : plan.actions)
-    if (!action->is_projection())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit holds nodes by linear constraints, and fix {} {} is none: use fix "
-          "mpm/boundary with stick, or slip without friction, or explicit steps",
-          dynamic_cast<Fix *>(action)->style, dynamic_cast<Fix *>(action)->id);
+  bool rubs = false;
+  for (auto *action : plan.actions) {
+    if (action->is_projection()) continue;
+    const auto *const style = dynamic_cast<Fix *>(action)->style,
+                      *const name = dynamic_cast<Fix *>(action)->id;
+    auto *const contact = action->trial_contact();
+    if (!contact)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit holds nodes by walls, and knows nothing of what fix {} {} does: "
+                 "use fix mpm/boundary, with a region that moves for a rigid body, or explicit "
+                 "steps",
+                 style, name);
+    if (time != STATIC && time != EULER)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit has contact and friction at the end of steps alone, and fix {} "
+                 "{} has one of these: use static or euler, or slip without friction",
+                 style, name);
+    for (auto *other : plan.physics)
+      if (other->node_pressure(*field))
+        error->all(
+            FLERR, Error::NOLASTLINE,
+            "Fix mpm/implicit finds no contact and friction of walls together with the water "
+            "of fix {} {}, and fix {} {} has one of these: use stick, or slip without "
+            "friction",
+            dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id, style, name);
+    rubs = rubs || contact->has_friction();
+  }
+  if (slip > 0.0 && !rubs)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit slip is of walls with friction, and there are none: remove it");
   field->keep_old = true;
   field->time_limit->bound = false;
   const MPMImplicitOptions &mine = *this;
-  solver = std::make_unique<MPMImplicit>(lmp, *field, mine);
+  solver = std::make_unique<MPMImplicit>(lmp, *field, mine, kept);
 }
 
 void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
@@ -313,7 +357,7 @@ double FixMPMImplicit::compute_vector(int k)
 
 double FixMPMImplicit::memory_usage()
 {
-  return solver ? solver->memory_usage() : 0.0;
+  return FixMPMState::memory_usage() + (solver ? solver->memory_usage() : 0.0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -322,10 +366,11 @@ void FixMPMImplicit::write_restart(FILE *fp)
 {
   keep_totals(world, taken, 2);
   if (comm->me) return;
-  double list[NTOTAL + 2 + NLAST];
+  double list[NTOTAL + 2 + NLAST + 1];
   std::copy_n(total, (int) NTOTAL, list);
   std::copy_n(taken, 2, list + NTOTAL);
   std::copy_n(last, (int) NLAST, list + NTOTAL + 2);
+  list[NTOTAL + 2 + NLAST] = kept.known;
   const int size = sizeof(list);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(list, size, 1, fp);
@@ -337,4 +382,5 @@ void FixMPMImplicit::restart(char *buf)
   std::copy_n(list, (int) NTOTAL, total);
   if (comm->me == 0) std::copy_n(list + NTOTAL, 2, taken);
   std::copy_n(list + NTOTAL + 2, (int) NLAST, last);
+  kept.known = keeps_acceleration() && list[NTOTAL + 2 + NLAST] != 0.0;
 }

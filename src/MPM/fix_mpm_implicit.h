@@ -15,9 +15,9 @@ FixStyle(mpm/implicit,FixMPMImplicit);
 #ifndef LMP_FIX_MPM_IMPLICIT_H
 #define LMP_FIX_MPM_IMPLICIT_H
 
-#include "fix.h"
 #include "mpm_implicit.h"
 #include "mpm_physics.h"
+#include "mpm_state.h"
 
 #include <memory>
 
@@ -25,7 +25,7 @@ namespace LAMMPS_NS {
 
 /** Implicit steps of a field: in the place of the momentum equation, the velocities of nodes are solved for with the stress
  *  of the end of the step, with inertia or as a sequence of states of equilibrium. */
-class FixMPMImplicit : public Fix, public MPMPhysics, private MPMImplicitOptions {
+class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplicitOptions {
  public:
   FixMPMImplicit(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::POST_RUN; }
@@ -47,6 +47,7 @@ class FixMPMImplicit : public Fix, public MPMPhysics, private MPMImplicitOptions
  private:
   MPMField *field = nullptr;
   std::unique_ptr<MPMImplicit> solver;
+  MPMImplicit::Accelerations kept;    // of points, of methods that need those of the step before
   enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, NTOTAL };
   double total[NTOTAL] = {};    // so far
   enum {

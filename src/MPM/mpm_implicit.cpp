@@ -14,6 +14,7 @@
 #include "mpm_node_action.h"
 #include "mpm_physics.h"
 #include "mpm_plan.h"
+#include "mpm_trial_contact.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -33,15 +34,36 @@ static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are no
 static constexpr int TURN = 1000;                   // iterations in which GMRES must gain something
 static constexpr int IN_A_PART = 15;                // Newton iterations, of a step that has failed
 static constexpr int DO_WELL = 15;                  // iterations with levels of other tangents
-static constexpr double LOST = 1.0e12;              // times the first residual
+static constexpr double SLIP = 1.0e-5;              // of friction, in node spacings
+static constexpr double SOFT = 0.1, HARDER = 0.1;    // the same at first, and its change
+static constexpr double NEARLY = 1.0e-3;             // of all forces, for that change
+static constexpr double MAY_GROW =
+    100.0;    // forces that are not in balance, where lines of nodes begin to stick or slip
+static constexpr int ROUNDS = 2;          // of friction of walls that press on each other
+static constexpr double LOST = 1.0e12;    // times the first residual
 // unknowns of a system that is factorized as a whole, which is faster than levels, by dimension
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};
 
 /* ---------------------------------------------------------------------- */
 
-MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions &options) :
-    MPMNodeSystem(lmp, field.grid, field.lattice.dim), field(field), options(options),
-    tangent(lmp, field), ranks(lmp, field.grid, *field.nodes.halo)
+MPMImplicitOptions::Coefficients MPMImplicitOptions::coefficients() const
+{
+  double m = 0.0, f = 0.0, end = gamma;
+  if (keeps_acceleration()) {
+    f = time == ALPHA ? rho / (1.0 + rho) : (1.0 - rho) / (1.0 + rho);
+    m = time == ALPHA ? (2.0 * rho - 1.0) / (1.0 + rho) : 0.0;
+    end = 0.5 - m + f;
+  }
+  return {0.25 * (end + 0.5) * (end + 0.5), end, m, f};
+}
+
+/* ---------------------------------------------------------------------- */
+
+MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions &options,
+                         Accelerations &kept) :
+    MPMNodeSystem(lmp, field.grid, field.lattice.dim),
+    field(field), options(options), kept(kept), tangent(lmp, field),
+    ranks(lmp, field.grid, *field.nodes.halo)
 {
   if (options.preconditioner == MPMImplicitOptions::MULTIGRID)
     multigrid = std::make_unique<SplineMultigrid>(
@@ -91,6 +113,7 @@ void MPMImplicit::act(double *velocities)
   double *const nodes = field.grid.nodes();
   for (int64_t n = 0; n < (int64_t) mass.size(); n++)
     for (int d = 0; d < width; d++) nodes[8 * n + d] = velocities[width * n + d];
+  for (auto *contact : contacts) contact->forget_pushes();
   for (int k = 0; k < repeats; k++) field.plan->act_on_nodes(MPMNodeAction::TRIAL);
   for (int64_t n = 0; n < (int64_t) mass.size(); n++)
     for (int d = 0; d < width; d++)
@@ -110,6 +133,7 @@ void MPMImplicit::find_constraints()
   for (repeats = 1; repeats <= MOST_REPEATS; repeats *= 2) {
     std::fill(wall.begin(), wall.end(), 0.0);
     act(wall.data());
+    for (auto *contact : contacts) contact->take_base();
     wall_speed = std::sqrt(product(wall.data(), wall.data()));
     int index[3];
     for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
@@ -141,6 +165,7 @@ void MPMImplicit::project(double *x)
     if (size > 0.0) scale = wall_speed / size;
     for (int64_t k = 0; k < nreals(); k++) x[k] *= scale;
   }
+  of_pushes = scale;
   act(x);
   if (wall_speed > 0.0)
     for (int64_t k = 0; k < nreals(); k++) x[k] = (x[k] - wall[k]) / scale;
@@ -156,6 +181,42 @@ void MPMImplicit::project_forces(double *f)
   }
   project(f);
   for (int64_t k = 0; k < nreals(); k++) f[k] *= mass[k / width];
+}
+
+/** Friction after the motion u, with the forces that press by the residual, in which that of other walls has a part. */
+void MPMImplicit::find_friction(const std::vector<double> &u)
+{
+  friction.assign(nreals(), 0.0);
+  for (int round = 0; round < ROUNDS; round++) {
+    for (int64_t k = 0; k < nreals(); k++) free[k] = residual[k] + friction[k];
+    project_forces(free.data());
+    std::fill(friction.begin(), friction.end(), 0.0);
+    for (auto *contact : contacts) {
+      contact->take_forces(of_pushes);
+      contact->add_friction(u.data(), friction.data());
+    }
+  }
+}
+
+/** u becomes what walls allow that have gone this share of their way. */
+void MPMImplicit::meet_walls(std::vector<double> &u, double share)
+{
+  project(u.data());
+  for (int64_t k = 0; k < nreals(); k++) u[k] += share * dt * wall[k];
+}
+
+/** What touches, when forces are in balance: false, on all ranks, if nothing has to be changed. */
+bool MPMImplicit::decide_contact(std::vector<double> &u)
+{
+  int changed = 0, any;
+  for (auto *contact : contacts)
+    if (contact->decide(u.data())) changed = 1;
+  MPI_Allreduce(&changed, &any, 1, MPI_INT, MPI_MAX, lmp->world);
+  if (!any) return false;
+  find_constraints();
+  meet_walls(u, aim);
+  by_levels = false;
+  return true;
 }
 
 /** Of the vectors of all nodes. */
@@ -187,7 +248,17 @@ void MPMImplicit::apply(const double *x, double *y)
   tangent.change_of_forces(x, y);
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width];
-    y[k] = m > 0.0 ? inertia * m * x[k] - part * y[k] : 0.0;
+    y[k] = m > 0.0 ? inertia * m * x[k] - late * part * y[k] : 0.0;
+  }
+  if (rubs) {
+    friction.assign(nreals(), 0.0);
+    for (int round = 0; round < ROUNDS; round++) {
+      for (int64_t k = 0; k < nreals(); k++) room[k] = friction[k] - y[k];
+      project_forces(room.data());
+      std::fill(friction.begin(), friction.end(), 0.0);
+      for (auto *contact : contacts) contact->add_friction_change(x, of_pushes, friction.data());
+    }
+    for (int64_t k = 0; k < nreals(); k++) y[k] -= friction[k];
   }
   project_forces(y);
 }
@@ -263,11 +334,17 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
   if (!tangent.forces(part_of(u), part * dt, inner.data(), carried)) return false;
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width], pull = inertia * m * (u[k] - from[k]);
-    residual[k] = m > 0.0 ? outer[k] + inner[k] - pull : 0.0;
+    residual[k] = m > 0.0 ? outer[k] + late * inner[k] - pull : 0.0;
+    if (late < 1.0) residual[k] += early[k];
     change[k] = m > 0.0 ? pull : 0.0;
   }
   free = residual;
+  if (rubs) {
+    find_friction(u);
+    for (int64_t k = 0; k < nreals(); k++) free[k] = residual[k] + friction[k];
+  }
   project_forces(free.data());
+  for (auto *contact : contacts) contact->take_forces(of_pushes);
   now.unbalanced = sum_of_sizes(free);
   MPI_Allreduce(&carried, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
   if (joint) now.water = joint->find_residual(u, all);
@@ -285,13 +362,14 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
 bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
 {
   const std::vector<double> du = change;
+  const double before = now.unbalanced;
   double s = 1.0;
   for (int cut = 0; cut <= MOST_CUTS; cut++, now.cuts++) {
     for (int64_t k = 0; k < nreals(); k++) trial[k] = u[k] + s * du[k];
     double factor = 0.25;
     if (find_residual(trial, size)) {
       const double end = product(du.data(), free.data());
-      if (slope <= 0.0 || end >= -ENOUGH * slope) {
+      if (slope <= 0.0 || end >= -ENOUGH * slope || (rubs && now.unbalanced <= MAY_GROW * before)) {
         u = trial;
         return true;
       }
@@ -350,16 +428,17 @@ void MPMImplicit::prepare_levels()
   std::vector<double> scaled;
   tangent.each_point(
       [&](int n, const int64_t *nodes, int ngrad, const double *gradient, const double *stiffness) {
-        if (part != 1.0) {
+        if (late * part != 1.0) {
           scaled.assign(stiffness, stiffness + (std::size_t) width * ngrad * width * ngrad);
-          for (double &entry : scaled) entry *= part;
+          for (double &entry : scaled) entry *= late * part;
           stiffness = scaled.data();
         }
         multigrid->add_point(n, nodes, ngrad, gradient, stiffness);
       });
   std::vector<double> stiff = mass;
   for (double &m : stiff) m *= inertia;
-  multigrid->finish(*this, inertia > 0.0 ? stiff.data() : nullptr);
+  for (auto *contact : contacts) contact->add_friction_stiffness(stiff.data());
+  multigrid->finish(*this, inertia > 0.0 || rubs ? stiff.data() : nullptr);
 }
 
 /** The same for tangents that are not symmetric. GMRES with restarts can come to where it gains nothing any more. */
@@ -384,14 +463,16 @@ SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal
 {
   const auto attempt = [&]() {
     std::fill_n(x, nreals(), 0.0);
-    return now.asymmetry <= SYMMETRIC ? solver.solve(*this, b, x, goal) : solve_general(b, x, goal);
+    return now.asymmetry <= SYMMETRIC && !rubs ? solver.solve(*this, b, x, goal)
+                                               : solve_general(b, x, goal);
   };
   const auto find_blocks = [&]() {
     tangent.diagonal(blocks);
-    for (double &entry : blocks) entry *= part;
+    for (double &entry : blocks) entry *= late * part;
     for (int64_t n = 0; n < (int64_t) mass.size(); n++)
       for (int d = 0; d < width; d++)
         blocks[width * width * n + (width + 1) * d] += inertia * mass[n];
+    for (auto *contact : contacts) contact->add_friction_blocks(blocks.data());
   };
   for (int again = 0; multigrid && again < 2; again++) {
     const bool made = !by_levels;
@@ -421,6 +502,15 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
   double size = 0.0, accuracy = options.least_accuracy, last = 0.0, stiffness = 0.0;
   const int before = now.iterations;
   now.residuals.clear();
+  // friction begins soft, so that what slips and what sticks is found in small changes, and walls do not tear what they drag
+  double softness = 0.0;
+  if (rubs) {
+    double most = SOFT * field.lattice.h;
+    for (int64_t k = 0; k < nreals(); k++) most = std::max(most, std::fabs(held[k]));
+    MPI_Allreduce(&most, &softness, 1, MPI_DOUBLE, MPI_MAX, lmp->world);
+    for (auto *contact : contacts) contact->soften(softness);
+  }
+  if (!contacts.empty()) meet_walls(u, reached_by_walls);
   if (!find_residual(u, size)) {
     now.failure = "points are inside out or have no finite stress at the start of the step";
     return HOPELESS;
@@ -433,7 +523,23 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     enough_force = enough;
     // sizes of what is left by the larger ones of forces and volumes, in parts of what may be left
     const double left = joint ? joint->excess() * enough : now.unbalanced;
-    if (left <= enough && !wall_moves) { return CONVERGED; }
+    if (softness > 0.0 && !wall_moves && now.unbalanced <= std::max(enough, NEARLY * size)) {
+      softness *= HARDER;
+      if (softness <= slip) softness = 0.0;
+      for (auto *contact : contacts) contact->soften(softness);
+      find_residual(u, size);
+      last = 0.0;
+      continue;
+    }
+    if (left <= enough && !wall_moves) {
+      if (contacts.empty() || !decide_contact(u)) return CONVERGED;
+      last = 0.0;
+      if (!find_residual(u, size)) {
+        now.failure = "points are inside out when they touch walls";
+        return FAILED;
+      }
+      continue;
+    }
     if (now.iterations - before == most_iterations) {
       now.failure = "it did not converge";
       return FAILED;
@@ -492,6 +598,7 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
       if (solved.iterations == 0) precondition(free.data(), du.data());
     }
 
+    for (auto *contact : contacts) contact->correct(du.data());
     const double slope = product(du.data(), free.data());
     if (wall_moves) {
       wall_moves = false;
@@ -516,19 +623,22 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
 
 void MPMImplicit::approach(std::vector<double> &u)
 {
-  const std::vector<double> whole_outer = outer, whole_way = held;
+  const std::vector<double> whole_outer = outer;
+  const bool rests = options.time == MPMImplicitOptions::STATIC;
   std::vector<double> from_here = u, first;
   double part = 1.0, size;
   if (joint) joint->keep();
   while (true) {
-    const double aim = std::min(1.0, now.reached + part);
+    aim = std::min(1.0, now.reached + part);
     outer = whole_outer;
     if (aim < 1.0)
       for (int64_t k = 0; k < nreals(); k++) outer[k] -= (1.0 - aim) * first[k];
     if (joint && !first.empty()) joint->set_part(aim);
-    for (int64_t k = 0; k < nreals(); k++) held[k] = (aim - now.reached) * whole_way[k];
+    reached_by_walls = rests ? now.reached : 1.0;
+    for (int64_t k = 0; k < nreals() && rests; k++) held[k] = (aim - now.reached) * dt * wall[k];
     const int most = (int) options.most_iterations;
-    const Outcome outcome = newton(u, first.empty() ? most : std::min(most, IN_A_PART));
+    const Outcome outcome =
+        newton(u, first.empty() ? most : std::min(most, (rubs ? 3 : 1) * IN_A_PART));
     by_levels = by_levels && outcome == CONVERGED;
     if (outcome == CONVERGED) {
       now.parts++;
@@ -561,6 +671,15 @@ double MPMImplicit::step(double step_dt)
   now = Report();
   by_levels = false;
   take_nodes();
+  contacts.clear();
+  rubs = false;
+  slip = options.slip > 0.0 ? options.slip : SLIP * field.lattice.h;
+  for (auto *action : field.plan->actions)
+    if (auto *contact = action->trial_contact()) {
+      contact->begin_trials(field, dt, slip);
+      contacts.push_back(contact);
+      rubs = rubs || contact->has_friction();
+    }
   find_constraints();
   if (joint) joint->begin_step();
   tangent.external_forces(outer.data());
@@ -572,24 +691,32 @@ double MPMImplicit::step(double step_dt)
   held.assign(nreals(), 0.0);
   inertia = 0.0;
   part = options.part_of_motion();
+  late = 1.0;
   if (options.time == MPMImplicitOptions::STATIC) {
     for (int64_t k = 0; k < nreals(); k++) held[k] = dt * wall[k];
   } else {
     // velocities, and accelerations by the forces of the start of the step, with those of walls
 
     start = before;
-    if (constrained) act(start.data());
+    if (constrained && contacts.empty()) act(start.data());
     inertia = 1.0 / (part * dt * dt);
     for (int64_t k = 0; k < nreals(); k++) u[k] = from[k] = dt * start[k];
-    if (options.time == MPMImplicitOptions::NEWMARK) {
-      const double beta = options.beta();
+    if (options.time == MPMImplicitOptions::NEWMARK || options.keeps_acceleration()) {
+      const auto with = options.coefficients();
       acceleration = explicit_velocity;
       if (constrained) act(acceleration.data());
-      for (int64_t k = 0; k < nreals(); k++) {
-        acceleration[k] = (acceleration[k] - start[k]) / dt;
-        from[k] += dt * dt * (0.5 - beta) * acceleration[k];
+      for (int64_t k = 0; k < nreals(); k++) acceleration[k] = (acceleration[k] - start[k]) / dt;
+      if (options.keeps_acceleration() && kept.known) find_accelerations();
+      for (int64_t k = 0; k < nreals(); k++)
+        from[k] += dt * dt * (0.5 - with.beta / (1.0 - with.of_inertia)) * acceleration[k];
+      inertia *= (1.0 - with.of_inertia) / with.beta;
+      late = 1.0 - with.of_forces;
+      if (late < 1.0) {
+        early.resize(nreals());
+        for (int64_t k = 0; k < nreals(); k++)
+          early[k] = with.of_forces *
+              (mass[k / width] * (explicit_velocity[k] - before[k]) / dt - outer[k]);
       }
-      inertia /= beta;
     }
   }
   approach(u);
@@ -611,11 +738,15 @@ double MPMImplicit::give_back(const std::vector<double> &u)
 {
   const bool newmark = options.time == MPMImplicitOptions::NEWMARK,
              midpoint = options.time == MPMImplicitOptions::MIDPOINT,
-             rests = options.time == MPMImplicitOptions::STATIC;
+             rests = options.time == MPMImplicitOptions::STATIC,
+             keeps = options.keeps_acceleration();
+  const auto with = options.coefficients();
   double kinetic = 0.0;
+  if (keeps) next.assign(nreals(), 0.0);
   push.assign(nreals(), 0.0);
   velocity.resize(nreals());
   double *record = field.grid.nodes();
+  for (auto *contact : contacts) contact->foresee_velocities(velocity.data());
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
     for (int d = 0; d < width; d++) {
       const int64_t k = width * n + d;
@@ -624,13 +755,22 @@ double MPMImplicit::give_back(const std::vector<double> &u)
       record[4 + d] = rests ? v : before[k];
       if (newmark && m > 0.0) {
         // with the reactions of the start and the end of the step
-        const double end = inertia * (u[k] - from[k]), late = options.gamma, early = 1.0 - late,
-                     gained = dt * (early * acceleration[k] + late * end),
+        const double end = inertia * (u[k] - from[k]), of_end = options.gamma,
+                     of_start = 1.0 - of_end,
+                     gained = dt * (of_start * acceleration[k] + of_end * end),
                      reaction = acceleration[k] - (explicit_velocity[k] - before[k]) / dt;
-        record[d] = v + late * (record[d] - v) - early * dt * reaction;
+        record[d] = v + of_end * (record[d] - v) - of_start * dt * reaction;
         record[4 + d] = v - (start[k] + gained - before[k]);
       }
       if (midpoint && m > 0.0) record[4 + d] = v - (2.0 * v - start[k] - before[k]);
+      if (keeps && m > 0.0) {
+        // momentum changes by accelerations that are not those of the forces of this step alone
+        const double pull = inertia * (u[k] - from[k]),
+                     end = next[k] =
+                         (pull - with.of_inertia * acceleration[k]) / (1.0 - with.of_inertia);
+        record[4 + d] = v -
+            (start[k] - before[k] + dt * ((1.0 - with.gamma) * acceleration[k] + with.gamma * end));
+      }
       push[k] = m * (record[d] - record[4 + d] - explicit_velocity[k] + before[k]);
       if (m > 0.0 && grid.owns(n)) kinetic += 0.5 * m * v * v;
     }
@@ -650,6 +790,7 @@ void MPMImplicit::finish()
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8)
     for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
   if (options.time == MPMImplicitOptions::MIDPOINT && field.affine) find_end_of_motion();
+  if (options.keeps_acceleration()) keep_accelerations();
 }
 
 /** Ledger: forces of loads that follow points are external ones. */
@@ -669,7 +810,7 @@ void MPMImplicit::account()
 {
   const bool by_mean = options.moves_by_mean();
   // of the forces of the end of the step
-  const double share = options.time == MPMImplicitOptions::NEWMARK ? options.gamma : 1.0;
+  const double share = options.time == MPMImplicitOptions::NEWMARK ? options.gamma : late;
   double internal = 0.0, external = 0.0, transfer = 0.0;
   const double *record = field.grid.nodes();
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
@@ -700,14 +841,13 @@ double MPMImplicit::memory_usage() const
 {
   double bytes = tangent.memory_usage() + solver.memory_usage() + general.memory_usage() +
       (multigrid ? multigrid->memory_usage() : 0.0) + (joint ? joint->memory_usage() : 0.0);
-  for (const auto *list : {&mass,         &before,     &explicit_velocity,
-                           &outer,        &inner,      &from,
-                           &wall,         &held,       &start,
-                           &acceleration, &push,       &velocity,
-                           &loads,        &more_loads, &residual,
-                           &partial,      &of_nodes,   &of_points,
-                           &free,         &change,     &trial,
-                           &blocks,       &room,       &allowed})
+  for (const auto *list : {&mass,     &friction, &before,       &explicit_velocity,
+                           &outer,    &inner,    &from,         &wall,
+                           &held,     &start,    &acceleration, &push,
+                           &velocity, &loads,    &more_loads,   &residual,
+                           &partial,  &of_nodes, &of_points,    &early,
+                           &next,     &free,     &change,       &trial,
+                           &blocks,   &room,     &allowed})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

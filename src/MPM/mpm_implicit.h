@@ -12,6 +12,7 @@
 #include "declare/option.h"
 #include "mpm_lattice_ranks.h"
 #include "mpm_node_system.h"
+#include "mpm_rows.h"
 #include "mpm_tangent.h"
 #include "solve/flexible_gmres.h"
 #include "solve/krylov.h"
@@ -24,35 +25,49 @@
 namespace LAMMPS_NS {
 class MPMField;
 class MPMNodePressure;
+class MPMTrialContact;
 
 /** How a field is stepped. */
 struct MPMImplicitOptions {
-  enum Time { STATIC, EULER, NEWMARK, MIDPOINT };
+  enum Time { STATIC, EULER, NEWMARK, MIDPOINT, ALPHA, HHT };
   Time time = STATIC;
-  double gamma = 0.5;                ///< of Newmark's method
-  double tolerance = 1.0e-8;         ///< of the ratio of forces
-  double absolute = 0.0;             ///< sum of unbalanced forces that is as good [force]
+  double gamma = 0.5;           ///< of Newmark's method
+  double rho = 0.8;             ///< of alpha and hht: what a step leaves of the highest frequencies
+  double tolerance = 1.0e-8;    ///< of the ratio of forces
+  double absolute = 0.0;        ///< sum of unbalanced forces that is as good [force]
   int64_t most_iterations = 50;      ///< of Newton's method in a step
   int64_t most_parts = 64;           ///< of a step, where it does not converge at once
   int64_t most_linear = 10000;       ///< of the linear solver in each of these
   double least_accuracy = 1.0e-3;    ///< of linear solutions
   enum Preconditioner { BLOCKS, MULTIGRID };
   Preconditioner preconditioner = BLOCKS;
+  double slip =
+      0.0;    ///< in a step, from which on friction is that of Coulomb [distance]; 0: a share of the node spacing
   bool report = false;    ///< residuals of each step go to the log
 
   MPM_NS::Options declare();
-  double beta() const { return 0.25 * (gamma + 0.5) * (gamma + 0.5); }
+  /** Are accelerations kept from step to step, in balance with a mean of the forces of both ends? */
+  bool keeps_acceleration() const { return time == ALPHA || time == HHT; }
+  /** The coefficients of u = dt v + dt^2 [(1/2 - beta) a0 + beta a1] and v1 = v + dt [(1 - gamma) a0 + gamma a1], and the shares of the
+   *  start of the step in (1 - of_inertia) m a1 + of_inertia m a0 = (1 - of_forces) f1 + of_forces f0: those of Newmark, with which
+   *  a0 is f0/m; and of the generalised alpha method (J. Chung, G.M. Hulbert, J. Appl. Mech. 60 (1993) 371) and, with
+   *  of_inertia = 0, that of H.M. Hilber, T.J.R. Hughes, R.L. Taylor, Earthquake Eng. Struct. Dyn. 5 (1977) 283. */
+  struct Coefficients {
+    double beta, gamma, of_inertia, of_forces;
+  };
+  Coefficients coefficients() const;
   /** The part of the motion of a step after which forces are those of the balance. */
   double part_of_motion() const { return time == MIDPOINT ? 0.5 : 1.0; }
   /** Do points have another velocity at the end of a step than they move with? */
-  bool moves_by_mean() const { return time == NEWMARK || time == MIDPOINT; }
+  bool moves_by_mean() const { return time != STATIC && time != EULER; }
 };
 
 /** The implicit step of a field: displacements u of its nodes in a step of duration dt for which
 
       f_ext + f_int(s u) + f_walls = c m (u - u*),   u = P u + dt w
 
-   where c, u*, and s are those of the method of time integration (c = 0: statics; s = 1, or 1/2 in the mid-point rule), f_int(u) is that of MPMTangent, and v -> P v
+   where c, u*, and s are those of the method of time integration (c = 0: statics; s = 1, or 1/2 in the mid-point rule; in the alpha methods forces are means of
+   those of both ends of the step), f_int(u) is that of MPMTangent, and v -> P v
    + w is what all node actions make of velocities. Walls do no work on what P leaves free, so that with the right side
    P^T r = 0 is to be solved for the residual r without them. Newton's method, whose steps are solved for by conjugate
    gradients. Vectors are [node][dim]; forces are in units of mass times acceleration.
@@ -75,7 +90,13 @@ class MPMImplicit : private MPMNodeSystem {
     std::string failure;
   };
 
-  MPMImplicit(class LAMMPS *, MPMField &, const MPMImplicitOptions &);
+  /** Accelerations of points [n][dim], for methods that keep them, and have they been found by a step before? The object changes both. */
+  struct Accelerations {
+    MPMRows rows;
+    bool known = false;
+  };
+
+  MPMImplicit(class LAMMPS *, MPMField &, const MPMImplicitOptions &, Accelerations &);
   ~MPMImplicit() override;
 
   /** Start of a run. */
@@ -95,6 +116,7 @@ class MPMImplicit : private MPMNodeSystem {
  private:
   MPMField &field;
   const MPMImplicitOptions &options;
+  Accelerations &kept;
   MPMTangent tangent;
   MPM_NS::ConjugateGradients solver;
   MPM_NS::FlexibleGMRES general{100};
@@ -107,12 +129,22 @@ class MPMImplicit : private MPMNodeSystem {
 
   double dt = 0.0, inertia = 0.0;    // c
   double part = 1.0;                 // s
+  double late = 1.0;                 // share of the end of the step in forces
   bool constrained = false;
-  double wall_speed = 0.0;     // largest of w
+  double wall_speed = 0.0;                     // largest of w
+  std::vector<MPMTrialContact *> contacts;     // of walls
+  bool rubs = false;                           // one of them has friction
+  double slip = 0.0;                           // from which on it is that of Coulomb
+  double of_pushes = 1.0;                      // scale of the last projection
+  double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of their way in this step
+  std::vector<double> friction;
   int repeats = 1;             // of node actions, until they are a projection
   std::vector<double> mass;    // [node]
   std::vector<double> before, explicit_velocity, outer, inner, from, wall, held;
   std::vector<double> start, acceleration;    // with walls, for dynamics
+  std::vector<double>
+      early;    // with late < 1: what forces of the start have more than outer, by their share
+  std::vector<double> next;                   // acceleration of the end, of methods that keep it
   std::vector<double> velocity;               // that points move with
   std::vector<double> partial;                // s u
   std::vector<double> of_nodes, of_points;    // of affine points that move with the mean velocity
@@ -133,6 +165,9 @@ class MPMImplicit : private MPMNodeSystem {
   void find_constraints();
   void act(double *velocities);
   void project(double *x);
+  void find_friction(const std::vector<double> &u);
+  bool decide_contact(std::vector<double> &u);
+  void meet_walls(std::vector<double> &u, double share);
   void project_forces(double *f);
   double sum_of_sizes(const std::vector<double> &);
   bool find_residual(const std::vector<double> &u, double &size);
@@ -147,6 +182,8 @@ class MPMImplicit : private MPMNodeSystem {
   void find_loads(const std::vector<double> &u);
   const double *part_of(const std::vector<double> &u);
   void find_end_of_motion();
+  void find_accelerations();
+  void keep_accelerations();
   void account();
   double give_back(const std::vector<double> &u);
 

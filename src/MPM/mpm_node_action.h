@@ -55,7 +55,7 @@ class MPMNodeAction {
    *  step (START: USF, USAVG) or the new ones of the points mapped back (MAPPED_BACK: MUSL, USAVG),
    *  which serve the velocity gradient, and with MAPPED_BACK the motion unless an action decides_contact() or the
    *  frame is total, or those of STEP that were changed since (AGAIN: FMPM), or any vectors at nodes before STEP, of
-   *  which a solver asks what the action would make of them (TRIAL: only where is_projection()).
+   *  which a solver asks what the action would make of them (TRIAL: only where is_projection(), or with a trial_contact()).
    */
   enum Stage { START, STEP, AGAIN, MAPPED_BACK, TRIAL };
 
@@ -63,6 +63,9 @@ class MPMNodeAction {
    *  masses of nodes only and is its own square, or becomes so when it is repeated? With the masses M it is an orthogonal
    *  projection, M P = P^T M: what it takes away does no work. */
   virtual bool is_projection() const { return false; }
+
+  /** Contact that is such a projection as long as it is known what touches; null: it is not. */
+  virtual class MPMTrialContact *trial_contact() { return nullptr; }
 
   /** Does the action decide in STEP what of this field is in contact? Velocities that are mapped back do not
    *  know this well enough to move points, but for those whose domains deform (CPDI). */

@@ -99,9 +99,10 @@ void MPMWallGap::Sums::add(double weight, const Sums &other)
   size2 += weight * other.size2;
 }
 
-bool MPMWallGap::Sums::touches(const MPMWallContact &full) const
+bool MPMWallGap::Sums::touches(const MPMWallContact &full, double near) const
 {
-  return volume > 0.0 && distance <= (full.distance(size2 / volume) + TOLERANCE) * volume;
+  return volume > 0.0 &&
+      distance <= (full.distance(size2 / volume) + std::max(near, TOLERANCE)) * volume;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -46,8 +46,8 @@ class MPMWallGap {
     double size2 = 0.0;       // of V N times the square of the spacing of points, in node spacings
 
     void add(double weight, const Sums &);
-    /** Does the material touch the wall? */
-    bool touches(const MPMWallContact &) const;
+    /** Does the material touch the wall, or is it no farther from it than this (node spacings)? */
+    bool touches(const MPMWallContact &, double near = 0.0) const;
   };
 
   /** Collective. Sums at the nodes of the blocks [slot] that are marked in near (and others). away(x) is

@@ -1,0 +1,61 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The generalised alpha method and that of Hilber, Hughes, and Taylor: the acceleration of the start of a step is that of the end of the step before,
+   which is in balance with forces of no single time. Points keep it, as they do velocities: nodes get the mean by the masses of points, and points what
+   that has changed by. In the first step it is that of the forces, as in Newmark's method.
+------------------------------------------------------------------------- */
+
+#include "mpm_implicit.h"
+
+#include "atom.h"
+#include "mpm_field.h"
+#include "mpm_stencil.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/** Accelerations of nodes by those that points have kept, with walls. */
+void MPMImplicit::find_accelerations()
+{
+  const int dim = width;
+  const double *const of_point = lmp->atom->rmass;
+  const MPMStencil stencil(field);
+  acceleration.assign(nreals(), 0.0);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double *const a = kept.rows[(int) i];
+      stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+        const double share = of_point[i] * node.weight;
+        for (int d = 0; d < dim; d++) acceleration[dim * node.number + d] += share * a[d];
+      });
+    }
+  field.nodes.sum(acceleration.data(), dim, 0, dim);
+  for (int64_t k = 0; k < nreals(); k++)
+    acceleration[k] = mass[k / dim] > 0.0 ? acceleration[k] / mass[k / dim] : 0.0;
+  project(acceleration.data());
+}
+
+/** Points get what accelerations of nodes have changed by, in the first step all of it. They are where they were at the start. */
+void MPMImplicit::keep_accelerations()
+{
+  const int dim = width;
+  if (kept.known)
+    for (int64_t k = 0; k < nreals(); k++) next[k] -= acceleration[k];
+  field.nodes.complete(next.data(), dim, dim);
+  const MPMStencil stencil(field);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      double *const a = kept.rows[(int) i];
+      stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+        for (int d = 0; d < dim; d++) a[d] += node.weight * next[dim * node.number + d];
+      });
+    }
+  kept.known = true;
+}

@@ -1,0 +1,59 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_TRIAL_CONTACT_H
+#define LMP_MPM_TRIAL_CONTACT_H
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Contact of which a solver decides. What touches is held along the normal, by a linear projection of the velocities of nodes as long as
+ *  it is known what touches (MPMNodeAction::act() in the stage TRIAL), and has the friction
+
+      t = -mu N s/(|s|^2 + eps^2)^(1/2)
+
+ *  with the force N by which it is pressed and the slip s in the step, along the surface, where eps is small: all but Coulomb's law. Acts in
+ *  the stage TRIAL sum up the impulses that they would need along the normal, from which the solver tells N; the stage STEP brings
+ *  friction to nodes as it was found last. Vectors are [node][dim]; forces are in units of mass times acceleration. */
+class MPMTrialContact {
+ public:
+  /** The start of a step of duration dt; eps [distance]. */
+  virtual void begin_trials(MPMField &, double dt, double eps) = 0;
+  virtual bool has_friction() const = 0;
+  /** Sums of impulses begin again with zero. */
+  virtual void forget_pushes() = 0;
+  /** The sums are those of nodes that are at rest: of the motion of walls alone. */
+  virtual void take_base() = 0;
+  /** The sums are those of forces f/m for velocities, times scale: they become the forces N. */
+  virtual void take_forces(double scale) = 0;
+  /** Adds friction after the motion u. */
+  virtual void add_friction(const double *u, double *force) = 0;
+  /** Adds its change for a change of that motion; the sums are those of changes of forces, times scale. */
+  virtual void add_friction_change(const double *du, double scale, double *dforce) = 0;
+  /** Adds the part of minus that change that nodes have by their own motion, [node][dim][dim]. */
+  virtual void add_friction_blocks(double *blocks) = 0;
+  /** Adds the same as one number for each node, such that a body that slips as a whole has the stiffness of all. */
+  virtual void add_friction_stiffness(double *stiffness) = 0;
+  /** The correction du of the motion has been found, of which all or a part will be made. */
+  virtual void correct(const double *du) = 0;
+  /** Lets go what the wall would pull after the motion u, and holds what went into the wall. Returns whether this changes
+   *  anything, on this rank. */
+  virtual bool decide(const double *u) = 0;
+  /** Friction is weakened to that of a larger eps for a correction: 0 ends this. */
+  virtual void soften(double eps) = 0;
+  /** Nodes will have these velocities at the end of the step; valid until then. */
+  virtual void foresee_velocities(const double *v) = 0;
+
+ protected:
+  ~MPMTrialContact() = default;
+};
+
+}    // namespace LAMMPS_NS
+#endif
