@@ -12,6 +12,7 @@
 #include "mpm_flow_bodies.h"
 #include "mpm_flow_pressure.h"
 #include "mpm_flow_regions.h"
+#include "mpm_flow_stick.h"
 #include "mpm_flow_stress.h"
 #include "mpm_flow_tension.h"
 #include "mpm_flow_transfer.h"
@@ -126,6 +127,14 @@ Options MPMIncompressibleOptions::declare(int dim)
         region_ids.push_back(region_id);
       })
       .standard("none");
+  o.add("stick",
+        {text(region_id, "region-ID",
+              "its inside is solid, without slip; can be given more than once")})
+      .then([this] {
+        region_ids.push_back(region_id);
+        sticks = true;
+      })
+      .standard("none");
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
                 "share of an excess of points in a cell that goes elsewhere in a step")});
@@ -136,9 +145,15 @@ Options MPMIncompressibleOptions::declare(int dim)
         {integer(most_iterations, "N", POSITIVE, "largest number of iterations of the pressure")});
   o.refuse([this] {
     return OptionRules{
-        {!region_ids.empty() && viscosity > 0.0, "region",
-         "has no friction, and cannot be used with viscosity: use walls of the box, or leave "
+        {viscosity > 0.0, "region",
+         "has no friction, and cannot be used with viscosity: use the keyword stick instead, or "
+         "leave "
          "viscosity out"},
+        {!implicit || viscosity == 0.0, "stick",
+         "is about viscosity, in an implicit step, as an explicit one would be bound by the least "
+         "distance of "
+         "a face to a wall: add the keywords viscosity and implicit yes, or use the keyword region "
+         "instead"},
         {!region_ids.empty() && tension > 0.0, "region",
          "has no contact angle, and cannot be used with tension: use walls of the box, or leave "
          "tension out"}};
@@ -215,6 +230,10 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     cells.wants_around = true;
     last.regions.assign(3 * region_ids.size(), 0.0);
   }
+  if (sticks) {
+    stick = std::make_unique<MPMFlowStick>(cells, *regions);
+    stress->stick = stick.get();
+  }
   if (transfer == APIC) state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
 
   time_integrate = 1;
@@ -255,6 +274,12 @@ void FixMPMIncompressible::init()
     bodies->init();
     if (!bodies->any()) bodies.reset();
     pressure->bodies = bodies.get();
+    if (bodies && stick)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix {} {}: bodies of fix mpm/rigid feel the pressure alone, and not the viscosity of a "
+          "flow that sticks to them: use the keyword region, without viscosity",
+          style, id);
     if (bodies && reflect > 0.0)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix {} {}: reflect cannot be used with bodies of fix mpm/rigid: remove it", style,
@@ -348,6 +373,7 @@ void FixMPMIncompressible::setup(int)
   if (regions) {
     regions->start_run();
     regions->find(0.0);
+    if (stick) stick->find(true);
     check_depths();
   }
   fit_gradients();
@@ -465,6 +491,7 @@ void FixMPMIncompressible::initial_integrate(int)
   cells.valid = all_valid;
   cells.find_cells();
   if (regions) regions->find(dt);
+  if (stick) stick->find(false);
 
   give_to_cells(cells, points, sums);
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
@@ -670,7 +697,10 @@ void FixMPMIncompressible::go_on_into_air()
   cells.keep_owned(velocity.data(), dim);
   cells.keep_owned(known.data(), dim);
   air->extend(AIR_LAYERS, velocity, known);
-  if (regions) regions->hold(velocity);
+  if (stick)
+    stick->hold(velocity);
+  else if (regions)
+    regions->hold(velocity);
   cells.reflect_velocities(velocity.data());
 }
 
@@ -819,7 +849,8 @@ void FixMPMIncompressible::restart(char *buf)
 double FixMPMIncompressible::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
-      air->memory_usage() + (regions ? regions->memory_usage() : 0.0);
+      air->memory_usage() + (regions ? regions->memory_usage() : 0.0) +
+      (stick ? stick->memory_usage() : 0.0);
   if (curved) bytes += curved->memory_usage();
   if (stress) bytes += stress->memory_usage();
   for (const auto *list : {&at_surface, &potentials, &viscous_velocity, &sums, &share, &old, &star,

@@ -29,6 +29,7 @@ class MPMFlowAir;
 class MPMFlowBodies;
 class MPMFlowPressure;
 class MPMFlowRegions;
+class MPMFlowStick;
 class MPMFlowStress;
 class MPMFlowTension;
 class MPMFlowViscosity;
@@ -49,6 +50,7 @@ struct MPMIncompressibleOptions {
   int most_iterations = 10000;
   MPMFlowWall walls[3][2];
   std::vector<std::string> region_ids;
+  bool sticks = false;    ///< regions
 
   MPM_NS::Options declare(int dim);
 
@@ -94,6 +96,7 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowStress> stress;        // implicit viscosity; null: none
   std::unique_ptr<MPMFlowTension> curved;       // with surface tension; null: none
   std::unique_ptr<MPMFlowRegions> regions;      // null: none
+  std::unique_ptr<MPMFlowStick> stick;          // regions without slip; null: none
   std::unique_ptr<MPMFlowBodies> bodies;    // of regions; null: these move by themselves, or not
   MPMRows gradient;                         // [n][dim*dim] dv_c/dx_d of points, with apic
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,

@@ -60,11 +60,16 @@ double MPMFlowPressure::open_side(const MPMFlowLattice::Cell &cell, int side) co
   return of < 0 ? 1.0 : open(of, side / 2);
 }
 
-/** What flows through the lower face of a cell along an axis, per area, with what a wall in it carries along. */
-double MPMFlowPressure::flux(const double *velocity, int64_t cell, int axis) const
+/** What flows through a side of a cell along its axis, per area, with what a wall in it carries along. Through a wall of the box goes but
+ *  what moves there of a region. */
+double MPMFlowPressure::flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell,
+                                     int side) const
 {
-  const double u = velocity[cell * cells.lattice.dim + axis];
-  return regions ? regions->open(cell, axis) * u + regions->flux(cell, axis) : u;
+  const int axis = side / 2;
+  const int64_t of = side % 2 ? cell.near[side] : cell.number;
+  const bool wall = cell.walls >> side & 1;
+  const double u = wall ? 0.0 : velocity[of * cells.lattice.dim + axis];
+  return regions ? regions->open(of, axis) * u + regions->flux(of, axis) : u;
 }
 
 /** Are the neighbors of a cell filled so well that what is between them is water? At a flat surface, their mean is that of
@@ -193,8 +198,8 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
     const auto &cell = cells.cells[one.cell];
     double sum = 0.0;
     for (int d = 0; d < dim; d++) {
-      if (!(cell.walls >> 2 * d & 1)) sum += flux(before, cell.number, d);
-      if (!(cell.walls >> 2 * d & 2)) sum -= flux(before, cell.near[2 * d + 1], d);
+      sum += flux_of_side(before, cell, 2 * d);
+      sum -= flux_of_side(before, cell, 2 * d + 1);
     }
     right_side[cell.number] = sum / h;
   }
@@ -310,8 +315,8 @@ double MPMFlowPressure::largest_divergence(const double *velocity) const
     const auto &cell = cells.cells[one.cell];
     double sum = 0.0;
     for (int d = 0; d < dim; d++) {
-      if (!(cell.walls >> 2 * d & 1)) sum -= flux(velocity, cell.number, d);
-      if (!(cell.walls >> 2 * d & 2)) sum += flux(velocity, cell.near[2 * d + 1], d);
+      sum -= flux_of_side(velocity, cell, 2 * d);
+      sum += flux_of_side(velocity, cell, 2 * d + 1);
     }
     most = std::max(most, std::fabs(sum));
   }

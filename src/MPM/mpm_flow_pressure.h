@@ -113,7 +113,7 @@ class MPMFlowPressure : public MPMNodeSystem {
   void find_lift(const std::vector<double> &surface);
   double weight_to(int64_t wet_cell, int64_t other) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
-  double flux(const double *velocity, int64_t cell, int axis) const;
+  double flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell, int side) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known, const std::vector<double> *surface = nullptr) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;
