@@ -26,6 +26,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "math_const.h"
 #include "math_extra.h"
 #include "modify.h"
 #include "output.h"
@@ -74,6 +75,9 @@ Options MPMIncompressibleOptions::declare(int dim)
         "solve for viscous stresses together with the pressure: they do not bind the time step");
   o.add("tension",
         {number(tension, "sigma", NOT_NEGATIVE, "pressure*distance", "surface tension")});
+  o.add("angle",
+        {number(angle, "theta", {20.0, 160.0, true, true}, "degrees",
+                "contact angle between surfaces and walls, in the fluid")});
   o.add("transfer",
         {word(transfer,
               {{"apic", APIC, "points have gradients of the velocity"},
@@ -154,9 +158,11 @@ Options MPMIncompressibleOptions::declare(int dim)
          "distance of "
          "a face to a wall: add the keywords viscosity and implicit yes, or use the keyword region "
          "instead"},
-        {!region_ids.empty() && tension > 0.0, "region",
-         "has no contact angle, and cannot be used with tension: use walls of the box, or leave "
-         "tension out"}};
+        {tension > 0.0, "region",
+         "cannot be used with tension, as a fluid that slips along it without friction never comes "
+         "to rest: use the keyword stick "
+         "with implicit viscosity instead, or walls of the box, or leave tension out"},
+        {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"}};
   });
   return o;
 }
@@ -211,12 +217,6 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR,
                "Fix mpm/incompressible implicit yes is about the viscosity: add the keyword "
                "viscosity");
-  if (tension > 0.0) {
-    curved = std::make_unique<MPMFlowTension>(cells, *pressure);
-    pressure->nearest = NEAREST_SURFACE;
-    cells.wants_more = MPMFlowTension::PASSES;
-    cells.wants_around = true;
-  }
   if (implicit) {
     stress = std::make_unique<MPMFlowStress>(lmp, cells, *pressure);
     cells.wants_around = true;
@@ -233,6 +233,13 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   if (sticks) {
     stick = std::make_unique<MPMFlowStick>(cells, *regions);
     stress->stick = stick.get();
+  }
+  if (tension > 0.0) {
+    curved = std::make_unique<MPMFlowTension>(cells, *pressure, angle * MathConst::DEG2RAD);
+    pressure->nearest = NEAREST_SURFACE;
+    cells.wants_more = MPMFlowTension::PASSES;
+    cells.wants_around = true;
+    cells.overlap = MPMFlowWetting::overlap(regions != nullptr);
   }
   if (transfer == APIC) state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
 

@@ -42,6 +42,7 @@ struct MPMIncompressibleOptions {
   double viscosity = 0.0;
   bool implicit = false;    ///< viscosity
   double tension = 0.0;
+  double angle = 90.0;    ///< between surfaces and walls, degrees
   Transfer transfer = APIC;
   double flip = 0.0;       ///< share of FLIP
   double reflect = 0.0;    ///< share of the change by the pressure that comes once more

@@ -252,6 +252,17 @@ double MPMFlowRegions::level_of_face(int64_t cell, int axis, double far, double 
   return level;
 }
 
+double MPMFlowRegions::find_way_out(const MPMFlowLattice::Cell &cell, double *out) const
+{
+  constexpr double middle[3] = {0.5, 0.5, 0.5};
+  double x[3];
+  int wall;
+  place(cell.index, middle, x);
+  const double level = distance(x, FAR * cells.lattice.h, wall);
+  normal_at(wall, x, out);
+  return -level;
+}
+
 double MPMFlowRegions::room_in(const MPMFlowLattice::Cell &cell) const
 {
   double sum = 0.0;

@@ -66,6 +66,10 @@ class MPMFlowRegions : protected Pointers {
   /** Distance of the middle of the lower face of a cell from walls, positive in the flow, at most far; velocity: component along
    *  the axis of the nearest wall, as if it went on to there. */
   double level_of_face(int64_t cell, int axis, double far, double &velocity) const;
+  /** Distance of the middle of a cell from walls, positive in the flow, as far as it is looked at. */
+  double level(int64_t cell) const { return levels[cell]; }
+  /** Depth of the middle of a cell in a region; out: the direction out of it. */
+  double find_way_out(const MPMFlowLattice::Cell &cell, double *out) const;
   /** Share of a cell that is open, by its faces. */
   double room_in(const MPMFlowLattice::Cell &) const;
 
