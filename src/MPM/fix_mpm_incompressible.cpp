@@ -26,6 +26,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "group.h"
 #include "math_const.h"
 #include "math_extra.h"
 #include "modify.h"
@@ -139,6 +140,14 @@ Options MPMIncompressibleOptions::declare(int dim)
         sticks = true;
       })
       .standard("none");
+  o.add("liquid",
+        {text(liquid.group, "group-ID", "these points are of a liquid of its own"),
+         number(liquid.density, "rho", POSITIVE, "density", "its density")},
+        "can be given more than once")
+      .then([this] {
+        liquids.push_back(liquid);
+      })
+      .standard("none");
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
                 "share of an excess of points in a cell that goes elsewhere in a step")});
@@ -162,6 +171,10 @@ Options MPMIncompressibleOptions::declare(int dim)
          "cannot be used with tension, as a fluid that slips along it without friction never comes "
          "to rest: use the keyword stick "
          "with implicit viscosity instead, or walls of the box, or leave tension out"},
+        {!liquids.empty() && viscosity > 0.0, "viscosity",
+         "is that of one liquid, and cannot be used with liquid: leave one of them out"},
+        {!liquids.empty() && tension > 0.0, "tension",
+         "is that of one liquid, and cannot be used with liquid: leave one of them out"},
         {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"}};
   });
   return o;
@@ -241,6 +254,12 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     cells.wants_around = true;
     cells.overlap = MPMFlowWetting::overlap(regions != nullptr);
   }
+  for (const auto &one : liquids) {
+    const int igroup_of = group->find(one.group);
+    if (igroup_of < 0)
+      error->all(FLERR, "Fix mpm/incompressible liquid: group {} does not exist", one.group);
+    liquid_bits.push_back(group->bitmask[igroup_of]);
+  }
   if (transfer == APIC) state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
 
   time_integrate = 1;
@@ -281,6 +300,12 @@ void FixMPMIncompressible::init()
     bodies->init();
     if (!bodies->any()) bodies.reset();
     pressure->bodies = bodies.get();
+    if (bodies && !liquids.empty())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix {} {}: bodies of fix mpm/rigid need a flow of one density: remove the keyword "
+          "liquid",
+          style, id);
     if (bodies && stick)
       error->all(
           FLERR, Error::NOLASTLINE,
@@ -327,9 +352,10 @@ void FixMPMIncompressible::check_points()
   bigint mine[2] = {0, 0}, all[2];    // points, and those of another density
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
-    if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = density * atom->vfrac[i];
+    const double mass = density_of(i) * atom->vfrac[i];
+    if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = mass;
     mine[0]++;
-    if (std::fabs(atom->rmass[i] / (density * atom->vfrac[i]) - 1.0) > SAME_DENSITY) mine[1]++;
+    if (std::fabs(atom->rmass[i] / mass - 1.0) > SAME_DENSITY) mine[1]++;
     for (int d = 0; d < domain->dimension; d++)
       if (!std::isfinite(atom->v[i][d]) || !std::isfinite(atom->x[i][d]))
         error->one(FLERR, Error::NOLASTLINE,
@@ -345,10 +371,33 @@ void FixMPMIncompressible::check_points()
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix {} {}: {} points have another mass than density {} times their volume; there is one "
-        "density",
+        "density but for points of keyword liquid",
         style, id, all[1], density);
   refuse_other_integrators(lmp, *this);
   check_others();
+}
+
+double FixMPMIncompressible::density_of(int i) const
+{
+  double of = density;
+  for (std::size_t k = 0; k < liquids.size(); k++)
+    if (atom->mask[i] & liquid_bits[k]) of = liquids[k].density;
+  return of;
+}
+
+/** Densities of faces, by the mass and the volume that points give them. */
+void FixMPMIncompressible::find_lightness(const MPMFlowPoints &points)
+{
+  const int dim = cells.lattice.dim, width = 3 * dim + 1;
+  give_volumes_to_faces(cells, points, face_volumes);
+  cells.sum(face_volumes.data(), 2 * dim);
+  lightness.assign(cells.size() * dim, 1.0);
+  for (int64_t k = 0; k < cells.size(); k++)
+    for (int c = 0; c < dim; c++) {
+      const double mass = sums[k * width + dim + c];
+      if (mass > 0.0) lightness[k * dim + c] = density * face_volumes[2 * k * dim + dim + c] / mass;
+    }
+  pressure->lightness = &lightness;
 }
 
 /** Others in the same box that this flow would go through. */
@@ -504,6 +553,7 @@ void FixMPMIncompressible::initial_integrate(int)
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
   find_velocities();
   if (flip > 0.0 || reflect > 0.0 || differ) old = star;
+  if (!liquids.empty()) find_lightness(points);
   pressure->find_wet(share);
 
   find_flow(part * (differ ? before : dt));
