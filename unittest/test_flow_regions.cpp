@@ -244,9 +244,9 @@ SERIAL_TEST(Regions, BadInput)
                   {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b viscosity 1",
                    "cannot be used with viscosity"},
                   {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b viscosity 1 implicit yes",
-                   "cannot be used with viscosity: use walls of the box"},
+                   "cannot be used with viscosity: use the keyword stick"},
                   {"region b sphere 0.5 0.5 0 0.001\n" + fix + "tension 1 region b",
-                   "cannot be used with tension: use walls of the box"},
+                   "cannot be used with tension"},
                   {"variable r equal 0.01\nregion b sphere 0.5 0.5 0 v_r\n" + fix + "region b",
                    "must not change"},
                   {"variable d equal 0.0\nregion a sphere 0.51 0.51 0 0.01 move v_d NULL "

@@ -12,6 +12,7 @@
 #include "mpm_flow_bodies.h"
 #include "mpm_flow_pressure.h"
 #include "mpm_flow_regions.h"
+#include "mpm_flow_stick.h"
 #include "mpm_flow_stress.h"
 #include "mpm_flow_tension.h"
 #include "mpm_flow_transfer.h"
@@ -25,6 +26,8 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "group.h"
+#include "math_const.h"
 #include "math_extra.h"
 #include "modify.h"
 #include "output.h"
@@ -73,6 +76,9 @@ Options MPMIncompressibleOptions::declare(int dim)
         "solve for viscous stresses together with the pressure: they do not bind the time step");
   o.add("tension",
         {number(tension, "sigma", NOT_NEGATIVE, "pressure*distance", "surface tension")});
+  o.add("angle",
+        {number(angle, "theta", {20.0, 160.0, true, true}, "degrees",
+                "contact angle between surfaces and walls, in the fluid")});
   o.add("transfer",
         {word(transfer,
               {{"apic", APIC, "points have gradients of the velocity"},
@@ -126,6 +132,22 @@ Options MPMIncompressibleOptions::declare(int dim)
         region_ids.push_back(region_id);
       })
       .standard("none");
+  o.add("stick",
+        {text(region_id, "region-ID",
+              "its inside is solid, without slip; can be given more than once")})
+      .then([this] {
+        region_ids.push_back(region_id);
+        sticks = true;
+      })
+      .standard("none");
+  o.add("liquid",
+        {text(liquid.group, "group-ID", "these points are of a liquid of its own"),
+         number(liquid.density, "rho", POSITIVE, "density", "its density")},
+        "can be given more than once")
+      .then([this] {
+        liquids.push_back(liquid);
+      })
+      .standard("none");
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
                 "share of an excess of points in a cell that goes elsewhere in a step")});
@@ -136,12 +158,24 @@ Options MPMIncompressibleOptions::declare(int dim)
         {integer(most_iterations, "N", POSITIVE, "largest number of iterations of the pressure")});
   o.refuse([this] {
     return OptionRules{
-        {!region_ids.empty() && viscosity > 0.0, "region",
-         "has no friction, and cannot be used with viscosity: use walls of the box, or leave "
+        {viscosity > 0.0, "region",
+         "has no friction, and cannot be used with viscosity: use the keyword stick instead, or "
+         "leave "
          "viscosity out"},
-        {!region_ids.empty() && tension > 0.0, "region",
-         "has no contact angle, and cannot be used with tension: use walls of the box, or leave "
-         "tension out"}};
+        {!implicit || viscosity == 0.0, "stick",
+         "is about viscosity, in an implicit step, as an explicit one would be bound by the least "
+         "distance of "
+         "a face to a wall: add the keywords viscosity and implicit yes, or use the keyword region "
+         "instead"},
+        {tension > 0.0, "region",
+         "cannot be used with tension, as a fluid that slips along it without friction never comes "
+         "to rest: use the keyword stick "
+         "with implicit viscosity instead, or walls of the box, or leave tension out"},
+        {!liquids.empty() && viscosity > 0.0, "viscosity",
+         "is that of one liquid, and cannot be used with liquid: leave one of them out"},
+        {!liquids.empty() && tension > 0.0, "tension",
+         "is that of one liquid, and cannot be used with liquid: leave one of them out"},
+        {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"}};
   });
   return o;
 }
@@ -196,12 +230,6 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     error->all(FLERR,
                "Fix mpm/incompressible implicit yes is about the viscosity: add the keyword "
                "viscosity");
-  if (tension > 0.0) {
-    curved = std::make_unique<MPMFlowTension>(cells, *pressure);
-    pressure->nearest = NEAREST_SURFACE;
-    cells.wants_more = MPMFlowTension::PASSES;
-    cells.wants_around = true;
-  }
   if (implicit) {
     stress = std::make_unique<MPMFlowStress>(lmp, cells, *pressure);
     cells.wants_around = true;
@@ -214,6 +242,23 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     pressure->regions = regions.get();
     cells.wants_around = true;
     last.regions.assign(3 * region_ids.size(), 0.0);
+  }
+  if (sticks) {
+    stick = std::make_unique<MPMFlowStick>(cells, *regions);
+    stress->stick = stick.get();
+  }
+  if (tension > 0.0) {
+    curved = std::make_unique<MPMFlowTension>(cells, *pressure, angle * MathConst::DEG2RAD);
+    pressure->nearest = NEAREST_SURFACE;
+    cells.wants_more = MPMFlowTension::PASSES;
+    cells.wants_around = true;
+    cells.overlap = MPMFlowWetting::overlap(regions != nullptr);
+  }
+  for (const auto &one : liquids) {
+    const int igroup_of = group->find(one.group);
+    if (igroup_of < 0)
+      error->all(FLERR, "Fix mpm/incompressible liquid: group {} does not exist", one.group);
+    liquid_bits.push_back(group->bitmask[igroup_of]);
   }
   if (transfer == APIC) state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
 
@@ -255,6 +300,18 @@ void FixMPMIncompressible::init()
     bodies->init();
     if (!bodies->any()) bodies.reset();
     pressure->bodies = bodies.get();
+    if (bodies && !liquids.empty())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix {} {}: bodies of fix mpm/rigid need a flow of one density: remove the keyword "
+          "liquid",
+          style, id);
+    if (bodies && stick)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix {} {}: bodies of fix mpm/rigid feel the pressure alone, and not the viscosity of a "
+          "flow that sticks to them: use the keyword region, without viscosity",
+          style, id);
     if (bodies && reflect > 0.0)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix {} {}: reflect cannot be used with bodies of fix mpm/rigid: remove it", style,
@@ -295,9 +352,10 @@ void FixMPMIncompressible::check_points()
   bigint mine[2] = {0, 0}, all[2];    // points, and those of another density
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
-    if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = density * atom->vfrac[i];
+    const double mass = density_of(i) * atom->vfrac[i];
+    if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = mass;
     mine[0]++;
-    if (std::fabs(atom->rmass[i] / (density * atom->vfrac[i]) - 1.0) > SAME_DENSITY) mine[1]++;
+    if (std::fabs(atom->rmass[i] / mass - 1.0) > SAME_DENSITY) mine[1]++;
     for (int d = 0; d < domain->dimension; d++)
       if (!std::isfinite(atom->v[i][d]) || !std::isfinite(atom->x[i][d]))
         error->one(FLERR, Error::NOLASTLINE,
@@ -313,10 +371,33 @@ void FixMPMIncompressible::check_points()
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix {} {}: {} points have another mass than density {} times their volume; there is one "
-        "density",
+        "density but for points of keyword liquid",
         style, id, all[1], density);
   refuse_other_integrators(lmp, *this);
   check_others();
+}
+
+double FixMPMIncompressible::density_of(int i) const
+{
+  double of = density;
+  for (std::size_t k = 0; k < liquids.size(); k++)
+    if (atom->mask[i] & liquid_bits[k]) of = liquids[k].density;
+  return of;
+}
+
+/** Densities of faces, by the mass and the volume that points give them. */
+void FixMPMIncompressible::find_lightness(const MPMFlowPoints &points)
+{
+  const int dim = cells.lattice.dim, width = 3 * dim + 1;
+  give_volumes_to_faces(cells, points, face_volumes);
+  cells.sum(face_volumes.data(), 2 * dim);
+  lightness.assign(cells.size() * dim, 1.0);
+  for (int64_t k = 0; k < cells.size(); k++)
+    for (int c = 0; c < dim; c++) {
+      const double mass = sums[k * width + dim + c];
+      if (mass > 0.0) lightness[k * dim + c] = density * face_volumes[2 * k * dim + dim + c] / mass;
+    }
+  pressure->lightness = &lightness;
 }
 
 /** Others in the same box that this flow would go through. */
@@ -348,6 +429,7 @@ void FixMPMIncompressible::setup(int)
   if (regions) {
     regions->start_run();
     regions->find(0.0);
+    if (stick) stick->find(true);
     check_depths();
   }
   fit_gradients();
@@ -465,11 +547,13 @@ void FixMPMIncompressible::initial_integrate(int)
   cells.valid = all_valid;
   cells.find_cells();
   if (regions) regions->find(dt);
+  if (stick) stick->find(false);
 
   give_to_cells(cells, points, sums);
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
   find_velocities();
   if (flip > 0.0 || reflect > 0.0 || differ) old = star;
+  if (!liquids.empty()) find_lightness(points);
   pressure->find_wet(share);
 
   find_flow(part * (differ ? before : dt));
@@ -670,7 +754,10 @@ void FixMPMIncompressible::go_on_into_air()
   cells.keep_owned(velocity.data(), dim);
   cells.keep_owned(known.data(), dim);
   air->extend(AIR_LAYERS, velocity, known);
-  if (regions) regions->hold(velocity);
+  if (stick)
+    stick->hold(velocity);
+  else if (regions)
+    regions->hold(velocity);
   cells.reflect_velocities(velocity.data());
 }
 
@@ -819,7 +906,8 @@ void FixMPMIncompressible::restart(char *buf)
 double FixMPMIncompressible::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
-      air->memory_usage() + (regions ? regions->memory_usage() : 0.0);
+      air->memory_usage() + (regions ? regions->memory_usage() : 0.0) +
+      (stick ? stick->memory_usage() : 0.0);
   if (curved) bytes += curved->memory_usage();
   if (stress) bytes += stress->memory_usage();
   for (const auto *list : {&at_surface, &potentials, &viscous_velocity, &sums, &share, &old, &star,

@@ -29,6 +29,7 @@ class MPMFlowAir;
 class MPMFlowBodies;
 class MPMFlowPressure;
 class MPMFlowRegions;
+class MPMFlowStick;
 class MPMFlowStress;
 class MPMFlowTension;
 class MPMFlowViscosity;
@@ -41,6 +42,7 @@ struct MPMIncompressibleOptions {
   double viscosity = 0.0;
   bool implicit = false;    ///< viscosity
   double tension = 0.0;
+  double angle = 90.0;    ///< between surfaces and walls, degrees
   Transfer transfer = APIC;
   double flip = 0.0;       ///< share of FLIP
   double reflect = 0.0;    ///< share of the change by the pressure that comes once more
@@ -49,6 +51,12 @@ struct MPMIncompressibleOptions {
   int most_iterations = 10000;
   MPMFlowWall walls[3][2];
   std::vector<std::string> region_ids;
+  bool sticks = false;    ///< regions
+  struct Liquid {
+    std::string group;
+    double density;
+  };
+  std::vector<Liquid> liquids;    ///< of other densities
 
   MPM_NS::Options declare(int dim);
 
@@ -56,6 +64,7 @@ struct MPMIncompressibleOptions {
   int axis = 0, side = 0;    // of the last wall
   MPMFlowWall wall;
   std::string region_id;
+  Liquid liquid;
 };
 
 /** Flow of an incompressible fluid, with free surfaces: its points, on a staggered lattice of its own, with a pressure that
@@ -94,8 +103,12 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowStress> stress;        // implicit viscosity; null: none
   std::unique_ptr<MPMFlowTension> curved;       // with surface tension; null: none
   std::unique_ptr<MPMFlowRegions> regions;      // null: none
+  std::unique_ptr<MPMFlowStick> stick;          // regions without slip; null: none
   std::unique_ptr<MPMFlowBodies> bodies;    // of regions; null: these move by themselves, or not
   MPMRows gradient;                         // [n][dim*dim] dv_c/dx_d of points, with apic
+  std::vector<int> liquid_bits;
+  std::vector<double> lightness,
+      face_volumes;    // of faces, see MPMFlowPressure; with several densities
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
       potentials, viscous_velocity;
 
@@ -116,6 +129,8 @@ class FixMPMIncompressible :
   void weight(double *g) const;
   const std::vector<double> *surface_psi() const;
   MPMFlowPoints points_now(double dt) const;
+  double density_of(int i) const;
+  void find_lightness(const MPMFlowPoints &);
   void check_points();
   void check_others() const;
   void check_depths();

@@ -40,7 +40,6 @@ void MPMFlowBodies::find_rows(Body &body, const MPMFlowPressure &pressure) const
     bool any = false;
     for (int d = 0; d < dim; d++)
       for (int s = 0; s < 2; s++) {
-        if (cell.walls >> (2 * d + s) & 1) continue;
         double arm[3];
         const double closed =
             regions.closed_by(body.wall, s ? cell.near[2 * d + 1] : cell.number, d, arm);

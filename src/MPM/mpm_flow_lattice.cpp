@@ -166,7 +166,7 @@ void MPMFlowLattice::find_cells()
   };
   for (const auto &range : ranges) {
     cover(range, margin_of_all, true);
-    cover(range, margin_of_all + 1, false);
+    cover(range, margin_of_all + overlap, false);
   }
   grid.close_periodic();
   grid.finish();
@@ -179,7 +179,15 @@ void MPMFlowLattice::find_cells()
   nbuild++;
 }
 
-/** Number of a cell or of what it is a periodic image of; the block must be there. */
+bool MPMFlowLattice::is_inside(int64_t number) const
+{
+  int index[3];
+  grid.node_index(number, index);
+  for (int d = 0; d < lattice.dim; d++)
+    if (!lattice.periodic[d] && (index[d] < 0 || index[d] >= lattice.ncell[d])) return false;
+  return true;
+}
+
 int MPMFlowLattice::canonical(const int index[3]) const
 {
   int wrapped[3] = {0, 0, 0};

@@ -55,6 +55,7 @@ class MPMFlowLattice : protected Pointers {
   bool wants_around = false;
   int wants_more =
       0;    ///< layers of cells around those in reach of points, whose values smoothing reaches
+  int overlap = 1;       ///< layers of cells around its own ones that a rank has
   bool valid = false;    ///< the blocks are those of the present points
   bigint nbuild = 0;
 
@@ -93,6 +94,16 @@ class MPMFlowLattice : protected Pointers {
   void reflect_velocities(double *values, bool moving = true) const;
   /** Even images of values in the middle of cells. */
   void reflect_cells(double *values) const;
+  /** Images of values in the middle of cells, by f(cell that it is an image of, axis, side, value there). */
+  template <class F> void fill_images(double *values, const F &f) const
+  {
+    for (auto image = images.rbegin(); image != images.rend(); ++image)
+      values[image->number] = f(image->of_cell, image->axis, image->side, values[image->of_cell]);
+  }
+  /** Is a cell within walls? */
+  bool is_inside(int64_t number) const;
+  /** Number of a cell or of what it is a periodic image of; -1: not of this rank. */
+  int canonical(const int index[3]) const;
   /** Images of values in the middle of cells that go on linearly, where inside(number) is true of the last two cells. */
   template <class F> void extrapolate_cells(double *values, const F &inside) const
   {
@@ -132,7 +143,6 @@ class MPMFlowLattice : protected Pointers {
   void base_of(const double *x, int base[3]) const;
   void list_cells();
   void list_images();
-  int canonical(const int index[3]) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -60,11 +60,16 @@ double MPMFlowPressure::open_side(const MPMFlowLattice::Cell &cell, int side) co
   return of < 0 ? 1.0 : open(of, side / 2);
 }
 
-/** What flows through the lower face of a cell along an axis, per area, with what a wall in it carries along. */
-double MPMFlowPressure::flux(const double *velocity, int64_t cell, int axis) const
+/** What flows through a side of a cell along its axis, per area, with what a wall in it carries along. Through a wall of the box goes but
+ *  what moves there of a region. */
+double MPMFlowPressure::flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell,
+                                     int side) const
 {
-  const double u = velocity[cell * cells.lattice.dim + axis];
-  return regions ? regions->open(cell, axis) * u + regions->flux(cell, axis) : u;
+  const int axis = side / 2;
+  const int64_t of = side % 2 ? cell.near[side] : cell.number;
+  const bool wall = cell.walls >> side & 1;
+  const double u = wall ? 0.0 : velocity[of * cells.lattice.dim + axis];
+  return regions ? regions->open(of, axis) * u + regions->flux(of, axis) : u;
 }
 
 /** Are the neighbors of a cell filled so well that what is between them is water? At a flat surface, their mean is that of
@@ -106,7 +111,6 @@ void MPMFlowPressure::follow_neighbors()
 void MPMFlowPressure::find_wet(const std::vector<double> &share)
 {
   share_of = share.data();
-  wet.clear();
   flag.assign(cells.size(), 0.0);
   for (const auto &cell : cells.cells)
     if (!(regions && regions->is_closed(cell.number)))
@@ -114,6 +118,13 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
   cells.publish(flag.data(), 1);
   if (regions) follow_neighbors();
   cells.reflect_cells(flag.data());
+  find_weights();
+}
+
+/** The equations of wet cells. */
+void MPMFlowPressure::find_weights()
+{
+  wet.clear();
   inverse_diagonal.assign(cells.size(), 0.0);
   const int sides = 2 * cells.lattice.dim;
   for (int k = 0; k < (int) cells.cells.size(); k++) {
@@ -127,6 +138,7 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
       const double side = cell.walls >> s & 1 ? 0.0 : open_side(cell, s);
       const bool wall = side == 0.0;
       one.weight[s] = wall ? 0.0 : side * weight_to(cell.number, other);
+      if (!wall) one.weight[s] *= light(s % 2 ? other : cell.number, s / 2);
       one.near[s] = !wall && is_wet(other) ? other : -1;
       one.diagonal += one.weight[s];
     }
@@ -193,8 +205,8 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
     const auto &cell = cells.cells[one.cell];
     double sum = 0.0;
     for (int d = 0; d < dim; d++) {
-      if (!(cell.walls >> 2 * d & 1)) sum += flux(before, cell.number, d);
-      if (!(cell.walls >> 2 * d & 2)) sum -= flux(before, cell.near[2 * d + 1], d);
+      sum += flux_of_side(before, cell, 2 * d);
+      sum -= flux_of_side(before, cell, 2 * d + 1);
     }
     right_side[cell.number] = sum / h;
   }
@@ -264,7 +276,7 @@ void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const dou
       after[face] = known[face] = 0.0;
       if (wall || ((in || below) && open(here, d) > 0.0)) known[face] = 1.0;
       if (wall || known[face] == 0.0) continue;
-      const double weight = in ? weight_to(here, lower) : weight_to(lower, here);
+      const double weight = light(here, d) * (in ? weight_to(here, lower) : weight_to(lower, here));
       double step = of[here] - of[lower];    // that of a dry cell is zero
       if (surface && in != below) step += in ? -(*surface)[face] : (*surface)[face];
       after[face] = (before ? before[face] : 0.0) - h * weight * step;
@@ -283,6 +295,10 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
                                     const SolveGoal &goal)
 {
   const double h = cells.lattice.h;
+  if (lightness) {    // points know no density
+    lightness = nullptr;
+    find_weights();
+  }
   right_side.assign(size(), 0.0);
   excess.assign(size(), 0.0);
   for (const auto &one : wet) {
@@ -310,8 +326,8 @@ double MPMFlowPressure::largest_divergence(const double *velocity) const
     const auto &cell = cells.cells[one.cell];
     double sum = 0.0;
     for (int d = 0; d < dim; d++) {
-      if (!(cell.walls >> 2 * d & 1)) sum -= flux(velocity, cell.number, d);
-      if (!(cell.walls >> 2 * d & 2)) sum += flux(velocity, cell.near[2 * d + 1], d);
+      sum -= flux_of_side(velocity, cell, 2 * d);
+      sum += flux_of_side(velocity, cell, 2 * d + 1);
     }
     most = std::max(most, std::fabs(sum));
   }

@@ -28,7 +28,8 @@ class MPMFlowRegions;
  *  a hat that has the depth s below a flat surface is filled by 1/2 + s - s^2/2 of points that are squares (cubes), which tells how far from the middle of a
  *  wet cell the pressure is zero (F. Gibou, R.P. Fedkiw, L.-T. Cheng, M. Kang, J. Comput. Phys. 176 (2002) 205).
  *
- *  The unknown is the potential psi = dt p/density, whose gradient velocities lose. Its solve has a multigrid preconditioner,
+ *  The unknown is the potential psi = dt p/density, whose gradient velocities lose, times that density over the one at the face where there
+ *  are several. Its solve has a multigrid preconditioner,
  *  which is the faster one from the smallest flows on; that of points that spread reaches but a few cells, and the diagonal is enough. */
 class MPMFlowPressure : public MPMNodeSystem {
  public:
@@ -42,6 +43,9 @@ class MPMFlowPressure : public MPMNodeSystem {
   const MPMFlowRegions *regions = nullptr;
   /** Rigid bodies that the pressure moves; null: none. */
   const MPMFlowBodies *bodies = nullptr;
+
+  /** [cell][dim] density that psi is for over that at faces, of all cells; null: one density. */
+  const std::vector<double> *lightness = nullptr;
 
   /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
   void find_wet(const std::vector<double> &share);
@@ -113,12 +117,17 @@ class MPMFlowPressure : public MPMNodeSystem {
   void find_lift(const std::vector<double> &surface);
   double weight_to(int64_t wet_cell, int64_t other) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
-  double flux(const double *velocity, int64_t cell, int axis) const;
+  double flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell, int side) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known, const std::vector<double> *surface = nullptr) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;
   void follow_neighbors();
   void find_levels();
+  void find_weights();
+  double light(int64_t cell, int axis) const
+  {
+    return lightness ? (*lightness)[cell * cells.lattice.dim + axis] : 1.0;
+  }
 };
 
 }    // namespace LAMMPS_NS

@@ -237,6 +237,39 @@ void MPMFlowRegions::face_middle(int64_t cell, int axis, double *x) const
   place(index, offset, x);
 }
 
+double MPMFlowRegions::level_of_face(int64_t cell, int axis, double far, double &velocity) const
+{
+  const double reach = levels[cell] - 0.51 * cells.lattice.h;
+  velocity = 0.0;
+  if (reach > far) return far;
+  double x[3], v[3];
+  int wall;
+  face_middle(cell, axis, x);
+  const double level = distance(x, far, wall);
+  if (level >= far || !any_moves) return level;
+  velocity_at(wall, x, v);
+  velocity = v[axis];
+  return level;
+}
+
+double MPMFlowRegions::find_way_out(const MPMFlowLattice::Cell &cell, double *out) const
+{
+  constexpr double middle[3] = {0.5, 0.5, 0.5};
+  double x[3];
+  int wall;
+  place(cell.index, middle, x);
+  const double level = distance(x, FAR * cells.lattice.h, wall);
+  normal_at(wall, x, out);
+  return -level;
+}
+
+double MPMFlowRegions::room_in(const MPMFlowLattice::Cell &cell) const
+{
+  double sum = 0.0;
+  for (int d = 0; d < dim; d++) sum += open(cell.number, d) + open(cell.near[2 * d + 1], d);
+  return sum / (2 * dim);
+}
+
 double MPMFlowRegions::closed_by(int wall, int64_t cell, int axis, double *arm) const
 {
   const int64_t face = cell * dim + axis;

@@ -37,6 +37,7 @@ class MPMFlowRegions : protected Pointers {
   /** Motion in this step, and what is open where it begins. duration 0: without motion. */
   void find(double duration);
   int n() const { return walls.size(); }
+  bool any_move() const { return any_moves; }
 
   /** The rigid body that has this region; null: none. */
   FixMPMRigid *body(int wall) const { return walls[wall].body; }
@@ -62,6 +63,16 @@ class MPMFlowRegions : protected Pointers {
   /** Shares that points fill of what is open, from those of whole cells; complete before and afterwards. Where next to nothing is open,
    *  the cells around count. */
   void normalize(std::vector<double> &share) const;
+  /** Distance of the middle of the lower face of a cell from walls, positive in the flow, at most far; velocity: component along
+   *  the axis of the nearest wall, as if it went on to there. */
+  double level_of_face(int64_t cell, int axis, double far, double &velocity) const;
+  /** Distance of the middle of a cell from walls, positive in the flow, as far as it is looked at. */
+  double level(int64_t cell) const { return levels[cell]; }
+  /** Depth of the middle of a cell in a region; out: the direction out of it. */
+  double find_way_out(const MPMFlowLattice::Cell &cell, double *out) const;
+  /** Share of a cell that is open, by its faces. */
+  double room_in(const MPMFlowLattice::Cell &) const;
+
   /** Velocities [cell][dim] of closed faces near walls get the normal component of the wall, or none. Complete. */
   void hold(std::vector<double> &velocity, bool moving = true) const;
   /** Takes a point that is in a wall out of it, with the velocity into the wall. */

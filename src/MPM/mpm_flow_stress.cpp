@@ -8,6 +8,9 @@
 
 #include "mpm_flow_stress.h"
 
+#include "mpm_flow_regions.h"
+#include "mpm_flow_stick.h"
+
 #include <algorithm>
 
 using namespace LAMMPS_NS;
@@ -15,6 +18,8 @@ using namespace MPM_NS;
 
 // nearest place of the surface to the middle of a cell that masses are made for, in spacings
 static constexpr double NEAREST = 0.1;
+// least share of a cell next to a region that stresses are made for
+static constexpr double LEAST_ROOM = 0.05;
 // of neighbors among the cells around one
 static constexpr int STRIDE[2][3] = {{3, 1, 0}, {9, 3, 1}};
 
@@ -25,6 +30,23 @@ MPMFlowStress::MPMFlowStress(LAMMPS *lmp, const MPMFlowLattice &cells,
 {
 }
 
+/** Open share of a face. */
+double MPMFlowStress::open(int64_t face) const
+{
+  return stick ? water.open(face / dim, face % dim) : 1.0;
+}
+
+/** Open share of a side of a cell that is not in a wall of the box. */
+double MPMFlowStress::open_side(const MPMFlowLattice::Cell &cell, int side) const
+{
+  return open((int64_t) (side % 2 ? cell.near[side] : cell.number) * dim + side / 2);
+}
+
+bool MPMFlowStress::is_wall(int64_t face) const
+{
+  return stick && stick->is_wall(face);
+}
+
 /** Of wet cells along each axis: up to the middle between two of them, to a wall, or to the surface. */
 void MPMFlowStress::find_lengths()
 {
@@ -33,7 +55,8 @@ void MPMFlowStress::find_lengths()
     if (!water.is_wet(cell.number)) continue;
     for (int s = 0; s < 2 * dim; s++) {
       const int other = cell.near[s];
-      const bool surface = !(cell.walls >> s & 1) && !water.is_wet(other);
+      const bool surface =
+          !(cell.walls >> s & 1) && !water.is_wet(other) && open_side(cell, s) > 0.0;
       length[(int64_t) cell.number * dim + s / 2] +=
           surface ? std::max(NEAREST, water.distance(cell.number, other)) : 0.5;
     }
@@ -55,7 +78,7 @@ void MPMFlowStress::find_faces()
       if (cell.walls >> 2 * c & 1) continue;
       const int64_t here = cell.number, lower = cell.near[2 * c];
       const bool in = water.is_wet(here), below = water.is_wet(lower);
-      if (!in && !below) continue;
+      if ((!in && !below) || is_wall(here * dim + c)) continue;
       double mass = 1.0;
       if (!in) mass = std::max(NEAREST, water.distance(lower, here));
       if (!below) mass = std::max(NEAREST, water.distance(here, lower));
@@ -67,14 +90,27 @@ void MPMFlowStress::find_faces()
       }
       Face face = {};
       face.at = here * dim + c;
+      mass *= open(face.at);
       double of_walls = 0.0;
       for (int d = 0; d < dim; d++)
         for (int s = 0; d != c && s < 2; s++) {
           const auto &wall = cells.walls[d][s];
-          if (!(cell.walls >> (2 * d + s) & 1) || !wall.sticks) continue;
-          const double drag = 2.0 * number * mass / across[d];
+          if (!(cell.walls >> (2 * d + s) & 1)) continue;
+          double distance = 0.5, v = wall.v[c];
+          bool sticks = wall.sticks;
+          if (stick) {    // a region can be in front of the wall
+            const int64_t image = (int64_t) cell.near[2 * d + s] * dim + c;
+            const auto gap = stick->between(face.at, image);
+            if (gap.length < distance) {
+              distance = gap.length;
+              v = -gap.wall;
+              sticks = true;
+            }
+          }
+          if (!sticks) continue;
+          const double drag = number * mass / (distance * across[d]);
           of_walls += drag;
-          face.wall += drag * wall.v[c];
+          face.wall += drag * v;
         }
       face.inverse = inverse_mass[face.at] = 1.0 / (mass + of_walls);
       face.share = mass * face.inverse;
@@ -92,7 +128,8 @@ void MPMFlowStress::find_stresses()
 {
   normals.clear();
   edges.clear();
-  volume.assign(size(), 0.0);
+  for (auto &area : areas) area.assign(size(), 0.0);
+  if (stick) carried.assign(size(), 0.0);
   const int here_around = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
   for (std::size_t k = 0; k < cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
@@ -107,7 +144,16 @@ void MPMFlowStress::find_stresses()
         one.lower[d] = here * dim + d;
         one.upper[d] = (int64_t) cell.near[2 * d + 1] * dim + d;
       }
-      std::fill_n(volume.begin() + one.at, dim, one.volume);
+      one.room = stick ? std::max(LEAST_ROOM, water.regions->room_in(cell)) : 1.0;
+      std::fill_n(areas[0].begin() + one.at, dim, one.volume);
+      const auto wall = [&](int64_t face, int side) {
+        const bool open_too = is_wall(face) && !(cell.walls >> side & 1);
+        return water.regions->flux(face / dim, face % dim) +
+            (open_too ? open(face) * stick->velocity(face) : 0.0);
+      };
+      for (int d = 0; stick && d < dim; d++)
+        carried[one.at + d] =
+            one.volume * (wall(one.upper[d], 2 * d + 1) - wall(one.lower[d], 2 * d));
       normals.push_back(one);
     }
     for (int c = 0; c < dim; c++)
@@ -117,25 +163,41 @@ void MPMFlowStress::find_stresses()
         const int64_t left = around[-step_c], below = around[-step_d],
                       corner = around[-step_c - step_d];
         // two cells that meet at the edge alone do not hold each other
-        int wet = 0;
+        int wet = 0, solid = 0;
         double third = 0.0;
         for (const int64_t one : {here, left, below, corner}) {
           wet += water.is_wet(one);
+          solid += stick && water.regions->is_closed(one);
           if (dim == 3) third += length[one * dim + 3 - c - d];
         }
-        if (wet < 3) continue;
+        if (wet == 0 || wet + solid < 3) continue;
         Edge edge;
         edge.at = here * width + dim + pair_of(c, d);
         edge.face[0] = here * dim + c;
         edge.face[1] = below * dim + c;
         edge.face[2] = here * dim + d;
         edge.face[3] = left * dim + d;
-        edge.volume = dim == 3 ? third / wet : 1.0;
-        volume[edge.at] = edge.volume;
+        find_edge(edge, dim == 3 ? third / wet : 1.0);
         edges.push_back(edge);
       }
   }
-  cells.publish(volume.data(), width);
+  for (auto &area : areas) cells.publish(area.data(), width);
+}
+
+/** Volume and areas of a shear stress: walls cut off what is behind them. third: length along the edge. */
+void MPMFlowStress::find_edge(Edge &edge, double third)
+{
+  edge.volume = third;
+  for (double &area : edge.area) area = third;
+  if (stick) {
+    const auto first = stick->between(edge.face[0], edge.face[1]),
+               other = stick->between(edge.face[2], edge.face[3]);
+    edge.volume *= first.length * other.length;
+    edge.area[0] *= other.length;
+    edge.area[1] *= first.length;
+    carried[edge.at] = edge.area[0] * first.wall + edge.area[1] * other.wall;
+  }
+  for (int k = 0; k < 2; k++) areas[k][edge.at] = edge.area[k];
 }
 
 /** The stresses at the faces of owned cells. */
@@ -156,8 +218,10 @@ void MPMFlowStress::find_forces()
           face->from[upper] = (int64_t) cell.near[2 * d + 1] * width + pair;
           face->from[lower] = here * width + pair;
         }
-        face->weight[upper] = volume[face->from[upper]];
-        face->weight[lower] = -volume[face->from[lower]];
+        const double share = d == c ? open(face->at) : 1.0;
+        const auto &area = areas[d < c];
+        face->weight[upper] = share * area[face->from[upper]];
+        face->weight[lower] = -share * area[face->from[lower]];
       }
       ++face;
     }
@@ -166,15 +230,20 @@ void MPMFlowStress::find_forces()
 void MPMFlowStress::find_diagonal()
 {
   inverse_diagonal.assign(size(), 0.0);
+  const auto square = [](double x) {
+    return x * x;
+  };
   for (const auto &one : normals)
     for (int d = 0; d < dim; d++)
       inverse_diagonal[one.at + d] = 1.0 /
-          (one.volume * one.volume * (inverse_mass[one.lower[d]] + inverse_mass[one.upper[d]]) +
-           one.volume * (1.0 - 1.0 / dim) / (2.0 * number));
+          (square(one.volume) *
+               (square(open(one.lower[d])) * inverse_mass[one.lower[d]] +
+                square(open(one.upper[d])) * inverse_mass[one.upper[d]]) +
+           one.volume * one.room * (1.0 - 1.0 / dim) / (2.0 * number));
   for (const auto &edge : edges) {
     double sum = 0.0;
-    for (const int64_t face : edge.face) sum += inverse_mass[face];
-    inverse_diagonal[edge.at] = 1.0 / (edge.volume * edge.volume * sum + edge.volume / number);
+    for (int k = 0; k < 4; k++) sum += square(edge.area[k / 2]) * inverse_mass[edge.face[k]];
+    inverse_diagonal[edge.at] = 1.0 / (sum + edge.volume / number);
   }
   cells.publish(inverse_diagonal.data(), width);
 }
@@ -186,10 +255,12 @@ void MPMFlowStress::strain(const double *u, double *out, double sign) const
 {
   for (const auto &one : normals)
     for (int d = 0; d < dim; d++)
-      out[one.at + d] += sign * one.volume * (u[one.upper[d]] - u[one.lower[d]]);
+      out[one.at + d] += sign * one.volume *
+          (open(one.upper[d]) * u[one.upper[d]] - open(one.lower[d]) * u[one.lower[d]]);
   for (const auto &edge : edges) {
     const int64_t *const f = edge.face;
-    out[edge.at] += sign * edge.volume * (u[f[0]] - u[f[1]] + u[f[2]] - u[f[3]]);
+    out[edge.at] +=
+        sign * (edge.area[0] * (u[f[0]] - u[f[1]]) + edge.area[1] * (u[f[2]] - u[f[3]]));
   }
 }
 
@@ -207,7 +278,8 @@ void MPMFlowStress::apply(const double *x, double *y)
   for (const auto &one : normals) {
     double mean = 0.0;
     for (int d = 0; d < dim; d++) mean += x[one.at + d] / dim;
-    for (int d = 0; d < dim; d++) y[one.at + d] = one.volume * half * (x[one.at + d] - mean);
+    for (int d = 0; d < dim; d++)
+      y[one.at + d] = one.volume * one.room * half * (x[one.at + d] - mean);
   }
   for (const auto &edge : edges) y[edge.at] = 2.0 * half * edge.volume * x[edge.at];
   strain(speed.data(), y, -1.0);
@@ -229,15 +301,25 @@ SolveReport MPMFlowStress::step(double new_number, std::vector<double> &velocity
   find_forces();
   find_diagonal();
 
+  const auto walls_are = [&](bool move) {
+    for (const auto &cell : cells.cells)
+      for (int c = 0; stick && c < dim; c++) {
+        const int64_t face = (int64_t) cell.number * dim + c;
+        if (is_wall(face)) velocity[face] = move ? stick->velocity(face) : 0.0;
+      }
+  };
+  walls_are(false);
   for (const auto &face : faces) velocity[face.at] = face.share * velocity[face.at] + face.wall;
   cells.publish(velocity.data(), dim);
   right_side.assign(size(), 0.0);
   stress.assign(size(), 0.0);
+  if (stick) right_side = carried;
   strain(velocity.data(), right_side.data(), 1.0);
   cells.publish(right_side.data(), width);
   const SolveReport report = method.solve(*this, right_side.data(), stress.data(), goal);
 
   cells.keep_owned(velocity.data(), dim);
+  walls_are(true);
   for (const auto &face : faces)
     for (int k = 0; k < 2 * dim; k++)
       velocity[face.at] += face.inverse * face.weight[k] * stress[face.from[k]];
@@ -252,8 +334,8 @@ double MPMFlowStress::memory_usage() const
 {
   double bytes = faces.capacity() * sizeof(Face) + normals.capacity() * sizeof(Normal) +
       edges.capacity() * sizeof(Edge) + method.memory_usage();
-  for (const auto *list :
-       {&length, &inverse_mass, &volume, &speed, &right_side, &stress, &inverse_diagonal})
+  for (const auto *list : {&length, &inverse_mass, &areas[0], &areas[1], &carried, &speed,
+                           &right_side, &stress, &inverse_diagonal})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMFlowStick;
 
 /** Viscosity of an incompressible fluid by an implicit step, together with the pressure (E. Larionov, C. Batty, R. Bridson, ACM
  *  Trans. Graph. 36 (2017) 101): velocities u and stresses sigma at the end of a step dt satisfy
@@ -32,10 +33,15 @@ namespace LAMMPS_NS {
  *
  *  with differences E of velocities, their transpose E^T, which is minus the divergence of a stress, volumes W of cells and edges, masses M of faces (all up to the surface, in those
  *  of a cell), and the compliance C. Walls that stick act on the faces next to them, which has their velocity and a
- *  mass of its own in M. */
+ *  mass of its own in M. Regions that stick have the velocity of faces whose middle is in them, which have no inverse mass; next to
+ *  them, stresses at edges belong to the distance from a face to the wall instead of a spacing, and those in cells to what is open
+ *  of the cell and its faces, as for the pressure. */
 class MPMFlowStress : public MPMNodeSystem {
  public:
   MPMFlowStress(class LAMMPS *lmp, const MPMFlowLattice &cells, const MPMFlowPressure &water);
+
+  /** Regions without slip; null: none. */
+  const MPMFlowStick *stick = nullptr;
 
   /** A step. number: dt nu/h^2; velocity: [cell][dim] of owned cells, those of faces next to water count and change; afterwards it is
    *  that of all cells. psi: [cell], dt/density times the mean pressure is added to it. */
@@ -57,11 +63,12 @@ class MPMFlowStress : public MPMNodeSystem {
   struct Normal {
     int64_t at;                    // in stresses, of the first one
     int64_t lower[3], upper[3];    // faces
-    double volume;
+    double volume, room;           // up to the surface; share of it that is open
   };
   struct Edge {
     int64_t at;
     int64_t face[4];    // with the signs + - + -
+    double area[2];     // of the stress on the first two, and on the others
     double volume;
   };
 
@@ -72,7 +79,9 @@ class MPMFlowStress : public MPMNodeSystem {
   std::vector<Face> faces;
   std::vector<Normal> normals;
   std::vector<Edge> edges;
-  std::vector<double> length, inverse_mass, volume, speed, right_side, stress, inverse_diagonal;
+  std::vector<double> carried;     // [stress] what walls add to W E u; empty without regions
+  std::vector<double> areas[2];    // [stress] for both components that a shear stress acts on
+  std::vector<double> length, inverse_mass, speed, right_side, stress, inverse_diagonal;
   MPM_NS::ConjugateGradients method;
 
   static int pair_of(int c, int d) { return c + d - 1; }    // 01, 02, 12
@@ -81,6 +90,10 @@ class MPMFlowStress : public MPMNodeSystem {
   void find_stresses();
   void find_forces();
   void find_diagonal();
+  void find_edge(Edge &, double third);
+  double open(int64_t face) const;
+  double open_side(const MPMFlowLattice::Cell &cell, int side) const;
+  bool is_wall(int64_t face) const;
   void strain(const double *u, double *out, double sign) const;
 };
 

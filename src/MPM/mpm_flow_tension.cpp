@@ -23,11 +23,18 @@ double MPMFlowTension::stable_dt(double tension, double h)
   return std::sqrt(h * h * h / (4.0 * 3.14159265358979323846 * tension));
 }
 
-/** Values of owned cells to all others, and even beyond walls. */
-void MPMFlowTension::complete(std::vector<double> &values) const
+/** Zero for a right angle, to the last digit. */
+static double cotangent(double angle)
 {
-  cells.publish(values.data(), 1);
-  cells.reflect_cells(values.data());
+  const double c = std::cos(angle);
+  return std::fabs(c) < 1.0e-12 ? 0.0 : c / std::sin(angle);
+}
+
+MPMFlowTension::MPMFlowTension(const MPMFlowLattice &cells, const MPMFlowPressure &water,
+                               double angle) :
+    cells(cells),
+    water(water), wetting(cells, water.regions, cotangent(angle))
+{
 }
 
 /** What is below the surface is full: only there points that are not even would be seen as if they were curvature. */
@@ -36,14 +43,14 @@ void MPMFlowTension::find_smooth(const std::vector<double> &share)
   smooth.assign(cells.size(), 0.0);
   for (const auto &cell : cells.cells)
     smooth[cell.number] = water.is_deep(cell) ? 1.0 : std::min(1.0, share[cell.number]);
-  complete(smooth);
+  wetting.complete(smooth, true);
   for (int pass = 0; pass < PASSES; pass++)
     for (int d = 0; d < cells.lattice.dim; d++) {
       other.assign(cells.size(), 0.0);
       for (const auto &cell : cells.cells)
         other[cell.number] = 0.5 * smooth[cell.number] +
             0.25 * (smooth[cell.near[2 * d]] + smooth[cell.near[2 * d + 1]]);
-      complete(other);
+      wetting.complete(other, true);
       smooth.swap(other);
     }
 }
@@ -57,12 +64,13 @@ void MPMFlowTension::find_curvature()
     for (const auto &cell : cells.cells)
       second[d][cell.number] =
           smooth[cell.near[2 * d]] - 2.0 * smooth[cell.number] + smooth[cell.near[2 * d + 1]];
-    complete(second[d]);
+    wetting.complete(second[d], false);
   }
   curvature.assign(cells.size(), 0.0);
   const int here = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
   for (std::size_t k = 0; k < cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
+    if (wetting.is_behind(cell.number)) continue;
     const int *const at = cells.around.data() + k * naround + here;
     const auto corners = [&](const std::vector<double> &of, int c, int d) {
       const int a = STRIDE[dim - 2][c], b = STRIDE[dim - 2][d];
@@ -87,13 +95,14 @@ void MPMFlowTension::find_curvature()
     const double of_surface = (along / square - trace) / std::sqrt(square);
     curvature[cell.number] = std::max(1.0 - dim, std::min(of_surface, dim - 1.0));
   }
-  complete(curvature);
+  wetting.complete(curvature, false, true);
 }
 
 void MPMFlowTension::find(const std::vector<double> &share, double factor,
                           std::vector<double> &at_faces)
 {
   const int dim = cells.lattice.dim;
+  wetting.find_walls();
   find_smooth(share);
   find_curvature();
   at_faces.assign(cells.size() * dim, 0.0);
@@ -114,7 +123,7 @@ void MPMFlowTension::find(const std::vector<double> &share, double factor,
 
 double MPMFlowTension::memory_usage() const
 {
-  double bytes = 0.0;
+  double bytes = wetting.memory_usage();
   for (const auto *list : {&smooth, &other, &second[0], &second[1], &second[2], &curvature})
     bytes += list->capacity() * sizeof(double);
   return bytes;

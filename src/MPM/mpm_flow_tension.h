@@ -10,6 +10,7 @@
 #define LMP_MPM_FLOW_TENSION_H
 
 #include "mpm_flow_pressure.h"
+#include "mpm_flow_wetting.h"
 
 #include <vector>
 
@@ -20,16 +21,14 @@ namespace LAMMPS_NS {
  *  Shares are smoothed by PASSES times the weights 1/4, 1/2, 1/4 along each axis, so that steps of the size of a point do not count: a
  *  normal distribution with a deviation of sqrt(PASSES/2) spacings. The level sets of a disk or ball that is smoothed are circles or
  *  spheres about the same middle, whose curvature div(n), with the normal n out of the fluid, is that of the surface between
- *  them; waves of a surface with the number k lose the share k^2 PASSES/4 h^2 of it. Derivatives are of fourth order. Walls are
- *  planes of symmetry: surfaces meet them at a right angle. */
+ *  them; waves of a surface with the number k lose the share k^2 PASSES/4 h^2 of it. Derivatives are of fourth order. Surfaces meet
+ *  walls at the contact angle, as what is behind these is made so (MPMFlowWetting). */
 class MPMFlowTension {
  public:
   static constexpr int PASSES = 4;
 
-  MPMFlowTension(const MPMFlowLattice &cells, const MPMFlowPressure &water) :
-      cells(cells), water(water)
-  {
-  }
+  /** angle: between walls and the surface, in the fluid [radians]. */
+  MPMFlowTension(const MPMFlowLattice &cells, const MPMFlowPressure &water, double angle);
 
   /** One over the frequency of the shortest capillary wave, J.U. Brackbill, D.B. Kothe, C. Zemach, J. Comput. Phys. 100 (1992) 335;
    *  tension: over the density [length^3/time^2]. */
@@ -44,9 +43,9 @@ class MPMFlowTension {
  private:
   const MPMFlowLattice &cells;
   const MPMFlowPressure &water;
+  MPMFlowWetting wetting;
   std::vector<double> smooth, other, second[3], curvature;
 
-  void complete(std::vector<double> &values) const;
   void find_smooth(const std::vector<double> &share);
   void find_curvature();
 };

@@ -160,6 +160,26 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
   }
 }
 
+template <int dim>
+void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
+                  std::vector<double> &sums)
+{
+  const Places<dim> places(cells.lattice);
+  StaggeredWeights w;
+  Reach<dim> reach;
+  for (const auto &run : cells.runs) {
+    const auto &block = cells.grid.blocks[run.slot];
+    for (int i = run.first; i < run.last; i++) {
+      places.find(points.x[i], w);
+      reach.find(cells.grid, block, w.base);
+      visit<dim>(reach, [&](int64_t number, const int k[3]) {
+        double *const to = sums.data() + number * 2 * dim + dim;
+        for (int c = 0; c < dim; c++) to[c] += points.volume[i] * w.face<dim>(c, k);
+      });
+    }
+  }
+}
+
 /** Velocities at a place, and their gradients times the spacing, if asked for. */
 template <int dim>
 void interpolate(const Reach<dim> &reach, const StaggeredWeights &w, const double *values,
@@ -281,6 +301,14 @@ void LAMMPS_NS::give_to_cells(const MPMFlowLattice &cells, const MPMFlowPoints &
   const int dim = cells.lattice.dim;
   sums.assign(cells.size() * (3 * dim + 1), 0.0);
   dim == 2 ? give<2>(cells, points, sums) : give<3>(cells, points, sums);
+}
+
+void LAMMPS_NS::give_volumes_to_faces(const MPMFlowLattice &cells, const MPMFlowPoints &points,
+                                      std::vector<double> &sums)
+{
+  const int dim = cells.lattice.dim;
+  sums.assign(cells.size() * 2 * dim, 0.0);
+  dim == 2 ? give_volumes<2>(cells, points, sums) : give_volumes<3>(cells, points, sums);
 }
 
 bool LAMMPS_NS::get_from_cells(const MPMFlowLattice &cells, const MPMFlowPoints &points,

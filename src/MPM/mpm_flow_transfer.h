@@ -44,6 +44,10 @@ struct MPMFlowUpdate {
  *  f (1 - f) h^2. */
 void give_to_cells(const MPMFlowLattice &, const MPMFlowPoints &, std::vector<double> &sums);
 
+/** Volume that points give to faces, with the weights of their mass: sums [cell][2 dim], the second half. */
+void give_volumes_to_faces(const MPMFlowLattice &, const MPMFlowPoints &,
+                           std::vector<double> &sums);
+
 /** Points from cells: their velocities and gradients, and their motion through the field of velocities [cell][dim], by the
  *  midpoint rule. pressure: [cell], goes to stress[i][0..2]. Returns false when a point has to have its cells found anew. */
 bool get_from_cells(const MPMFlowLattice &, const MPMFlowPoints &, const double *velocity,
