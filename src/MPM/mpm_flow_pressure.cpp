@@ -106,7 +106,6 @@ void MPMFlowPressure::follow_neighbors()
 void MPMFlowPressure::find_wet(const std::vector<double> &share)
 {
   share_of = share.data();
-  wet.clear();
   flag.assign(cells.size(), 0.0);
   for (const auto &cell : cells.cells)
     if (!(regions && regions->is_closed(cell.number)))
@@ -114,6 +113,20 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
   cells.publish(flag.data(), 1);
   if (regions) follow_neighbors();
   cells.reflect_cells(flag.data());
+  mobility = nullptr;
+  find_weights();
+}
+
+void MPMFlowPressure::set_mobility(const std::vector<double> *of_faces)
+{
+  mobility = of_faces;
+  find_weights();
+}
+
+/** The equations of the wet cells. */
+void MPMFlowPressure::find_weights()
+{
+  wet.clear();
   inverse_diagonal.assign(cells.size(), 0.0);
   const int sides = 2 * cells.lattice.dim;
   for (int k = 0; k < (int) cells.cells.size(); k++) {
@@ -127,6 +140,9 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
       const double side = cell.walls >> s & 1 ? 0.0 : open_side(cell, s);
       const bool wall = side == 0.0;
       one.weight[s] = wall ? 0.0 : side * weight_to(cell.number, other);
+      if (mobility)
+        one.weight[s] *=
+            (*mobility)[(int64_t) (s % 2 ? other : cell.number) * cells.lattice.dim + s / 2];
       one.near[s] = !wall && is_wet(other) ? other : -1;
       one.diagonal += one.weight[s];
     }
@@ -264,7 +280,8 @@ void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const dou
       after[face] = known[face] = 0.0;
       if (wall || ((in || below) && open(here, d) > 0.0)) known[face] = 1.0;
       if (wall || known[face] == 0.0) continue;
-      const double weight = in ? weight_to(here, lower) : weight_to(lower, here);
+      const double weight = (in ? weight_to(here, lower) : weight_to(lower, here)) *
+          (mobility ? (*mobility)[face] : 1.0);
       double step = of[here] - of[lower];    // that of a dry cell is zero
       if (surface && in != below) step += in ? -(*surface)[face] : (*surface)[face];
       after[face] = (before ? before[face] : 0.0) - h * weight * step;

@@ -45,6 +45,9 @@ class MPMFlowPressure : public MPMNodeSystem {
 
   /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
   void find_wet(const std::vector<double> &share);
+  /** Share of the gradient of psi that velocities of faces [cell][dim] lose, of all cells, if what is in the water resists its
+   *  motion; null: all of it. Counts until find_wet(). */
+  void set_mobility(const std::vector<double> *);
   bool is_wet(int64_t number) const { return flag[number] > 0.0; }
   /** Wet, and so are all neighbors. */
   bool is_deep(const MPMFlowLattice::Cell &) const;
@@ -107,6 +110,7 @@ class MPMFlowPressure : public MPMNodeSystem {
   std::vector<Wet> wet;
   std::vector<double> excess, lift, flag, right_side, inverse_diagonal;
   const double *share_of = nullptr;
+  const std::vector<double> *mobility = nullptr;
   double screen = 0.0;    // 1/length^2
   MPM_NS::ConjugateGradients method;
 
@@ -118,6 +122,7 @@ class MPMFlowPressure : public MPMNodeSystem {
                          double *known, const std::vector<double> *surface = nullptr) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;
   void follow_neighbors();
+  void find_weights();
   void find_levels();
 };
 
