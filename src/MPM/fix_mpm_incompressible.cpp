@@ -11,6 +11,7 @@
 #include "mpm_flow_air.h"
 #include "mpm_flow_bodies.h"
 #include "mpm_flow_grains.h"
+#include "mpm_flow_inflow.h"
 #include "mpm_flow_pressure.h"
 #include "mpm_flow_regions.h"
 #include "mpm_flow_stress.h"
@@ -54,6 +55,8 @@ static constexpr double SAME_DENSITY = 1.0e-9;
 static constexpr double NEAREST_SURFACE = 1.0e-4;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
+// share of what comes in that may have no room, by the tolerance of the pressure
+static constexpr double NOT_IN = 0.05;
 // accelerations over that of the weight for which the first step of a fluid at rest is made: at the edges of a block of water
 // that is released the pressure makes such ones
 static constexpr double FIRST_FALL = 4.0;
@@ -268,6 +271,13 @@ void FixMPMIncompressible::init()
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: {} cannot be used with grains of fix mpm/immersed: remove it", style, id,
                implicit ? "implicit yes" : "reflect");
+  inflow = std::make_unique<MPMFlowInflow>(lmp, cells, *this);
+  if (!inflow->any()) inflow.reset();
+  if (inflow && (reflect > 0.0 || implicit))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: {} cannot be used with points of fix mpm/emit: remove it", style, id,
+               implicit ? "implicit yes" : "reflect");
+  pressure->sources = inflow ? &inflow->sources() : nullptr;
   force_reneighbor = neighbor->includegroup ? 1 : 0;
   next_reneighbor = -1;
   forces_known = false;
@@ -492,6 +502,7 @@ void FixMPMIncompressible::initial_integrate(int)
   if (grains && !cells.valid) grains->list();
   cells.find_cells();
   if (regions) regions->find(dt);
+  if (inflow) inflow->find();
 
   give_to_cells(cells, points, sums);
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
@@ -511,10 +522,8 @@ void FixMPMIncompressible::initial_integrate(int)
     find_flow(part * dt);
   }
   check_speed();
-  if (grains) {
-    grains->end(velocity);
-    pressure->set_mobility(nullptr);    // points spread among grains, too
-  }
+  if (grains) grains->end(velocity);
+  if (grains || inflow) pressure->set_mobility(nullptr);    // points spread among grains, too
 
   if (spread > 0.0) find_shift();
   if (bodies) bodies->move(dt);
@@ -524,7 +533,8 @@ void FixMPMIncompressible::initial_integrate(int)
                                        reflect,
                                        reflect > 0.0 ? more.data() : nullptr,
                                        spread > 0.0 ? shift.data() : nullptr,
-                                       regions.get()};
+                                       regions.get(),
+                                       inflow.get()};
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
 
@@ -539,8 +549,11 @@ void FixMPMIncompressible::find_flow(double duration)
   add_forces(duration * force->ftm2v);
   if (grains) {
     grains->begin(duration, sums, share, before_forces, star);
-    pressure->set_mobility(&grains->mobility());
-  }
+    mobility = grains->mobility();
+  } else if (inflow)
+    mobility.assign(star.size(), 1.0);
+  if (inflow) inflow->hold(star, &mobility);
+  if (grains || inflow) pressure->set_mobility(&mobility);
 
   velocity.assign(star.size(), 0.0);
   known.assign(star.size(), 0.0);
@@ -574,6 +587,10 @@ void FixMPMIncompressible::find_flow(double duration)
   if (bodies) bodies->end(pressure->psi.data());
   if (stress) find_stress(duration, rounding);
   go_on_into_air();
+  if (inflow) {
+    inflow->hold(velocity, nullptr);
+    check_inflow();
+  }
   last.iterations = report.iterations;
   last.residual = report.right_side > 0.0 ? report.residuals.back() / report.right_side : 0.0;
   last.divergence = pressure->largest_divergence(velocity.data());
@@ -729,6 +746,20 @@ void FixMPMIncompressible::find_shift()
   cells.reflect_velocities(shift.data(), false);
 }
 
+/** What comes in must have a way out, or a surface that rises: else the pressure has no solution, and what was found is that of
+ *  less inflow. */
+void FixMPMIncompressible::check_inflow() const
+{
+  double mine[2] = {0.0, 0.0}, all[2];
+  pressure->add_balance(velocity.data(), mine, mine + 1);
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  if (all[1] > 0.0 && std::fabs(all[0]) > NOT_IN * all[1])
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: at step {} there is no room for what fix mpm/emit brings: leave a free "
+               "surface, or let fix mpm/absorb take as much away",
+               style, id, update->ntimestep);
+}
+
 void FixMPMIncompressible::check_speed()
 {
   double most[1] = {0.0}, all[1];
@@ -873,11 +904,12 @@ double FixMPMIncompressible::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
       air->memory_usage() + (regions ? regions->memory_usage() : 0.0) +
-      (grains ? grains->memory_usage() : 0.0);
+      (grains ? grains->memory_usage() : 0.0) + (inflow ? inflow->memory_usage() : 0.0);
   if (curved) bytes += curved->memory_usage();
   if (stress) bytes += stress->memory_usage();
-  for (const auto *list : {&at_surface, &potentials, &viscous_velocity, &before_forces, &sums,
-                           &share, &old, &star, &more, &velocity, &known, &pressures, &shift})
+  for (const auto *list :
+       {&at_surface, &potentials, &viscous_velocity, &before_forces, &mobility, &sums, &share, &old,
+        &star, &more, &velocity, &known, &pressures, &shift})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

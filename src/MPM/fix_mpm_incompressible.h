@@ -28,6 +28,7 @@ namespace LAMMPS_NS {
 class MPMFlowAir;
 class MPMFlowBodies;
 class MPMFlowGrains;
+class MPMFlowInflow;
 class MPMFlowPressure;
 class MPMFlowRegions;
 class MPMFlowStress;
@@ -89,6 +90,7 @@ class FixMPMIncompressible :
   /** Node spacing of a flow for which a region is solid; 0: it is not. */
   double spacing_around(const std::string &region) const;
   double spacing() const { return h; }
+  double density_of_fluid() const { return density; }
   /** An error of who has another density of the fluid. */
   void check_density(double of_fluid, const std::string &who) const;
 
@@ -102,9 +104,10 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowRegions> regions;      // null: none
   std::unique_ptr<MPMFlowBodies> bodies;    // of regions; null: these move by themselves, or not
   std::unique_ptr<MPMFlowGrains> grains;    // of fix mpm/immersed; null: none
+  std::unique_ptr<MPMFlowInflow> inflow;    // of fix mpm/emit; null: none
   MPMRows gradient;                         // [n][dim*dim] dv_c/dx_d of points, with apic
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
-      potentials, viscous_velocity, before_forces;
+      potentials, viscous_velocity, before_forces, mobility;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
   mutable double limit_before =
@@ -137,6 +140,7 @@ class FixMPMIncompressible :
   void find_stress(double dt, double rounding);
   void find_flow(double duration);
   void find_pressures(double pressure_to_psi);
+  void check_inflow() const;
   void check_speed();
 };
 

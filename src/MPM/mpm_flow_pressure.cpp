@@ -201,18 +201,12 @@ void MPMFlowPressure::precondition(const double *r, double *z)
 SolveReport MPMFlowPressure::project(const double *before, double *after, double *known,
                                      const SolveGoal &goal, const std::vector<double> *surface)
 {
-  const int dim = cells.lattice.dim;
   const double h = cells.lattice.h;
   right_side.assign(size(), 0.0);
   psi.assign(size(), 0.0);
   for (const auto &one : wet) {
     const auto &cell = cells.cells[one.cell];
-    double sum = 0.0;
-    for (int d = 0; d < dim; d++) {
-      if (!(cell.walls >> 2 * d & 1)) sum += flux(before, cell.number, d);
-      if (!(cell.walls >> 2 * d & 2)) sum -= flux(before, cell.near[2 * d + 1], d);
-    }
-    right_side[cell.number] = sum / h;
+    right_side[cell.number] = -outflow(before, cell) / h;
   }
   if (surface) find_lift(*surface);
   cells.publish(right_side.data(), 1);
@@ -319,20 +313,33 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
   return report;
 }
 
+/** What flows out of a cell through its sides and does not come into it, per area of a side. */
+double MPMFlowPressure::outflow(const double *velocity, const MPMFlowLattice::Cell &cell) const
+{
+  double sum = 0.0;
+  for (int d = 0; d < cells.lattice.dim; d++) {
+    if (!(cell.walls >> 2 * d & 1)) sum -= flux(velocity, cell.number, d);
+    if (!(cell.walls >> 2 * d & 2)) sum += flux(velocity, cell.near[2 * d + 1], d);
+  }
+  return sources ? sum - cells.lattice.h * (*sources)[cell.number] : sum;
+}
+
 double MPMFlowPressure::largest_divergence(const double *velocity) const
 {
-  const int dim = cells.lattice.dim;
   double most = 0.0;
+  for (const auto &one : wet)
+    most = std::max(most, std::fabs(outflow(velocity, cells.cells[one.cell])));
+  return most / cells.lattice.h;
+}
+
+void MPMFlowPressure::add_balance(const double *velocity, double *out, double *in) const
+{
+  const double h = cells.lattice.h, area = std::pow(h, cells.lattice.dim - 1);
   for (const auto &one : wet) {
     const auto &cell = cells.cells[one.cell];
-    double sum = 0.0;
-    for (int d = 0; d < dim; d++) {
-      if (!(cell.walls >> 2 * d & 1)) sum -= flux(velocity, cell.number, d);
-      if (!(cell.walls >> 2 * d & 2)) sum += flux(velocity, cell.near[2 * d + 1], d);
-    }
-    most = std::max(most, std::fabs(sum));
+    *out += area * outflow(velocity, cell);
+    if (sources) *in += area * h * (*sources)[cell.number];
   }
-  return most / cells.lattice.h;
 }
 
 void MPMFlowPressure::extend_into_air(std::vector<double> &values,

@@ -42,6 +42,8 @@ class MPMFlowPressure : public MPMNodeSystem {
   const MPMFlowRegions *regions = nullptr;
   /** Rigid bodies that the pressure moves; null: none. */
   const MPMFlowBodies *bodies = nullptr;
+  /** [cell] rate of its volume that comes into a cell, of all cells; null: nothing comes. */
+  const std::vector<double> *sources = nullptr;
 
   /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
   void find_wet(const std::vector<double> &share);
@@ -83,6 +85,8 @@ class MPMFlowPressure : public MPMNodeSystem {
   std::vector<double> psi;    ///< of all cells, zero where there is no water
   /** Largest |div v| of the wet cells of this rank [1/time]. */
   double largest_divergence(const double *velocity) const;
+  /** What flows out of the wet cells of this rank and does not come into them, and what comes (volume/time, in 2d area). */
+  void add_balance(const double *velocity, double *out, double *in) const;
   int64_t nwet() const { return (int64_t) wet.size(); }    ///< of this rank
   /** psi with values next to the surface that make it what it is there in between, zero or that of project(); of all cells. */
   void extend_into_air(std::vector<double> &values,
@@ -118,6 +122,7 @@ class MPMFlowPressure : public MPMNodeSystem {
   double weight_to(int64_t wet_cell, int64_t other) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
   double flux(const double *velocity, int64_t cell, int axis) const;
+  double outflow(const double *velocity, const MPMFlowLattice::Cell &) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known, const std::vector<double> *surface = nullptr) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;

@@ -8,6 +8,7 @@
 
 #include "mpm_flow_transfer.h"
 
+#include "mpm_flow_inflow.h"
 #include "mpm_flow_reach.h"
 #include "mpm_flow_regions.h"
 
@@ -171,6 +172,13 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       });
       for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
 
+      if (update.inflow && update.inflow->carry(x, v, points.dt)) {
+        if (points.gradient) std::fill_n(points.gradient[i], dim * dim, 0.0);
+        places.keep_inside(x);
+        places.find(x, w);
+        all_in_reach = all_in_reach && cells.in_reach(run, w.base);
+        continue;
+      }
       if (update.old) {
         interpolate<dim>(reach, w, update.old, old, nullptr);
         for (int c = 0; c < dim; c++) v[c] = now[c] + update.flip * (v[c] - old[c]);
