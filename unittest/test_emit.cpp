@@ -607,7 +607,8 @@ variable atoms atom x
         "fix m all mpm/material density 1 eos linear 1\n" +
             emit,
         "every"},
-       {"fix flow all mpm/incompressible 0.05 1000\n" + emit, "knows no mouth"},
+       {"fix flow all mpm/incompressible 0.05 1000 reflect 0.5\n" + emit,
+        "reflect cannot be used with points"},
        {"fix grid all mpm 0.05\nfix m all mpm/material density 1 eos linear 1\n"
         "fix n all mpm/material density 2 eos linear 1\n" +
             emit,

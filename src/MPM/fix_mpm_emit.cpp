@@ -15,6 +15,7 @@
 
 #include "fix_mpm_emit.h"
 
+#include "fix_mpm_incompressible.h"
 #include "fix_mpm_material.h"
 #include "material/material.h"
 #include "math/matrix.h"
@@ -160,6 +161,17 @@ bool FixMPMEmit::emits_into(const MPMField &one) const
   return (one.fix.groupbit & (1 | groupbit)) != 0;
 }
 
+double FixMPMEmit::spacing_of_nodes() const
+{
+  return fluid ? fluid->spacing() : field->lattice.h;
+}
+
+void FixMPMEmit::velocity_now(double *v)
+{
+  update_motion();
+  std::copy_n(flow, 3, v);
+}
+
 /** The only field and the only material that new points will have: they are in group all and that of this fix. */
 void FixMPMEmit::find_field()
 {
@@ -176,18 +188,17 @@ void FixMPMEmit::find_field()
     }
     return found;
   };
+  field = nullptr;
+  material = nullptr;
+  fluid = dynamic_cast<const FixMPMIncompressible *>(only("^mpm/incompressible$"));
+  if (fluid) return;
   Fix *const grid = only("^mpm$");
-  if (!grid) {
-    const bool flow = !modify->get_fix_by_style("^mpm/incompressible$").empty();
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Points of fix mpm/emit {} would belong to no fix mpm: give it and a fix mpm the same "
-        "group, or group all{}",
-        id,
-        flow ? "; fix mpm/incompressible cannot have points that come, as its pressure knows "
-               "no mouth: use a material of small compressibility"
-             : "");
-  }
+  if (!grid)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Points of fix mpm/emit {} would belong to no fix mpm or mpm/incompressible: give "
+               "it and one of "
+               "these the same group, or group all",
+               id);
   field = MPMField::find(lmp, grid->id);
   material = dynamic_cast<FixMPMMaterial *>(only("^mpm/material$"));
   if (!material)
@@ -200,6 +211,14 @@ void FixMPMEmit::find_field()
 
 void FixMPMEmit::refuse_combinations() const
 {
+  if (fluid) {
+    const char *const wrong = moves() ? "move" : has_temperature ? "temperature" : nullptr;
+    if (wrong)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/emit {}: {} cannot be used with fix {} (style {}): remove it", id, wrong,
+                 fluid->id, fluid->style);
+    return;
+  }
   const auto &options = field->options;
   refuse_field(
       lmp, *this, *field,
@@ -287,24 +306,26 @@ void FixMPMEmit::make_mouth()
         "Fix mpm/emit {}: the velocity is zero at the start, and does not tell where the flow "
         "goes: use the keyword normal",
         id);
-  layer = spacing > 0.0 ? spacing : field->lattice.h / ppc;
-  mouth = std::make_unique<MPMMouth>(lmp, fmt::format("Fix mpm/emit {}", id), region,
-                                     past.direction, layer, area, field->options.axisymmetric);
+  const double h = spacing_of_nodes();
+  layer = spacing > 0.0 ? spacing : h / ppc;
+  mouth =
+      std::make_unique<MPMMouth>(lmp, fmt::format("Fix mpm/emit {}", id), region, past.direction,
+                                 layer, area, field && field->options.axisymmetric);
   std::copy_n(mouth->normal, 3, past.direction);
   section = 0.0;
   for (const auto &column : mouth->columns)
-    section += column.area * field->frame->circle(column.x[0]);
-  if (mouth->length < field->lattice.h)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/emit {}: the mouth is {:.6g} long along the flow, less than a cell of fix mpm "
-        "{} ({:.6g}): make region {} longer",
-        id, mouth->length, field->id(), field->lattice.h, region_id);
-  if (layer > field->lattice.h * (1.0 + 1.0e-9) && comm->me == 0)
+    section += column.area * (field ? field->frame->circle(column.x[0]) : 1.0);
+  const Fix &grid = fluid ? static_cast<const Fix &>(*fluid) : field->fix;
+  if (mouth->length < h)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/emit {}: the mouth is {:.6g} long along the flow, less than a cell of fix "
+               "{} {} ({:.6g}): make region {} longer",
+               id, mouth->length, grid.style, grid.id, h, region_id);
+  if (layer > h * (1.0 + 1.0e-9) && comm->me == 0)
     error->warning(FLERR,
-                   "Fix mpm/emit {}: points are {:.6g} apart, more than the cells of fix mpm {} "
+                   "Fix mpm/emit {}: points are {:.6g} apart, more than the cells of fix {} {} "
                    "({:.6g}): there will be cells without points",
-                   id, layer, field->id(), field->lattice.h);
+                   id, layer, grid.style, grid.id, h);
 }
 
 /* ----------------------------------------------------------------------
@@ -398,6 +419,7 @@ void FixMPMEmit::list_nodes()
 
 void FixMPMEmit::act(double dt, Stage stage)
 {
+  if (!field) return;
   update_motion();
   if (moves()) list_nodes();
   const bool counts = stage == STEP;
@@ -488,12 +510,13 @@ void FixMPMEmit::emit()
     }
   past.layers = (double) last;
 
-  if (field->running) MPMStages::give_initial_stress(*field, nlocal);
+  const bool runs = field && field->running;
+  if (runs) MPMStages::give_initial_stress(*field, nlocal);
   MPMTraffic here, all;
   for (int i = nlocal; i < atom->nlocal; i++) {
-    const MPMTraffic one = field->running ? traffic_of(lmp, field, i) : traffic_of(lmp, nullptr, i);
+    const MPMTraffic one = traffic_of(lmp, runs ? field : nullptr, i);
     here.add(one);
-    if (field->running) field->ledger.remove(-one.kinetic, -one.stored);
+    if (runs) field->ledger.remove(-one.kinetic, -one.stored);
   }
   MPI_Allreduce(here.reals(), all.reals(), MPMTraffic::NREAL, MPI_DOUBLE, MPI_SUM, world);
   if (all.points != (double) npoint)
@@ -503,7 +526,7 @@ void FixMPMEmit::emit()
         "stop the mouth before it gets there",
         id, npoint - (bigint) all.points, npoint, update->ntimestep);
   past.total.add(all);
-  field->guard->brought += all.points;
+  if (field) field->guard->brought += all.points;
   atom->natoms += npoint;
   if (atom->natoms < 0 || atom->natoms >= MAXBIGINT)
     error->all(FLERR, Error::NOLASTLINE, "Too many total atoms");
@@ -527,10 +550,10 @@ void FixMPMEmit::make_point(const double *where, const double *v, double volume,
   atom->mask[i] = 1 | groupbit;
   atom->image[i] = image;
   std::copy_n(v, 3, atom->v[i]);
-  atom->vfrac[i] = volume * field->frame->circle(x[0]);
+  atom->vfrac[i] = volume * (field ? field->frame->circle(x[0]) : 1.0);
   modify->create_attribute(i);
   if (has_temperature) give_temperature(i);
-  atom->rmass[i] = material->density(i) * atom->vfrac[i];
+  atom->rmass[i] = (fluid ? fluid->density_of_fluid() : material->density(i)) * atom->vfrac[i];
   if (atom->radius_flag)
     atom->radius[i] = 0.5 * (domain->dimension == 3 ? std::cbrt(volume) : std::sqrt(volume));
 }
@@ -605,7 +628,8 @@ double FixMPMEmit::compute_vector(int k)
   if (k == 5) return total.kinetic;
   if (k == 6) return total.stored;
   if (k == 7) return speed;
-  if (k == 8) return speed * section * material->material->density();
+  if (k == 8)
+    return speed * section * (fluid ? fluid->density_of_fluid() : material->material->density());
   const double mine = k == 12 ? past.work
       : dt_last > 0.0         ? impulse[k - 9] / (dt_last * force->ftm2v)
                               : 0.0;

@@ -26,6 +26,7 @@ FixStyle(mpm/emit,FixMPMEmit);
 #include <vector>
 
 namespace LAMMPS_NS {
+class FixMPMIncompressible;
 class FixMPMMaterial;
 class MPMField;
 class MPMMouth;
@@ -75,10 +76,18 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   /** Are its points in this field? */
   bool emits_into(const MPMField &) const;
 
+  // for incompressible flows
+
+  bool emits_into(const Fix &flow) const { return (flow.groupbit & (1 | groupbit)) != 0; }
+  const MPMMouth &passage() const { return *mouth; }    ///< from setup_pre_exchange() on
+  /** Of the material in this step; collective. */
+  void velocity_now(double *v);
+
  private:
   int type;
   Region *region = nullptr;
   MPMField *field = nullptr;
+  const FixMPMIncompressible *fluid = nullptr;    // in place of a field and a material
   FixMPMMaterial *material = nullptr;
   std::unique_ptr<MPMMouth> mouth;
   double layer = 0.0;      // distance of layers
@@ -105,6 +114,7 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   bool moves() const;
   void find_field();
   void refuse_combinations() const;
+  double spacing_of_nodes() const;
   void make_mouth();
   void evaluate_velocities();
   void update_motion();

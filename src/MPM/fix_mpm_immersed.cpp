@@ -44,6 +44,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_incompressible.h"
 #include "force.h"
 #include "math_const.h"
 #include "math_extra.h"
@@ -116,15 +117,21 @@ FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
 }
 
 /* ----------------------------------------------------------------------
-   a missing field is found here; with one, it calls init_action()
+   a missing fluid is found here; with a field, it calls init_action()
 ------------------------------------------------------------------------- */
 
 void FixMPMImmersed::init()
 {
   field = MPMField::find(lmp, field_id);
-  if (!field)
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/immersed {}: there is no fix mpm {}", id,
+  if (field) return;
+  const auto *const flow =
+      dynamic_cast<const FixMPMIncompressible *>(modify->get_fix_by_id(field_id));
+  if (!flow)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/immersed {}: there is no fix mpm {}, nor a fix mpm/incompressible", id,
                field_id);
+  flow->check_density(density, fmt::format("Fix mpm/immersed {}", id));
+  check_grains(flow, flow->spacing());
 }
 
 /* ----------------------------------------------------------------------
@@ -134,6 +141,7 @@ void FixMPMImmersed::init()
 void FixMPMImmersed::init_action()
 {
   FixMPMImmersed::init();
+  if (!field) return;
   refuse_field(lmp, *this, *field,
                {{field->options.total, "frame total",
                  "its nodes are not where the grains are: use frame updated"},
@@ -143,7 +151,12 @@ void FixMPMImmersed::init_action()
                 {field->options.series == MPMFieldOptions::FMPM, "transfer fmpm", "use xpic"}});
 
   field->keep_old = true;    // for the acceleration of the fluid
+  check_grains(modify->get_fix_by_style("^mpm$")[0], field->lattice.h);
+}
 
+/** driver: the fix that moves the fluid; h: its node spacing. */
+void FixMPMImmersed::check_grains(const Fix *driver, double h)
+{
   const auto count_all = [&](const auto &counts) {
     bigint mine = 0, all;
     for (int i = 0; i < atom->nlocal; i++) mine += counts(i);
@@ -154,7 +167,7 @@ void FixMPMImmersed::init_action()
   // Who moves the grains, and which of the two half steps with forces are still to come?
 
   movers.clear();
-  const int driver = modify->find_fix(modify->get_fix_by_style("^mpm$")[0]->id);
+  const int place = modify->find_fix(driver->id);
   for (int k = 0; k < modify->nfix; k++) {
     const Fix *ifix = modify->fix[k];
     if (utils::strmatch(ifix->style, "^rigid")) {
@@ -168,8 +181,8 @@ void FixMPMImmersed::init_action()
             "single spheres",
             id, n, ifix->id, ifix->style);
     }
-    if (ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm$"))
-      movers.push_back({ifix->groupbit, k < driver ? 1.0 : 0.5});
+    if (ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm"))
+      movers.push_back({ifix->groupbit, k < place ? 1.0 : 0.5});
   }
 
   const bigint points = count_all([&](int i) {
@@ -193,7 +206,7 @@ void FixMPMImmersed::init_action()
                  id, other->id, twice);
   }
   const bigint large = count_all([&](int i) {
-    return is_grain(i) && 2.0 * atom->radius[i] > 2.0 * field->lattice.h;
+    return is_grain(i) && 2.0 * atom->radius[i] > 2.0 * h;
   });
   if (large && comm->me == 0)
     error->warning(FLERR,
@@ -211,7 +224,7 @@ bool FixMPMImmersed::is_grain(int i) const
 double FixMPMImmersed::volume(int i) const
 {
   const double r = atom->radius[i];
-  return field->lattice.dim == 3 ? 4.0 / 3.0 * MY_PI * r * r * r : MY_PI * r * r;
+  return domain->dimension == 3 ? 4.0 / 3.0 * MY_PI * r * r * r : MY_PI * r * r;
 }
 
 /* ----------------------------------------------------------------------
@@ -220,6 +233,7 @@ double FixMPMImmersed::volume(int i) const
 
 void FixMPMImmersed::couple_topology()
 {
+  if (!field) return;
   immersed.clear();
   for (int i = 0; i < atom->nlocal; i++)
     if (is_grain(i)) immersed.push_back(i);
@@ -271,15 +285,14 @@ void FixMPMImmersed::topology_changed(MPMField &changed)
    (n/2)/(s^2 (4 pi s^2)^(n/2)) in n dimensions.
 ------------------------------------------------------------------------- */
 
-double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own) const
+double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own, int order,
+                                  double cell) const
 {
   if (!(solid > 0.0)) return solid;
-  const double p1 = stencil_order(field->options.shape) + 1.0, width = sqrt(p1 / 6.0),
-               n = field->lattice.dim;
+  const double p1 = order + 1.0, width = sqrt(p1 / 6.0), n = domain->dimension;
   const double slope = width * 12.0 / p1 / solid;    // sum N r^2 = (p+1)/12, of moment
   const double spread = 4.0 * MY_PI * width * width;
-  const double chance =
-      0.5 * n / (n == 3.0 ? spread * sqrt(spread) : spread) * own / field->lattice.cell_volume();
+  const double chance = 0.5 * n / (n == 3.0 ? spread * sqrt(spread) : spread) * own / cell;
   const double q2 = slope * slope * MathExtra::lensq3(moment) - chance / solid;
   if (!(q2 > 0.0)) return solid;
   return solid / (1.0 - 0.64 * pow(std::min(q2, 2.0 / MY_PI), 0.56));
@@ -297,7 +310,7 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
 double FixMPMImmersed::porosity(double solid) const
 {
   // densest packing of equal spheres, of equal discs
-  const double least = field->lattice.dim == 3 ? 0.26 : 1.0 - MY_PI / sqrt(12.0);
+  const double least = domain->dimension == 3 ? 0.26 : 1.0 - MY_PI / sqrt(12.0);
   return std::max(least, 1.0 - solid);
 }
 
@@ -310,7 +323,7 @@ double FixMPMImmersed::drag_after_step(double diameter, double slip, double soli
                                        double slowing) const
 {
   // a disc of unit depth has the drag of a sphere times its volume over that of the sphere
-  const double share = field->lattice.dim == 2 ? 1.5 / diameter : 1.0;
+  const double share = domain->dimension == 2 ? 1.5 / diameter : 1.0;
   const SphereDrag drag = {law, density, viscosity};
   const double eps = porosity(solid), hindered = drag.hindrance(eps);
   const double most = share * drag.on_sphere(diameter, slip, eps, hindered);
@@ -471,17 +484,31 @@ bool FixMPMImmersed::find_fluid(Grain &g)
   return true;
 }
 
-void FixMPMImmersed::move_by_forces(Grain &g, double dt) const
+double FixMPMImmersed::steps_ahead(int i, double &mass) const
 {
-  const int i = g.i;
-  g.mass = HUGE_VAL;
+  mass = HUGE_VAL;
   double ahead = 0.0;
   for (const auto &mover : movers)
     if (atom->mask[i] & mover.groupbit) {
-      g.mass = atom->rmass[i];
-      ahead =
-          mover.ahead + 0.5 * (field->options.every - 1);    // in the mean over the steps to come
+      mass = atom->rmass[i];
+      ahead = mover.ahead;
     }
+  return ahead;
+}
+
+void FixMPMImmersed::was_pushed(int n, const double *impulses, double dt)
+{
+  count = n;
+  std::copy_n(impulses, 6, force_now);
+  dt_last = dt;
+}
+
+void FixMPMImmersed::move_by_forces(Grain &g, double dt) const
+{
+  const int i = g.i;
+  double ahead = steps_ahead(i, g.mass);
+  if (std::isfinite(g.mass))
+    ahead += 0.5 * (field->options.every - 1);    // in the mean over the steps to come
   for (int d = 0; d < 3; d++) {
     g.buoyancy[d] = g.immersed * density * volume(i) * (g.gain[d] - dt * gravity[d]);
     g.velocity[d] = atom->v[i][d];
@@ -517,7 +544,8 @@ void FixMPMImmersed::buoyancy_and_coefficient(Grain &g, double dt)
   const double part = g.part * g.immersed;
   g.coefficient = part *
       drag_after_step(2.0 * atom->radius[g.i], MathExtra::len3(slip),
-                      end_of_bed(solid, moment, volume(g.i)),
+                      end_of_bed(solid, moment, volume(g.i), stencil_order(field->options.shape),
+                                 field->lattice.cell_volume()),
                       dt * part * (1.0 / g.mass + of_fluid));
 
   const double push[4] = {-g.buoyancy[0] / g.around, -g.buoyancy[1] / g.around,
@@ -577,7 +605,7 @@ void FixMPMImmersed::sum_nodes(int lane, int nlane)
 
 void FixMPMImmersed::act(double dt, Stage stage)
 {
-  if (stage != STEP) return;
+  if (stage != STEP || !field) return;
   auto &grid = field->grid;
   find_grains(dt);
   sum_nodes(SOLID, 1);

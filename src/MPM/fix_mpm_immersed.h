@@ -37,7 +37,8 @@ struct MPMImmersedOptions {
 };
 
 /** Drag and buoyancy between grains smaller than the node spacing and the fluid of a field
- *  (fix mpm), exchanged at the nodes around each grain. */
+ *  (fix mpm), exchanged at the nodes around each grain; or that of an incompressible flow, which asks for the laws and
+ *  exchanges by itself (MPMFlowGrains). */
 class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
@@ -52,6 +53,23 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
   void act(double dt, Stage) override;
+
+  // for flows
+
+  const std::string &fluid() const { return field_id; }
+  double fluid_density() const { return density; }
+  const double *acceleration_of_gravity() const { return gravity; }
+  bool is_grain(int i) const;
+  double volume(int i) const;    ///< in 2d per unit of depth
+  /** Steps for which forces still act on a grain before it moves; mass: of the grain, infinite: held. */
+  double steps_ahead(int i, double &mass) const;
+  /** Share of space that grains take up around one of the volume own, where its mapped share solid has the first moment
+   *  sum N r, in spacings, by splines of this order in cells of this volume. */
+  double end_of_bed(double solid, const double *moment, double own, int order, double cell) const;
+  /** Drag over slip [mass/time], of the slip w = slip/(1 + slowing K(w)) that is left after a step. */
+  double drag_after_step(double diameter, double slip, double solid, double slowing) const;
+  /** Drag and buoyancy on n grains of this rank, impulses of a step of the duration dt. */
+  void was_pushed(int n, const double *impulses, double dt);
 
  private:
   struct Mover {    // a fix that integrates grains
@@ -92,8 +110,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   int count = 0;
   double dt_last = 0.0;
 
-  bool is_grain(int i) const;
-  double volume(int i) const;
+  void check_grains(const Fix *driver, double h);
   bool has_fluid_around(int64_t node) const;
   void find_grains(double dt);
   void use(int slot);
@@ -105,8 +122,6 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   void add_to_nodes(const Grain &, int lane, const double *values);
   void sum_nodes(int lane, int nlane);
   template <class F> void around(const Grain &, const F &) const;
-  double end_of_bed(double solid, const double *moment, double own) const;
-  double drag_after_step(double diameter, double slip, double solid, double slowing) const;
   double porosity(double solid) const;
 };
 

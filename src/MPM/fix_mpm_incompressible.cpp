@@ -10,6 +10,8 @@
 
 #include "mpm_flow_air.h"
 #include "mpm_flow_bodies.h"
+#include "mpm_flow_grains.h"
+#include "mpm_flow_inflow.h"
 #include "mpm_flow_pressure.h"
 #include "mpm_flow_regions.h"
 #include "mpm_flow_stick.h"
@@ -30,6 +32,7 @@
 #include "math_const.h"
 #include "math_extra.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "output.h"
 #include "update.h"
 
@@ -55,6 +58,8 @@ static constexpr double SAME_DENSITY = 1.0e-9;
 static constexpr double NEAREST_SURFACE = 1.0e-4;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
+// share of what comes in that may have no room, by the tolerance of the pressure
+static constexpr double NOT_IN = 0.05;
 // accelerations over that of the weight for which the first step of a fluid at rest is made: at the edges of a block of water
 // that is released the pressure makes such ones
 static constexpr double FIRST_FALL = 4.0;
@@ -276,7 +281,7 @@ FixMPMIncompressible::~FixMPMIncompressible() = default;
 
 int FixMPMIncompressible::setmask()
 {
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR;
+  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | PRE_FORCE;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -317,6 +322,25 @@ void FixMPMIncompressible::init()
                  "Fix {} {}: reflect cannot be used with bodies of fix mpm/rigid: remove it", style,
                  id);
   }
+  grains = std::make_unique<MPMFlowGrains>(lmp, cells, id, density);
+  if (!grains->any()) grains.reset();
+  if (grains && (reflect > 0.0 || implicit))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: {} cannot be used with grains of fix mpm/immersed: remove it", style, id,
+               implicit ? "implicit yes" : "reflect");
+  inflow = std::make_unique<MPMFlowInflow>(lmp, cells, *this);
+  if (!inflow->any()) inflow.reset();
+  if (inflow && (reflect > 0.0 || implicit))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: {} cannot be used with points of fix mpm/emit: remove it", style, id,
+               implicit ? "implicit yes" : "reflect");
+  if ((grains || inflow) && !liquids.empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: {} need a flow of one density: remove the keyword liquid", style, id,
+               grains ? "grains of fix mpm/immersed" : "points of fix mpm/emit");
+  pressure->sources = inflow ? &inflow->sources() : nullptr;
+  force_reneighbor = neighbor->includegroup ? 1 : 0;
+  next_reneighbor = -1;
   forces_known = false;
 
   // points need no ghosts, see FixMPM::init()
@@ -344,6 +368,7 @@ void FixMPMIncompressible::setup_pre_neighbor()
 {
   check_points();
   cells.sort();
+  gone = 0.0;
 }
 
 /** Mass of points that have none yet; who else moves them. */
@@ -425,6 +450,7 @@ void FixMPMIncompressible::setup(int)
   if (!(update->dt > 0.0))
     error->all(FLERR, Error::NOLASTLINE, "Fix {} requires a positive time step: {}", style,
                update->dt);
+  if (grains) grains->list();
   cells.find_cells();
   if (regions) {
     regions->start_run();
@@ -497,6 +523,20 @@ void FixMPMIncompressible::fit_gradients()
 void FixMPMIncompressible::pre_neighbor()
 {
   cells.sort();
+  gone = 0.0;
+}
+
+void FixMPMIncompressible::setup_pre_force(int vflag)
+{
+  pre_force(vflag);
+}
+
+/** LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include), see FixMPM::pre_force(). */
+void FixMPMIncompressible::pre_force(int)
+{
+  if (!neighbor->includegroup) return;
+  for (int i = atom->nfirst; i < atom->nlocal; i++)
+    if (cells.is_point(i)) MathExtra::zero3(atom->f[i]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -542,12 +582,14 @@ void FixMPMIncompressible::initial_integrate(int)
   const bool differ = std::fabs(dt - before) > DIFFERENT_DT * dt;
   dt_before = dt;
   const MPMFlowPoints points = points_now(dt);
-  int valid = cells.valid, all_valid;
+  int valid = cells.valid && (!grains || cells.visitors_in_reach()), all_valid;
   MPI_Allreduce(&valid, &all_valid, 1, MPI_INT, MPI_MIN, world);
   cells.valid = all_valid;
+  if (grains && !cells.valid) grains->list();
   cells.find_cells();
   if (regions) regions->find(dt);
   if (stick) stick->find(false);
+  if (inflow) inflow->find();
 
   give_to_cells(cells, points, sums);
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
@@ -568,6 +610,8 @@ void FixMPMIncompressible::initial_integrate(int)
     find_flow(part * dt);
   }
   check_speed();
+  if (grains) grains->end(velocity);
+  if (grains || inflow) pressure->set_mobility(nullptr);    // points spread among grains, too
 
   if (spread > 0.0) find_shift();
   if (bodies) bodies->move(dt);
@@ -577,7 +621,8 @@ void FixMPMIncompressible::initial_integrate(int)
                                        reflect,
                                        reflect > 0.0 ? more.data() : nullptr,
                                        spread > 0.0 ? shift.data() : nullptr,
-                                       regions.get()};
+                                       regions.get(),
+                                       inflow.get()};
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
 
@@ -587,8 +632,16 @@ void FixMPMIncompressible::initial_integrate(int)
 /** Velocities after forces and viscosity of a duration, which go to star, and the pressure. */
 void FixMPMIncompressible::find_flow(double duration)
 {
+  if (grains) before_forces = star;
   if (viscous) add_viscosity(duration);
   add_forces(duration * force->ftm2v);
+  if (grains) {
+    grains->begin(duration, sums, share, before_forces, star);
+    mobility = grains->mobility();
+  } else if (inflow)
+    mobility.assign(star.size(), 1.0);
+  if (inflow) inflow->hold(star, &mobility);
+  if (grains || inflow) pressure->set_mobility(&mobility);
 
   velocity.assign(star.size(), 0.0);
   known.assign(star.size(), 0.0);
@@ -622,6 +675,10 @@ void FixMPMIncompressible::find_flow(double duration)
   if (bodies) bodies->end(pressure->psi.data());
   if (stress) find_stress(duration, rounding);
   go_on_into_air();
+  if (inflow) {
+    inflow->hold(velocity, nullptr);
+    check_inflow();
+  }
   last.iterations = report.iterations;
   last.residual = report.right_side > 0.0 ? report.residuals.back() / report.right_side : 0.0;
   last.divergence = pressure->largest_divergence(velocity.data());
@@ -709,8 +766,10 @@ void FixMPMIncompressible::add_viscosity(double dt)
 void FixMPMIncompressible::find_pressures(double pressure_to_psi)
 {
   for (int d = 0; d < cells.lattice.dim; d++)
-    for (int s = 0; s < 2; s++)
+    for (int s = 0; s < 2; s++) {
       last.walls[d][s] = pressure->at_wall(d, s) / (pressure_to_psi * force->nktv2p);
+      if (grains) last.walls[d][s] += grains->at_wall(d, s, before_forces, velocity) / force->ftm2v;
+    }
   if (regions) {
     std::fill(last.regions.begin(), last.regions.end(), 0.0);
     regions->add_forces(
@@ -778,7 +837,21 @@ void FixMPMIncompressible::find_shift()
   cells.reflect_velocities(shift.data(), false);
 }
 
-void FixMPMIncompressible::check_speed() const
+/** What comes in must have a way out, or a surface that rises: else the pressure has no solution, and what was found is that of
+ *  less inflow. */
+void FixMPMIncompressible::check_inflow() const
+{
+  double mine[2] = {0.0, 0.0}, all[2];
+  pressure->add_balance(velocity.data(), mine, mine + 1);
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  if (all[1] > 0.0 && std::fabs(all[0]) > NOT_IN * all[1])
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: at step {} there is no room for what fix mpm/emit brings: leave a free "
+               "surface, or let fix mpm/absorb take as much away",
+               style, id, update->ntimestep);
+}
+
+void FixMPMIncompressible::check_speed()
 {
   double most[1] = {0.0}, all[1];
   for (const double v : velocity) {
@@ -786,12 +859,27 @@ void FixMPMIncompressible::check_speed() const
     most[0] = std::max(most[0], std::fabs(v));
   }
   MPI_Allreduce(most, all, 1, MPI_DOUBLE, MPI_MAX, world);
+
+  // with lists of grains alone LAMMPS does not see how far points go, which must not be further than a period
+
+  gone += all[0] * update->dt;
+  for (int d = 0; d < cells.lattice.dim; d++)
+    if (neighbor->includegroup && domain->periodicity[d] && gone > 0.25 * domain->prd[d])
+      next_reneighbor = update->ntimestep;
   if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * h) return;
   error->all(FLERR, Error::NOLASTLINE,
              "Fix {} {}: at step {} the velocity {:.6g} is more than {} node spacings in a time "
              "step; reduce "
              "it, or let fix mpm/dt set it",
              style, id, update->ntimestep, all[0], MPMFlowLattice::MOST_MOTION);
+}
+
+void FixMPMIncompressible::check_density(double of_fluid, const std::string &who) const
+{
+  if (std::fabs(of_fluid / density - 1.0) > SAME_DENSITY)
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: the density of the fluid is {}, but that of fix {} (style {}) is {}", who,
+               of_fluid, id, style, density);
 }
 
 double FixMPMIncompressible::spacing_around(const std::string &region) const
@@ -907,11 +995,13 @@ double FixMPMIncompressible::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
       air->memory_usage() + (regions ? regions->memory_usage() : 0.0) +
-      (stick ? stick->memory_usage() : 0.0);
+      (stick ? stick->memory_usage() : 0.0) + (grains ? grains->memory_usage() : 0.0) +
+      (inflow ? inflow->memory_usage() : 0.0);
   if (curved) bytes += curved->memory_usage();
   if (stress) bytes += stress->memory_usage();
-  for (const auto *list : {&at_surface, &potentials, &viscous_velocity, &sums, &share, &old, &star,
-                           &more, &velocity, &known, &pressures, &shift})
+  for (const auto *list :
+       {&at_surface, &potentials, &viscous_velocity, &before_forces, &mobility, &sums, &share, &old,
+        &star, &more, &velocity, &known, &pressures, &shift})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

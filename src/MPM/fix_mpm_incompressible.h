@@ -27,6 +27,8 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 namespace LAMMPS_NS {
 class MPMFlowAir;
 class MPMFlowBodies;
+class MPMFlowGrains;
+class MPMFlowInflow;
 class MPMFlowPressure;
 class MPMFlowRegions;
 class MPMFlowStick;
@@ -83,6 +85,8 @@ class FixMPMIncompressible :
   void setup(int) override;
   void initial_integrate(int) override;
   void pre_neighbor() override;
+  void setup_pre_force(int) override;
+  void pre_force(int) override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -94,6 +98,10 @@ class FixMPMIncompressible :
   double stable_dt(tagint &tag) const override;
   /** Node spacing of a flow for which a region is solid; 0: it is not. */
   double spacing_around(const std::string &region) const;
+  double spacing() const { return h; }
+  double density_of_fluid() const { return density; }
+  /** An error of who has another density of the fluid. */
+  void check_density(double of_fluid, const std::string &who) const;
 
  private:
   MPMFlowLattice cells;
@@ -105,18 +113,21 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowRegions> regions;      // null: none
   std::unique_ptr<MPMFlowStick> stick;          // regions without slip; null: none
   std::unique_ptr<MPMFlowBodies> bodies;    // of regions; null: these move by themselves, or not
+  std::unique_ptr<MPMFlowGrains> grains;    // of fix mpm/immersed; null: none
+  std::unique_ptr<MPMFlowInflow> inflow;    // of fix mpm/emit; null: none
   MPMRows gradient;                         // [n][dim*dim] dv_c/dx_d of points, with apic
   std::vector<int> liquid_bits;
   std::vector<double> lightness,
       face_volumes;    // of faces, see MPMFlowPressure; with several densities
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
-      potentials, viscous_velocity;
+      potentials, viscous_velocity, before_forces, mobility;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
   mutable double limit_before =
       0.0;                      // last stable_dt() with forces, on restart of all ranks; 0: none
   bool forces_known = false;    // they are cleared at the start of a run
   mutable bool told_of_bodies = false;
+  double gone = 0.0;    // most that points have moved since neighbor lists were made
 
   struct {
     double iterations = 0.0, of_stress = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0,
@@ -144,7 +155,8 @@ class FixMPMIncompressible :
   void find_stress(double dt, double rounding);
   void find_flow(double duration);
   void find_pressures(double pressure_to_psi);
-  void check_speed() const;
+  void check_inflow() const;
+  void check_speed();
 };
 
 }    // namespace LAMMPS_NS

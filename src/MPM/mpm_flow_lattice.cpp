@@ -18,6 +18,7 @@
 #include <array>
 #include <climits>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 
 using namespace LAMMPS_NS;
@@ -168,6 +169,15 @@ void MPMFlowLattice::find_cells()
     cover(range, margin_of_all, true);
     cover(range, margin_of_all + overlap, false);
   }
+  of_visitors.clear();
+  for (const int i : visitors) {
+    Range r;
+    base_of(atom->x[i], r.low);
+    std::copy_n(r.low, 3, r.high);
+    of_visitors.push_back(r);
+    cover(r, margin_of_all, true);
+    cover(r, margin_of_all + overlap, false);
+  }
   grid.close_periodic();
   grid.finish();
   halo.setup(grid, [](const Grid::Block &) {
@@ -188,6 +198,26 @@ bool MPMFlowLattice::is_inside(int64_t number) const
   return true;
 }
 
+bool MPMFlowLattice::visitors_in_reach() const
+{
+  bool in = true;
+  for (std::size_t k = 0; k < visitors.size(); k++) {
+    int base[3];
+    base_of(atom->x[visitors[k]], base);
+    for (int d = 0; d < lattice.dim; d++)
+      in = in && std::abs(base[d] - of_visitors[k].low[d]) <= DRIFT;
+  }
+  return in;
+}
+
+int MPMFlowLattice::find_block(const double *x, int base[3]) const
+{
+  base_of(x, base);
+  const int64_t number = grid.locate(base);
+  return number < 0 ? -1 : (int) (number / NODES_PER_BLOCK);
+}
+
+/** Number of a cell or of what it is a periodic image of; the block must be there. */
 int MPMFlowLattice::canonical(const int index[3]) const
 {
   int wrapped[3] = {0, 0, 0};
@@ -336,6 +366,8 @@ double MPMFlowLattice::memory_usage() const
 {
   return grid.memory_usage() + halo.memory_usage() + runs.capacity() * sizeof(Run) +
       kept.capacity() * sizeof(double) + cells.capacity() * sizeof(Cell) +
-      around.capacity() * sizeof(int) + ranges.capacity() * sizeof(Range) +
-      images.capacity() * sizeof(Image) + at_walls.capacity() * sizeof(AtWall);
+      around.capacity() * sizeof(int) +
+      (ranges.capacity() + of_visitors.capacity()) * sizeof(Range) +
+      visitors.capacity() * sizeof(int) + images.capacity() * sizeof(Image) +
+      at_walls.capacity() * sizeof(AtWall);
 }

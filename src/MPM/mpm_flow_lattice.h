@@ -55,8 +55,9 @@ class MPMFlowLattice : protected Pointers {
   bool wants_around = false;
   int wants_more =
       0;    ///< layers of cells around those in reach of points, whose values smoothing reaches
-  int overlap = 1;       ///< layers of cells around its own ones that a rank has
-  bool valid = false;    ///< the blocks are those of the present points
+  int overlap = 1;              ///< layers of cells around its own ones that a rank has
+  std::vector<int> visitors;    ///< atoms that are no points, around which there are cells, too
+  bool valid = false;           ///< the blocks are those of the present points
   bigint nbuild = 0;
 
   /** Points may move so many spacings in a step: half of that has to be in reach of a rank before it moves them. */
@@ -80,6 +81,11 @@ class MPMFlowLattice : protected Pointers {
       in = in && base[d] >= r.low[d] - DRIFT && base[d] <= r.high[d] + DRIFT;
     return in;
   }
+
+  /** Do the visitors still have their cells? */
+  bool visitors_in_reach() const;
+  /** Slot of the block with the cell base of a place, which gets that; -1: there is none. */
+  int find_block(const double *x, int base[3]) const;
 
   /** The values that points gave to images beyond walls go to cells within, width reals for each cell: the first dim of
    *  them are momenta, the next ones masses, and then forces at faces; all others are plain sums. Then sums over periodic images and ranks. */
@@ -133,8 +139,9 @@ class MPMFlowLattice : protected Pointers {
   const int groupbit;
   mutable MPMHalo halo;
   mutable std::vector<double> kept;
-  std::vector<Range> ranges;    // of bases, by slot
-  std::vector<Image> images;    // by axis
+  std::vector<Range> ranges;         // of bases, by slot
+  std::vector<Range> of_visitors;    // their bases when cells were found
+  std::vector<Image> images;         // by axis
   struct AtWall {
     int number, axis;
   };

@@ -118,10 +118,17 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
   cells.publish(flag.data(), 1);
   if (regions) follow_neighbors();
   cells.reflect_cells(flag.data());
+  mobility = nullptr;
   find_weights();
 }
 
-/** The equations of wet cells. */
+void MPMFlowPressure::set_mobility(const std::vector<double> *of_faces)
+{
+  mobility = of_faces;
+  find_weights();
+}
+
+/** The equations of the wet cells. */
 void MPMFlowPressure::find_weights()
 {
   wet.clear();
@@ -139,6 +146,9 @@ void MPMFlowPressure::find_weights()
       const bool wall = side == 0.0;
       one.weight[s] = wall ? 0.0 : side * weight_to(cell.number, other);
       if (!wall) one.weight[s] *= light(s % 2 ? other : cell.number, s / 2);
+      if (mobility)
+        one.weight[s] *=
+            (*mobility)[(int64_t) (s % 2 ? other : cell.number) * cells.lattice.dim + s / 2];
       one.near[s] = !wall && is_wet(other) ? other : -1;
       one.diagonal += one.weight[s];
     }
@@ -197,18 +207,12 @@ void MPMFlowPressure::precondition(const double *r, double *z)
 SolveReport MPMFlowPressure::project(const double *before, double *after, double *known,
                                      const SolveGoal &goal, const std::vector<double> *surface)
 {
-  const int dim = cells.lattice.dim;
   const double h = cells.lattice.h;
   right_side.assign(size(), 0.0);
   psi.assign(size(), 0.0);
   for (const auto &one : wet) {
     const auto &cell = cells.cells[one.cell];
-    double sum = 0.0;
-    for (int d = 0; d < dim; d++) {
-      sum += flux_of_side(before, cell, 2 * d);
-      sum -= flux_of_side(before, cell, 2 * d + 1);
-    }
-    right_side[cell.number] = sum / h;
+    right_side[cell.number] = -outflow(before, cell) / h;
   }
   if (surface) find_lift(*surface);
   cells.publish(right_side.data(), 1);
@@ -276,7 +280,9 @@ void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const dou
       after[face] = known[face] = 0.0;
       if (wall || ((in || below) && open(here, d) > 0.0)) known[face] = 1.0;
       if (wall || known[face] == 0.0) continue;
-      const double weight = light(here, d) * (in ? weight_to(here, lower) : weight_to(lower, here));
+      const double weight = light(here, d) *
+          (in ? weight_to(here, lower) : weight_to(lower, here)) *
+          (mobility ? (*mobility)[face] : 1.0);
       double step = of[here] - of[lower];    // that of a dry cell is zero
       if (surface && in != below) step += in ? -(*surface)[face] : (*surface)[face];
       after[face] = (before ? before[face] : 0.0) - h * weight * step;
@@ -318,20 +324,31 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
   return report;
 }
 
+/** What flows out of a cell through its sides and does not come into it, per area of a side. */
+double MPMFlowPressure::outflow(const double *velocity, const MPMFlowLattice::Cell &cell) const
+{
+  double sum = 0.0;
+  for (int d = 0; d < cells.lattice.dim; d++)
+    sum += flux_of_side(velocity, cell, 2 * d + 1) - flux_of_side(velocity, cell, 2 * d);
+  return sources ? sum - cells.lattice.h * (*sources)[cell.number] : sum;
+}
+
 double MPMFlowPressure::largest_divergence(const double *velocity) const
 {
-  const int dim = cells.lattice.dim;
   double most = 0.0;
+  for (const auto &one : wet)
+    most = std::max(most, std::fabs(outflow(velocity, cells.cells[one.cell])));
+  return most / cells.lattice.h;
+}
+
+void MPMFlowPressure::add_balance(const double *velocity, double *out, double *in) const
+{
+  const double h = cells.lattice.h, area = std::pow(h, cells.lattice.dim - 1);
   for (const auto &one : wet) {
     const auto &cell = cells.cells[one.cell];
-    double sum = 0.0;
-    for (int d = 0; d < dim; d++) {
-      sum -= flux_of_side(velocity, cell, 2 * d);
-      sum += flux_of_side(velocity, cell, 2 * d + 1);
-    }
-    most = std::max(most, std::fabs(sum));
+    *out += area * outflow(velocity, cell);
+    if (sources) *in += area * h * (*sources)[cell.number];
   }
-  return most / cells.lattice.h;
 }
 
 void MPMFlowPressure::extend_into_air(std::vector<double> &values,

@@ -43,12 +43,17 @@ class MPMFlowPressure : public MPMNodeSystem {
   const MPMFlowRegions *regions = nullptr;
   /** Rigid bodies that the pressure moves; null: none. */
   const MPMFlowBodies *bodies = nullptr;
+  /** [cell] rate of its volume that comes into a cell, of all cells; null: nothing comes. */
+  const std::vector<double> *sources = nullptr;
 
   /** [cell][dim] density that psi is for over that at faces, of all cells; null: one density. */
   const std::vector<double> *lightness = nullptr;
 
   /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
   void find_wet(const std::vector<double> &share);
+  /** Share of the gradient of psi that velocities of faces [cell][dim] lose, of all cells, if what is in the water resists its
+   *  motion; null: all of it. Counts until find_wet(). */
+  void set_mobility(const std::vector<double> *);
   bool is_wet(int64_t number) const { return flag[number] > 0.0; }
   /** Wet, and so are all neighbors. */
   bool is_deep(const MPMFlowLattice::Cell &) const;
@@ -84,6 +89,8 @@ class MPMFlowPressure : public MPMNodeSystem {
   std::vector<double> psi;    ///< of all cells, zero where there is no water
   /** Largest |div v| of the wet cells of this rank [1/time]. */
   double largest_divergence(const double *velocity) const;
+  /** What flows out of the wet cells of this rank and does not come into them, and what comes (volume/time, in 2d area). */
+  void add_balance(const double *velocity, double *out, double *in) const;
   int64_t nwet() const { return (int64_t) wet.size(); }    ///< of this rank
   /** psi with values next to the surface that make it what it is there in between, zero or that of project(); of all cells. */
   void extend_into_air(std::vector<double> &values,
@@ -111,6 +118,7 @@ class MPMFlowPressure : public MPMNodeSystem {
   std::vector<Wet> wet;
   std::vector<double> excess, lift, flag, right_side, inverse_diagonal;
   const double *share_of = nullptr;
+  const std::vector<double> *mobility = nullptr;
   double screen = 0.0;    // 1/length^2
   MPM_NS::ConjugateGradients method;
 
@@ -118,10 +126,12 @@ class MPMFlowPressure : public MPMNodeSystem {
   double weight_to(int64_t wet_cell, int64_t other) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
   double flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell, int side) const;
+  double outflow(const double *velocity, const MPMFlowLattice::Cell &) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known, const std::vector<double> *surface = nullptr) const;
   bool is_surrounded(const MPMFlowLattice::Cell &) const;
   void follow_neighbors();
+  void find_weights();
   void find_levels();
   void find_weights();
   double light(int64_t cell, int axis) const

@@ -8,6 +8,8 @@
 
 #include "mpm_flow_transfer.h"
 
+#include "mpm_flow_inflow.h"
+#include "mpm_flow_reach.h"
 #include "mpm_flow_regions.h"
 
 #include <algorithm>
@@ -23,48 +25,6 @@ static constexpr double INSIDE = 1.0e-6;
 static constexpr double STEEPEST = 0.75;
 
 namespace {
-/** Numbers of the cells that a place reaches. */
-template <int dim> struct Reach {
-  const int *slots;
-  int block[3][3], inside[3][3];
-
-  void find(const Grid &grid, const Grid::Block &of, const int base[3])
-  {
-    slots = of.slot;
-    for (int d = 0; d < 3; d++) {
-      const int stride = d == 0 ? 9 : (d == 1 ? 3 : 1);
-      if (d >= dim) {
-        block[d][0] = stride;
-        inside[d][0] = 0;
-        continue;
-      }
-      const int step = d == dim - 1 ? 1 : (d == dim - 2 ? grid.side : grid.side * grid.side);
-      for (int k = 0; k < 3; k++) {
-        const int index = base[d] + k;
-        block[d][k] = stride * ((index >> grid.shift_bits) - of.b[d] + 1);
-        inside[d][k] = step * (index & (grid.side - 1));
-      }
-    }
-  }
-  int64_t number(const int k[3]) const
-  {
-    const int slot = slots[block[0][k[0]] + block[1][k[1]] + block[2][k[2]]];
-    return (int64_t) slot * NODES_PER_BLOCK + inside[0][k[0]] + inside[1][k[1]] + inside[2][k[2]];
-  }
-};
-
-/** Calls f(number, k) for all cells in the middle or faces of which are reached: of the last layers of two axes at a
- *  time there is nothing. */
-template <int dim, class F> void visit(const Reach<dim> &reach, const F &f)
-{
-  int k[3] = {0, 0, 0};
-  for (k[0] = 0; k[0] < 3; k[0]++)
-    for (k[1] = 0; k[1] < (k[0] == 2 ? 2 : 3); k[1]++) {
-      const int n = dim == 2 ? 1 : (k[0] == 2 || k[1] == 2 ? 2 : 3);
-      for (k[2] = 0; k[2] < n; k[2]++) f(reach.number(k), k);
-    }
-}
-
 template <int dim> struct Places {
   double origin[3], inv_h, low[3], high[3];
   bool walls[3];
@@ -111,7 +71,7 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
   const double h = cells.lattice.h;
   StaggeredWeights w;
   FillingWeights filling;
-  Reach<dim> reach;
+  MPMFlowReach<dim> reach;
   double volume = 0.0, width_of_point = 0.0;
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
@@ -182,7 +142,7 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
 
 /** Velocities at a place, and their gradients times the spacing, if asked for. */
 template <int dim>
-void interpolate(const Reach<dim> &reach, const StaggeredWeights &w, const double *values,
+void interpolate(const MPMFlowReach<dim> &reach, const StaggeredWeights &w, const double *values,
                  double *v, double *G)
 {
   std::fill_n(v, dim, 0.0);
@@ -216,7 +176,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
   const Places<dim> places(cells.lattice);
   const double inv_h = 1.0 / cells.lattice.h;
   StaggeredWeights w;
-  Reach<dim> reach;
+  MPMFlowReach<dim> reach;
   bool all_in_reach = true;
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
@@ -232,6 +192,13 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       });
       for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
 
+      if (update.inflow && update.inflow->carry(x, v, points.dt)) {
+        if (points.gradient) std::fill_n(points.gradient[i], dim * dim, 0.0);
+        places.keep_inside(x);
+        places.find(x, w);
+        all_in_reach = all_in_reach && cells.in_reach(run, w.base);
+        continue;
+      }
       if (update.old) {
         interpolate<dim>(reach, w, update.old, old, nullptr);
         for (int c = 0; c < dim; c++) v[c] = now[c] + update.flip * (v[c] - old[c]);
@@ -281,7 +248,7 @@ void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, cons
 {
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
-  Reach<dim> reach;
+  MPMFlowReach<dim> reach;
   double v[dim], G[dim * dim];
   for (const auto &run : cells.runs)
     for (int i = run.first; i < run.last; i++) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMFlowInflow;
 class MPMFlowRegions;
 
 /** What points and the staggered lattice of a flow tell each other. */
@@ -36,6 +37,7 @@ struct MPMFlowUpdate {
    *  velocities; null: none. */
   const double *shift = nullptr;
   const MPMFlowRegions *regions = nullptr;    ///< that points stay out of; null: none
+  const MPMFlowInflow *inflow = nullptr;      ///< mouths whose points it moves; null: none
 };
 
 /** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a

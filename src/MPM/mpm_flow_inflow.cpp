@@ -1,0 +1,144 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_flow_inflow.h"
+
+#include "fix_mpm_emit.h"
+#include "mpm_mouth.h"
+
+#include "error.h"
+#include "fix.h"
+#include "modify.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// ends of mouths that are that close to a face, in spacings, are there
+static constexpr double AT_FACE = 1.0e-6;
+// component of the direction of a flow along an axis of the lattice
+static constexpr double ALONG = 1.0 - 1.0e-9;
+
+MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, const Fix &flow) :
+    Pointers(lmp), cells(cells)
+{
+  for (auto *ifix : modify->get_fix_by_style("^mpm/emit$")) {
+    auto *const fix = dynamic_cast<FixMPMEmit *>(ifix);
+    if (!fix || !fix->emits_into(flow)) continue;
+    mouths.emplace_back();
+    mouths.back().fix = fix;
+  }
+}
+
+/** Faces across a mouth, and the share of each that is in its section, by the columns of its points. */
+void MPMFlowInflow::find_section(Mouth &one) const
+{
+  const int dim = cells.lattice.dim;
+  const double h = cells.lattice.h;
+  const MPMMouth &mouth = one.fix->passage();
+  one.axis = -1;
+  for (int d = 0; d < dim; d++)
+    if (std::fabs(mouth.normal[d]) > ALONG) one.axis = d;
+  if (one.axis < 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: into an incompressible flow points must come along an axis of the box, "
+               "not along {:.6g} {:.6g} {:.6g}: use such a normal and mouth",
+               one.fix->style, one.fix->id, mouth.normal[0], mouth.normal[1], mouth.normal[2]);
+  one.side = mouth.normal[one.axis] > 0.0 ? 1 : 0;
+  const double middle = (mouth.middle()[one.axis] - cells.lattice.origin[one.axis]) / h,
+               half = 0.5 * mouth.length / h;
+  one.first = (int) std::ceil(middle - half - AT_FACE);
+  one.last = (int) std::floor(middle + half + AT_FACE);
+  if (!cells.lattice.periodic[one.axis]) {    // walls hold themselves
+    one.first = std::max(one.first, 1);
+    one.last = std::min(one.last, cells.lattice.ncell[one.axis] - 1);
+  }
+  if (one.first > one.last)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: the mouth ends in the first cell at a wall: make its region longer",
+               one.fix->style, one.fix->id);
+
+  std::map<std::array<int, 2>, double> areas;
+  for (const auto &column : mouth.columns) {
+    std::array<int, 2> index = {0, 0};
+    for (int d = 0, k = 0; d < dim; d++) {
+      if (d == one.axis) continue;
+      const int i = (int) std::floor((column.x[d] - cells.lattice.origin[d]) / h);
+      index[k++] = cells.lattice.wrap(d, i);
+    }
+    areas[index] += column.area;
+  }
+  const double face = dim == 3 ? h * h : h;
+  one.section.clear();
+  for (const auto &[index, area] : areas)
+    one.section.push_back({{index[0], index[1]}, area / face});
+}
+
+void MPMFlowInflow::find()
+{
+  const int dim = cells.lattice.dim;
+  const double h = cells.lattice.h;
+  held.clear();
+  source.assign(cells.size(), 0.0);
+  for (auto &one : mouths) {
+    if (!found) find_section(one);
+    one.fix->velocity_now(one.velocity);
+    const double v = one.velocity[one.axis];
+    const int upstream = one.side ? one.first - 1 : one.last;    // the cell
+    const auto visit = [&](int at, const Section &part, const auto &set) {
+      int index[3] = {0, 0, 0};
+      for (int d = 0, k = 0; d < dim; d++)
+        index[d] = d == one.axis ? cells.lattice.wrap(d, at) : part.index[k++];
+      const int64_t number = cells.grid.locate(index);
+      if (number >= 0) set(number);
+    };
+    for (const auto &part : one.section) {
+      for (int face = one.first; face <= one.last; face++)
+        visit(face, part, [&](int64_t number) {
+          held.push_back({number * dim + one.axis, part.share * v});
+        });
+      visit(upstream, part, [&](int64_t number) {
+        source[number] += part.share * std::fabs(v) / h;
+      });
+    }
+  }
+  found = true;
+}
+
+void MPMFlowInflow::hold(std::vector<double> &velocity, std::vector<double> *mobility) const
+{
+  for (const auto &one : held) {
+    velocity[one.face] = one.velocity;
+    if (mobility) (*mobility)[one.face] = 0.0;
+  }
+  cells.grid.copy_aliases(velocity.data(), cells.lattice.dim);
+  if (mobility) cells.grid.copy_aliases(mobility->data(), cells.lattice.dim);
+  cells.reflect_velocities(velocity.data());
+}
+
+bool MPMFlowInflow::carry(double *x, double *v, double dt) const
+{
+  for (const auto &one : mouths) {
+    if (!one.fix->passage().holds(x, 0.0)) continue;
+    for (int d = 0; d < 3; d++) {
+      v[d] = one.velocity[d];
+      x[d] += dt * v[d];
+    }
+    return true;
+  }
+  return false;
+}
+
+double MPMFlowInflow::memory_usage() const
+{
+  return held.capacity() * sizeof(Held) + source.capacity() * sizeof(double);
+}
