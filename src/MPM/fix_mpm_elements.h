@@ -38,6 +38,8 @@ struct MPMElementsOptions {
   MPMThinBody thin;           ///< surfaces or lines
   bool compression = true;    ///< do these resist it, or wrinkle?
   bool bending = false;       ///< do these resist it?
+  bool has_axes = false;      ///< of the material
+  double axes[6] = {};        ///< in surfaces: axis 1, and the side of axis 2
 
   MPM_NS::Options declare(int dim);
 };
@@ -157,6 +159,8 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   void compute(bool starting);
   void load(Work &, std::size_t e, bool moved) const;
   double gradients(const MPM_NS::ElementRule &, int q, const double (*x)[3], double (*g)[3]) const;
+  void check_frame(const double (*frame)[3], bigint label) const;
+  void find_frame(const double (*g)[3], double (*frame)[3]) const;
   void load_thin(MPM_NS::PlaneStress::Point &, const double (*x)[3], const double (*g)[3],
                  int nnode, const double *state) const;
   void find_motion(const double (*x)[3], const double (*g)[3], int nnode, double *to) const;
