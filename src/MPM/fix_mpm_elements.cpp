@@ -418,6 +418,7 @@ void FixMPMElements::init()
 {
   check_nodes();
   check_fields();
+  has_lattice = field_of_nodes() != nullptr;
   pressure = nullptr;
   comm_reverse = width = 18 + nhistory;
 
@@ -471,6 +472,42 @@ bool FixMPMElements::has_points_of(int other_groupbit) const
     mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & other_groupbit);
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any != 0;
+}
+
+const char *FixMPMElements::field_of_nodes() const
+{
+  for (const auto *field : MPMField::all(lmp))
+    if (has_points_of(field->fix.groupbit)) return field->id();
+  return nullptr;
+}
+
+std::vector<NearNodes::Edge> FixMPMElements::edges() const
+{
+  std::vector<NearNodes::Edge> mine;
+  for (std::size_t e = 0; e < pool.size() / stride; e++) {
+    const double *const r = row(e);
+    if (bends(r)) continue;
+    const double *const X = r + 2 + maxnode;
+    const int nnode = rule_of(r).nnode;
+    for (int k = 0; k < nnode; k++)
+      for (int m = 0; m < k; m++) {
+        double square = 0.0;
+        for (int d = 0; d < dim; d++)
+          square += (X[k * dim + d] - X[m * dim + d]) * (X[k * dim + d] - X[m * dim + d]);
+        mine.push_back({(int64_t) r[2 + k] - ids.low, (int64_t) r[2 + m] - ids.low, sqrt(square)});
+      }
+  }
+
+  // all of them in the order of ranks
+
+  const int size = (int) (mine.size() * sizeof(NearNodes::Edge));
+  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
+  std::vector<NearNodes::Edge> all((starts.back() + sizes.back()) / sizeof(NearNodes::Edge));
+  MPI_Allgatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
+                 world);
+  return all;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -533,7 +570,7 @@ double FixMPMElements::largest_extent() const
    rows in the order of atoms, and where their nodes are
 ------------------------------------------------------------------------- */
 
-void FixMPMElements::post_neighbor()
+void FixMPMElements::find_nodes()
 {
   const int nlocal = atom->nlocal;
   std::vector<double> sorted;
@@ -1151,7 +1188,7 @@ double FixMPMElements::memory_usage()
 }
 
 /* ----------------------------------------------------------------------
-   elements go where their atom goes. Rows that nobody has any more are dropped by post_neighbor()
+   elements go where their atom goes. Rows that nobody has any more are dropped by find_nodes()
 ------------------------------------------------------------------------- */
 
 int FixMPMElements::pack_exchange(int i, double *buf)
