@@ -34,5 +34,7 @@ TEST(NearNodes, ShortestPaths)
   EXPECT_TRUE(nodes.near(3, 4));
   EXPECT_TRUE(nodes.near(2, 2));
   EXPECT_FALSE(nodes.near(1, 3));
+  const NearNodes fine(5, {{0, 1, 0.3}, {1, 2, 0.3}, {2, 3, 0.3}, {3, 4, 0.3}}, 1.0);
+  for (int i = 0; i < 5; i++) EXPECT_EQ(fine.near(0, i), i < 4);
   EXPECT_GT(nodes.memory(), 0.0);
 }

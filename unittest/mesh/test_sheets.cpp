@@ -123,6 +123,32 @@ SERIAL_TEST(Sheets, LayersDoNotPassEachOther)
   }
 }
 
+// nodes of a sheet with edges below the distance leave each other alone, also where it is curved; those that a fold has brought there do not
+SERIAL_TEST(Sheets, NearNodesDoNotTouch)
+{
+  ScratchFile file("strip.msh", folded(1, 8, 3, 0.05, 0.0));
+  Scene run(free_body(3, -0.6, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+            "pair_style mpm/sheet 0.08\npair_coeff * * 1.0\nfix move all nve\n"
+            "compute touch all pair mpm/sheet\ntimestep 1e-5\n"
+            "thermo_style custom step pe c_touch[1]\nrun 0\n");
+  EXPECT_EQ(run.evaluate("c_touch[1]"), 0.0);
+  EXPECT_EQ(run.evaluate("pe"), 0.0);
+  // bent to three quarters of a cylinder, and then to a fold whose halves lie on each other
+  for (const bool folds : {false, true}) {
+    for (int i = 0; i < run.n(); i++) {
+      const int k = (int) (run.lmp->atom->tag[i] - 1) / 4;
+      const double angle = 1.5 * PI * (k - 4) / 8.0, R = 0.4 / (1.5 * PI);
+      run.x()[i][0] = folds ? 0.05 * std::abs(k - 4) : R * sin(angle);
+      run.x()[i][2] = folds ? (k < 4 ? 0.03 : 0.0) : R * cos(angle);
+    }
+    run.commands("run 0\n");
+    if (folds)
+      EXPECT_GT(run.evaluate("c_touch[1]"), 10.0);
+    else
+      EXPECT_EQ(run.evaluate("c_touch[1]"), 0.0);
+  }
+}
+
 // V4: a bag between two plates, of lines that hardly stretch, with a gas of 1.1e5 against 1e5 outside: the force on a plate when half of
 // its height is left, with the temperature or the entropy of the gas kept
 SERIAL_TEST(Sheets, BagBetweenPlates)
