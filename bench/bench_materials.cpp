@@ -38,6 +38,7 @@ struct Sample {
     {"orthotropic",
      "density 600 orthotropic 11e9 0.9e9 0.5e9 0.4 0.45 0.5 0.7e9 0.65e9 0.05e9 "
      "axes 1 2 0 0 1 1 angle 20"},
+    {"woven", "density 800 woven 2e8 1e8 5e6 angle 80 locking 40 2e7"},
     {"linear_newtonian", "density 1000 linear 1e9 0.3 viscosity newtonian 10"},
     {"neohookean_maxwell1", "density 1000 neohookean 1e9 0.3 viscosity maxwell term 1e9 1e-3"},
     {"neohookean_maxwell3",

@@ -235,9 +235,17 @@ def scene_for(lines):
         before += "group grains type 3\n"
     if "mpm/elements" in text:
         points = "create_points 2 mesh ring.msh move 0.05 0.05 0.05\ngroup ring type 2\n"
-    if "ball.msh" in text or "mpm/airbag" in text:
+    cloth, sheet = " woven " in text, "mpm/sheet" in text
+    if "ball.msh" in text or "mpm/airbag" in text or cloth or sheet:
         points = "create_points 1 mesh ball.msh scale 0.3 move 0.05 0.05 0.05 thickness 0.001\n"
-        material = "fix default all mpm/material density 1000 neohookean 1.0e5 0.3\n"
+        law = "woven 1.0e6 1.0e6 1.0e4" if " axes " in text else "neohookean 1.0e5 0.3"
+        material = "" if cloth else "fix default all mpm/material density 1000 %s\n" % law
+    if cloth:
+        points += "group tent type 1\n"
+    if sheet:
+        grid = ""
+        before += "fix skin all mpm/elements ball.msh thickness 0.001\nfix move all nve\n"
+        text = re.sub("^(pair_style .*)", r"\1\npair_coeff * * 1.0", text)
     own_grid = re.search(r"^fix\s+\S+\s+\S+\s+mpm/mesh\s+(\S+)", text, re.M)
     if own_grid:    # the mesh
         grid = ""
@@ -255,6 +263,8 @@ def scene_for(lines):
         scene += "pair_coeff 1 2 1.0e6\n"
     if own_field and grid == "":
         scene += FLUID if " smooth " in text else MATERIAL
+    if cloth:
+        scene += "fix skin all mpm/elements ball.msh thickness 0.001 axes 1 0 0 0 1 0\n"
     if "mpm/dt" not in text:
         scene += "timestep 1.0e-7\n"
     return scene + "run 2\n"

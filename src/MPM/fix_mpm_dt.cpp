@@ -97,9 +97,10 @@ FixMPMDt::~FixMPMDt() = default;
 
 void FixMPMDt::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty() && find_fixes<MPMStepLimit>(lmp).empty())
+  if (modify->get_fix_by_style("^mpm$").empty() && find_fixes<MPMStepLimit>(lmp).empty() &&
+      modify->get_fix_by_style("^mpm/elements$").empty())
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/dt needs a fix mpm, mpm/mesh, or mpm/incompressible");
+               "Fix mpm/dt needs a fix mpm, mpm/mesh, mpm/elements, or mpm/incompressible");
   for (auto *ifix : modify->get_fix_list()) {
     if (ifix == this) continue;
     const std::string other = ifix->style;

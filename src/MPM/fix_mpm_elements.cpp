@@ -15,6 +15,7 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "group.h"
+#include "law/axes.h"
 #include "material/batch.h"
 #include "material/material.h"
 #include "material/plane_stress.h"
@@ -76,6 +77,9 @@ static bool bends(const double *row)
   return type_of(row) == ElementType::PATCH || type_of(row) == ElementType::CORNER;
 }
 
+// axes must have at least this part of their length along an element
+static constexpr double LEAST_AXIS = 0.1;
+
 static const ElementRule &rule_of(const double *row)
 {
   return ElementRule::of(type_of(row));
@@ -100,8 +104,23 @@ Options MPMElementsOptions::declare(int dim)
         "do surfaces and lines resist compression, or wrinkle and sag?");
   o.add("bending", {word(bending, {{"no", false}, {"yes", true}})},
         "do surfaces of triangles, and lines, resist bending, as elastic plates and rods?");
-  o.refuse([this] {
+  o.add("axes",
+        {numbers(axes, 6, "a1x a1y a1z a2x a2y a2z", ANY_NUMBER, "",
+                 "axis 1 of the material, and a vector on the side of axis 2, as they lie on a "
+                 "surface in 3d before it is deformed")})
+      .then([this] {
+        has_axes = true;
+      })
+      .standard("an isotropic material");
+  o.refuse([this, dim] {
     auto rules = thin.rules();
+    const char *const wrong = has_axes ? law::check_axes(axes, axes + 3) : nullptr;
+    rules.push_back({has_axes && thin.dimension(dim) != 2, "axes",
+                     "is for surfaces in 3d, which have a thickness"});
+    rules.push_back({has_axes && (bending || !compression), "axes",
+                     "is not for bending, nor for compression no, for which the material must be "
+                     "isotropic"});
+    rules.push_back({wrong != nullptr, "axes", "needs two vectors that are not parallel"});
     rules.push_back(
         {bending && !thin, "bending", "is for surfaces and lines: use thickness or section"});
     rules.push_back(
@@ -207,9 +226,15 @@ FixMPMMaterial *FixMPMElements::find_material() const
 
 void FixMPMElements::define_plane_stress()
 {
+  if (material->material->is_of_surfaces() && !(thin && along == 2))
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/elements {}: the law of fix mpm/material {} bears nothing across a surface, "
+        "and is for surfaces in 3d only: use thickness and axes",
+        id, material->id);
   if (!thin) return;
   try {
-    plane_stress.reset(new PlaneStress(*material->material, dim, along, compression));
+    plane_stress.reset(new PlaneStress(*material->material, dim, along, compression, has_axes));
     if (bending) {
       const auto [E, ratio] = plane_stress->elastic_constants();
       const double t = thin.across();
@@ -218,13 +243,17 @@ void FixMPMElements::define_plane_stress()
       nu = ratio;
     }
   } catch (const std::runtime_error &e) {
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/elements {}: the material of fix mpm/material {} cannot be that of {}: {}",
-               id, material->id,
-               bending           ? "what resists bending"
-                   : compression ? "surfaces or lines"
-                                 : "what does not resist compression",
-               e.what());
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/elements {}: the material of fix mpm/material {} cannot be that of {}: {}{}", id,
+        material->id,
+        bending           ? "what resists bending"
+            : compression ? "surfaces or lines"
+                          : "what does not resist compression",
+        e.what(),
+        along == 2 && !has_axes && !bending && compression
+            ? ", or have its axes along the surface: use the keyword axes"
+            : "");
   }
 }
 
@@ -233,6 +262,22 @@ double FixMPMElements::gradients(const ElementRule &rule, int q, const double (*
                                  double (*g)[3]) const
 {
   return thin ? thin.across() * rule.gradients_along(q, x, g) : rule.gradients(q, x, g);
+}
+
+/** Axes that are all but normal to an element have no direction in it. */
+void FixMPMElements::check_frame(const double (*frame)[3], bigint label) const
+{
+  double normal[3], size[3];
+  for (int k = 0; k < 2; k++) size[k] = sqrt(dot(axes + 3 * k, axes + 3 * k));
+  cross(axes, axes + 3, normal);
+  size[2] = sqrt(dot(normal, normal));
+  if (!(fabs(dot(frame[0], axes)) > LEAST_AXIS * size[0]) ||
+      !(fabs(dot(frame[2], normal)) > LEAST_AXIS * size[2]))
+    error->one(FLERR,
+               "Fix mpm/elements {}: the axes are all but normal to element {} of the mesh, which "
+               "gives them no direction there: give this part of the surface a mesh, or a part, of "
+               "its own, with other axes",
+               id, label);
 }
 
 std::string FixMPMElements::names_of_history() const
@@ -320,8 +365,12 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     }
     double frequency = 0.0, size = 0.0;
     for (int q = 0; q < rule.npoint; q++) {
-      double g[MAX_ELEMENT_NODES][3];
+      double g[MAX_ELEMENT_NODES][3], frame[3][3];
       const double w = gradients(rule, q, X, g);
+      if (has_axes) {
+        find_frame(g, frame);
+        check_frame(frame, (bigint) element.label);
+      }
       if (!(w > 0.0))
         error->one(FLERR, "Fix mpm/elements {}: element {} of the mesh is inverted", id,
                    element.label);
@@ -369,6 +418,7 @@ void FixMPMElements::init()
 {
   check_nodes();
   check_fields();
+  has_lattice = field_of_nodes() != nullptr;
   pressure = nullptr;
   comm_reverse = width = 18 + nhistory;
 
@@ -422,6 +472,42 @@ bool FixMPMElements::has_points_of(int other_groupbit) const
     mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & other_groupbit);
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any != 0;
+}
+
+const char *FixMPMElements::field_of_nodes() const
+{
+  for (const auto *field : MPMField::all(lmp))
+    if (has_points_of(field->fix.groupbit)) return field->id();
+  return nullptr;
+}
+
+std::vector<NearNodes::Edge> FixMPMElements::edges() const
+{
+  std::vector<NearNodes::Edge> mine;
+  for (std::size_t e = 0; e < pool.size() / stride; e++) {
+    const double *const r = row(e);
+    if (bends(r)) continue;
+    const double *const X = r + 2 + maxnode;
+    const int nnode = rule_of(r).nnode;
+    for (int k = 0; k < nnode; k++)
+      for (int m = 0; m < k; m++) {
+        double square = 0.0;
+        for (int d = 0; d < dim; d++)
+          square += (X[k * dim + d] - X[m * dim + d]) * (X[k * dim + d] - X[m * dim + d]);
+        mine.push_back({(int64_t) r[2 + k] - ids.low, (int64_t) r[2 + m] - ids.low, sqrt(square)});
+      }
+  }
+
+  // all of them in the order of ranks
+
+  const int size = (int) (mine.size() * sizeof(NearNodes::Edge));
+  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
+  std::vector<NearNodes::Edge> all((starts.back() + sizes.back()) / sizeof(NearNodes::Edge));
+  MPI_Allgatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
+                 world);
+  return all;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -484,7 +570,7 @@ double FixMPMElements::largest_extent() const
    rows in the order of atoms, and where their nodes are
 ------------------------------------------------------------------------- */
 
-void FixMPMElements::post_neighbor()
+void FixMPMElements::find_nodes()
 {
   const int nlocal = atom->nlocal;
   std::vector<double> sorted;
@@ -656,14 +742,19 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     }
     const double Jold = MPMPoints::det(s), inv = 1.0 / Jold;
     b.Jold[p] = Jold;
+    PlaneStress::Point point;
+    if (has_axes) {
+      double g[MAX_ELEMENT_NODES][3];
+      gradients(rule, q, X, g);
+      find_frame(g, point.frame);
+    }
     double inverse[9] = MPM_COFACTORS(s), change[9];
     for (double &a : inverse) a *= inv;
     for (int c = 0; c < 9; c++) change[c] = f[c] - s[c];
     for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) {
-        b.F[3 * i + j][p] = f[3 * i + j];
-        b.A[3 * i + j][p] = dot(change + 3 * i, inverse + 3 * j);
-      }
+      for (int j = 0; j < 3; j++) b.A[3 * i + j][p] = dot(change + 3 * i, inverse + 3 * j);
+    if (has_axes) plane_stress->turn_to_material(point, f);
+    for (int c = 0; c < 9; c++) b.F[c][p] = f[c];
     for (int c = 0; c < 6; c++) b.stress[c][p] = inv * s[9 + c];
     b.vol0[p] = w.volume[p];
     for (int k = 0; k < nhistory; k++) w.history[k * BATCH + p] = s[15 + k];
@@ -671,11 +762,25 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
   w.n += rule.npoint;
 }
 
+/** Axes for the motion along a surface or a line: those of the material, as they lie on a surface, if it has any. */
+void FixMPMElements::find_frame(const double (*g)[3], double (*frame)[3]) const
+{
+  if (!has_axes) return plane_stress->make_frame(g[1], g[along], frame);
+  double normal[3], flat[2][3];
+  cross(g[1], g[2], normal);
+  const double inv = 1.0 / dot(normal, normal);
+  for (int k = 0; k < 2; k++) {
+    const double part = inv * dot(normal, axes + 3 * k);
+    for (int d = 0; d < 3; d++) flat[k][d] = axes[3 * k + d] - part * normal[d];
+  }
+  plane_stress->make_frame(flat[0], flat[1], frame);
+}
+
 /** The motion along a surface or a line. */
 void FixMPMElements::load_thin(PlaneStress::Point &point, const double (*x)[3],
                                const double (*g)[3], int nnode, const double *state) const
 {
-  plane_stress->make_frame(g[1], g[along], point.frame);
+  find_frame(g, point.frame);
   find_motion(x, g, nnode, point.along);
   point.old = state;
 }
@@ -1083,7 +1188,7 @@ double FixMPMElements::memory_usage()
 }
 
 /* ----------------------------------------------------------------------
-   elements go where their atom goes. Rows that nobody has any more are dropped by post_neighbor()
+   elements go where their atom goes. Rows that nobody has any more are dropped by find_nodes()
 ------------------------------------------------------------------------- */
 
 int FixMPMElements::pack_exchange(int i, double *buf)

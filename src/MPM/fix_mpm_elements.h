@@ -18,6 +18,7 @@ FixStyle(mpm/elements,FixMPMElements);
 #include "declare/option.h"
 #include "material/plane_stress.h"
 #include "mesh/gmsh.h"
+#include "mesh/near_nodes.h"
 #include "mpm_state.h"
 #include "mpm_thin_body.h"
 
@@ -38,6 +39,8 @@ struct MPMElementsOptions {
   MPMThinBody thin;           ///< surfaces or lines
   bool compression = true;    ///< do these resist it, or wrinkle?
   bool bending = false;       ///< do these resist it?
+  bool has_axes = false;      ///< of the material
+  double axes[6] = {};        ///< in surfaces: axis 1, and the side of axis 2
 
   MPM_NS::Options declare(int dim);
 };
@@ -54,7 +57,7 @@ class MPMElementsPressure {
 
 /** Finite elements whose nodes are material points: the points have no stress of their own, the
  *  internal force is integrated over the elements (total Lagrangian) and put on atom->f, and fix
- *  mpm moves the points. This is the generalized particle in cell method of V.P. Nguyen,
+ *  mpm moves the points, or, without a lattice, fix nve. This is the generalized particle in cell method of V.P. Nguyen,
  *  A. de Vaucorbeil, C. Nguyen-Thanh, T.K. Mandal, Comput. Methods Appl. Mech. Eng. 371 (2020)
  *  113308.
  *
@@ -66,9 +69,17 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   ~FixMPMElements() override;
   int setmask() override { return FixConst::POST_NEIGHBOR | FixConst::POST_FORCE; }
   void init() override;
-  void setup_post_neighbor() override { post_neighbor(); }
-  void setup(int) override { compute(true); }
-  void post_neighbor() override;
+  void setup_post_neighbor() override { find_nodes(); }
+  void setup(int) override
+  {
+    compute(true);
+    if (!has_lattice) check_dt();
+  }
+  void post_neighbor() override
+  {
+    find_nodes();
+    if (!has_lattice) check_dt();    // which fix mpm does otherwise
+  }
   void post_force(int) override { compute(false); }
   double compute_scalar() override { return (double) nelements; }
   double memory_usage() override;
@@ -101,6 +112,20 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   /** Stop when the time step is above that of an element. */
   void check_dt() const;
 
+  /** Is it a surface or a line? */
+  bool is_thin() const { return (bool) thin; }
+
+  /** ID of a fix mpm that moves nodes, null: there is none. On all ranks together. */
+  const char *field_of_nodes() const;
+
+  /** The IDs of nodes are consecutive. */
+  tagint first_node() const { return ids.low; }
+  bigint number_of_nodes() const { return ids.n; }
+
+  /** Edges of all elements, and diagonals of quadrangles, without deformation, on all ranks together; nodes are counted from the
+   *  first one on. An edge is there once for each of its elements. */
+  std::vector<MPM_NS::NearNodes::Edge> edges() const;
+
  private:
   struct Work;
   struct IDs {    // of the nodes: their number and range
@@ -118,6 +143,7 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   double side =
       0.0;    // of the pressure: 1: on the inside if elements go around counterclockwise; 0: not known
   IDs ids;
+  bool has_lattice = true;    // does a fix mpm move the nodes?
   double pressure_work = 0.0, volume_before = 0.0, pressure_before = 0.0;    // of a closed surface
   double stiffness = 0.0, nu = 0.0, bending_frequency = 0.0;                 // of bending
   double shortest = 0.0;             // length of the smallest element, for artificial viscosity
@@ -134,7 +160,7 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
 
   double *first, *count;    // of an atom: its elements in the pool
   std::vector<double> pool;
-  std::vector<std::array<int, 8>> nodes;    // local indices, after post_neighbor()
+  std::vector<std::array<int, 8>> nodes;    // local indices, after find_nodes()
   int width;                                // of rows of sums
   std::vector<double> sums;                 // forces and averages of nodes
   std::vector<double> force_on;
@@ -154,9 +180,12 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   void make_elements(const MPM_NS::Mesh &);
   IDs count_nodes() const;
   double largest_extent() const;
+  void find_nodes();
   void compute(bool starting);
   void load(Work &, std::size_t e, bool moved) const;
   double gradients(const MPM_NS::ElementRule &, int q, const double (*x)[3], double (*g)[3]) const;
+  void check_frame(const double (*frame)[3], bigint label) const;
+  void find_frame(const double (*g)[3], double (*frame)[3]) const;
   void load_thin(MPM_NS::PlaneStress::Point &, const double (*x)[3], const double (*g)[3],
                  int nnode, const double *state) const;
   void find_motion(const double (*x)[3], const double (*g)[3], int nnode, double *to) const;

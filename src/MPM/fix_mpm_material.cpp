@@ -76,6 +76,7 @@ void FixMPMMaterial::init()
                    "which conducts: define one, or use thermal adiabatic",
                    id);
   counts_stress = !modify->get_compute_by_style("^mpm/energy$").empty();
+  if (material->is_of_surfaces()) check_surfaces();
   assign_mass();
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
@@ -93,6 +94,27 @@ void FixMPMMaterial::init()
                    "{} material points keep a mass that is not the density of fix mpm/material {} "
                    "times their volume",
                    all, id);
+}
+
+/* ----------------------------------------------------------------------
+   a law that bears nothing across a plane would let points, and elements that are no surfaces, fall apart; the latter are refused by
+   fix mpm/elements
+------------------------------------------------------------------------- */
+
+void FixMPMMaterial::check_surfaces() const
+{
+  int nodes = 0;
+  for (const auto *ifix : modify->get_fix_by_style("^mpm/elements$")) nodes |= ifix->groupbit;
+  bigint n = 0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    n += (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 && !(atom->mask[i] & nodes);
+  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/material {}: its law bears nothing across a surface, and {} of its points are "
+        "no nodes of one: use fix mpm/elements with thickness and axes for them",
+        id, all);
 }
 
 /* ----------------------------------------------------------------------

@@ -77,6 +77,7 @@ class FixMPMMaterial : public FixMPMState {
   bool counts_stress = false;    // there is a compute mpm/energy
   std::vector<Exit> exits;       ///< for each range of the material
   void report_exits();
+  void check_surfaces() const;
   std::string names() const;
 };
 

@@ -41,6 +41,7 @@
 #include "mpm_implicit.h"
 #include "mpm_point.h"
 #include "pair_mpm_penalty.h"
+#include "pair_mpm_sheet.h"
 #include "region_mpm_mesh.h"
 
 using namespace LAMMPS_NS;
@@ -86,6 +87,7 @@ std::map<std::string, std::string> files()
   add("mpm_point", MPMPointOptions().declare());
   add("pair_mpm_penalty", MPMPenaltyOptions().declare());
   add("pair_mpm_penalty_coeff", MPMPenaltyCoeff().declare());
+  add("pair_mpm_sheet_coeff", MPMSheetCoeff().declare());
   add("region_mpm_mesh", MPMRegionMeshOptions().declare());
   return all;
 }

@@ -614,4 +614,38 @@ TEST(Anisotropic, WavesAlongTheAxes)
   EXPECT_NEAR(fastest_wave(p), std::sqrt(C11 / 1600), 1e-5 * p.wave_speed());
 }
 
+// woven yarns, however taut, slack, or sheared, and with any angle between them: stress is the slope of the energy, and no wave is faster
+// than the bound, which is close when yarns are just taut
+TEST(Anisotropic, Woven)
+{
+  for (const char *more : {"", " angle 50", " angle 110 locking 20 4e7"}) {
+    SCOPED_TRACE(more);
+    const auto material = material_of(std::string("woven 2e8 0.5e8 1e7") + more);
+    MaterialPoint taut(*material);
+    move_to(taut, diagonal({1.0001, 1.0001, 1.0}));
+    EXPECT_GT(taut.wave_speed(), fastest_wave(taut) * (1.0 - 1e-5));
+    EXPECT_LT(taut.wave_speed(), fastest_wave(taut) * 1.15);
+    RandomMatrix random(3);
+    for (int k = 0; k < 25; k++) {
+      Matrix F = random(0.15);
+      for (int d = 0; d < 9; d += 4) F[d] += 1.0;
+      const auto moved = [&](int c, double change) {
+        MaterialPoint p(*material);
+        Matrix to = F;
+        if (c >= 0) to[c] += change;
+        move_to(p, to);
+        return p;
+      };
+      const MaterialPoint p = moved(-1, 0.0);
+      EXPECT_GT(p.wave_speed(), fastest_wave(p) * (1.0 - 1e-5));
+      const Matrix P = first_piola(p);
+      const double d = 1e-6;
+      for (int c = 0; c < 9; c++) {
+        const double change = moved(c, d).stored_energy() - moved(c, -d).stored_energy();
+        EXPECT_NEAR(P[c], change / (2 * d), 1e-7 * size(P) + 1.0) << c;
+      }
+    }
+  }
+}
+
 }    // namespace

@@ -371,6 +371,7 @@ inline const Sample samples[] = {
     {"orthotropic",
      "density 600 orthotropic 11e9 0.9e9 0.5e9 0.4 0.45 0.5 0.7e9 0.65e9 0.05e9 "
      "axes 1 2 0 0 1 1 angle 20"},
+    {"woven", "density 800 woven 2e8 1e8 5e6 angle 80 locking 40 2e7"},
     {"elastic", "density 2700 eos linear 70e9 strength elastic 26e9"},
     {"shock+elastic", "density 2703 eos shock 5350 1.34 2 strength elastic 26e9"},
     {"j2", "density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6 hardening linear 425e6"},

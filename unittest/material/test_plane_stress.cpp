@@ -345,3 +345,34 @@ TEST(BagGas, BlowDownAndFilling)
   for (int k = 0; k < 100; k++) half.expand(V * (1.0 + 0.5 * std::sin(k)));
   EXPECT_NEAR(half.pressure() * std::pow(half.volume, gamma) / before, 1.0, 1e-12);
 }
+
+// V4: a piston of 10 kg falls at 5 m/s on a cylinder of gas: how deep it comes, when, and the pressure there, with the time step of an
+// explicit run; the energy of piston and gas is kept
+TEST(BagGas, Piston)
+{
+  const double mass = 10.0, area = 0.01, length = 0.5, p0 = 1e5, g = 9.81, dt = 1e-5;
+  BagGas gas{1.4, 287.0, p0 * area * length / (287.0 * 300.0), area * length, 300.0};
+  double x = 0.0, v = 5.0, time = 0.0, deepest = 0.0, at = 0.0, highest = 0.0;
+  const auto acceleration = [&] {
+    return g - (gas.pressure() - p0) * area / mass;
+  };
+  const auto energy = [&] {
+    return 0.5 * mass * v * v - mass * g * x - p0 * area * x + gas.energy();
+  };
+  const double start = energy();
+  while (v > -3.0) {
+    v += 0.5 * dt * acceleration();
+    x += dt * v;
+    gas.expand(area * (length - x));
+    v += 0.5 * dt * acceleration();
+    time += dt;
+    if (x <= deepest) continue;
+    deepest = x;
+    at = time;
+    highest = gas.pressure();
+  }
+  EXPECT_NEAR(deepest, 0.25009089, 1e-6);
+  EXPECT_NEAR(highest / 264035.96, 1.0, 1e-5);
+  EXPECT_NEAR(at, 0.0697498, 1.1e-5);
+  EXPECT_NEAR(energy() / start, 1.0, 1e-7);
+}

@@ -130,6 +130,8 @@ struct LawInfo {
   /** Of an equation of state: does the temperature follow from its internal energy? Then no other part
    *  changes that but by heat. */
   bool finds_temperature;
+  /** Of a closed law: does it bear nothing across the plane of its axes 1 and 2, so that it is for surfaces only? */
+  bool of_surfaces;
   /** What is wrong with parameters that are each in their range; null when all is well. */
   const char *(*check)(const LawParameters &);
   /** Does a law with these parameters need the temperature, and so a thermal part? */
@@ -201,7 +203,7 @@ struct LawKernels {
 struct LawDefaults {
   static constexpr StressShare share = NO_SHARE;
   static constexpr bool uses_speed = true, uses_F = true, expands = false,
-                        finds_temperature = false;
+                        finds_temperature = false, of_surfaces = false;
   static constexpr int gruneisen = -1;
   static constexpr const char *term = nullptr;
   static constexpr std::nullptr_t term_parameters = nullptr;
@@ -240,7 +242,7 @@ struct LawVersion {
   int interface;    ///< raised with each change of what laws and package expect of each other
   int batch, info, kernels, parameters, conduction;
 };
-constexpr LawVersion law_version{7,
+constexpr LawVersion law_version{8,
                                  sizeof(Batch),
                                  sizeof(LawInfo),
                                  sizeof(LawKernels),
@@ -291,6 +293,7 @@ namespace law {
       info.uses_F = Law::uses_F;
       info.expands = Law::expands;
       info.finds_temperature = Law::finds_temperature;
+      info.of_surfaces = Law::of_surfaces;
       info.gruneisen = Law::gruneisen;
       info.check = Law::check;
       info.needs_temperature = Law::needs_temperature;

@@ -43,8 +43,9 @@ namespace {
 #include "law/elastic.h"
 #include "law/orthotropic.h"
 #include "law/rubber.h"
+#include "law/woven.h"
 MPM_FAMILY(elastic, CLOSED, LawLinear, LawNeoHookean, LawNeoHookeanSplit, LawStVenantKirchhoff,
-           LawHencky, LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic)
+           LawHencky, LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic, LawWoven)
 #endif
 
 #if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_viscoelastic)

@@ -86,6 +86,12 @@ class ComposedMaterial : public Material {
       return law.part == CLOSED || law.part == STRENGTH;
     });
   }
+  bool is_of_surfaces() const override
+  {
+    return std::any_of(laws.begin(), laws.end(), [](const auto &law) {
+      return law.info->of_surfaces;
+    });
+  }
   std::string describe() const override { return text; }
 
   void initialize(const double *x, double *history) const override

@@ -167,6 +167,8 @@ class Material {
   virtual bool is_viscous() const = 0;
   /** Does it resist a shear at rest? Not an equation of state with or without a viscosity. */
   virtual bool is_solid() const = 0;
+  /** Does it bear nothing across the plane of its axes 1 and 2, so that it is for surfaces of elements only? */
+  virtual bool is_of_surfaces() const = 0;
 
   /** Does its stress change with the temperature, by expansion or by parameters? Then it has the work
    *  THERMOELASTIC. */

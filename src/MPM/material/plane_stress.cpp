@@ -29,11 +29,13 @@ static constexpr double COLLAPSED = 1.0e-12;
 
 /* ---------------------------------------------------------------------- */
 
-PlaneStress::PlaneStress(const Material &material, int dim, int along, bool compression) :
-    material(material), dim(dim), along(along), compression(compression)
+PlaneStress::PlaneStress(const Material &material, int dim, int along, bool compression,
+                         bool axes) :
+    material(material),
+    dim(dim), along(along), compression(compression), axes(axes)
 {
   history.resize(material.history().size() * BATCH);
-  check_isotropy();
+  check_symmetry();
   if (!compression) check_elasticity();
 }
 
@@ -82,6 +84,20 @@ void PlaneStress::make_frame(const double *a, const double *b, double (*frame)[3
   remove(frame[0], second);
   normalize(second);
   cross(frame[0], second, frame[2]);
+}
+
+/* ----------------------------------------------------------------------
+   another reference configuration, turned so that its axes x y z are those of the frame, has the same stress
+------------------------------------------------------------------------- */
+
+void PlaneStress::turn_to_material(const Point &point, double *F) const
+{
+  if (!axes) return;
+  for (int i = 0; i < 3; i++) {
+    double row[3];
+    multiply(&point.frame[0][0], F + 3 * i, row);
+    std::copy_n(row, 3, F + 3 * i);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -179,10 +195,9 @@ void PlaneStress::move(Batch &b, const Point *point)
     }
     b.J[p] = determinant(F);
     for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) {
-        b.F[3 * i + j][p] = F[3 * i + j];
-        b.A[3 * i + j][p] = dot(change + 3 * i, inverse + 3 * j);
-      }
+      for (int j = 0; j < 3; j++) b.A[3 * i + j][p] = dot(change + 3 * i, inverse + 3 * j);
+    turn_to_material(point[p], F);
+    for (int c = 0; c < 9; c++) b.F[c][p] = F[c];
   }
 }
 
@@ -313,11 +328,15 @@ int PlaneStress::update(Batch &b, const Point *point, const std::function<void(B
   }
   move(b, point);
   last(b);
+  for (int p = 0; p < b.n && axes; p++)    // without the turn
+    for (int c = 0; c < 9; c++)
+      b.F[c][p] = state[p].fixed[c] + state[p].stretch * state[p].across[c];
   return -1;
 }
 
 /* ----------------------------------------------------------------------
-   Is the stress of a small strain turned by what turns the strain?
+   Is the stress of a small strain turned by what turns the strain? If not, does a strain that is the same on both sides of the plane of
+   axes 1 and 2 cause a stress that is?
 ------------------------------------------------------------------------- */
 
 namespace {
@@ -392,7 +411,7 @@ void turn(const double *R, const double *m, double *to)
 
 }    // namespace
 
-void PlaneStress::check_isotropy()
+void PlaneStress::check_symmetry()
 {
   // about x + y by one radian, which is no symmetry of anything
   const double c = cos(1.0), s = sin(1.0), r = sqrt(0.5);
@@ -409,7 +428,14 @@ void PlaneStress::check_isotropy()
   other.go(material, UNIT, strained);
   other.get(turned);
   for (int k = 0; k < 9; k++) turned[k] -= wanted[k];
-  if (!(norm(turned) <= SAME * norm(wanted))) throw std::runtime_error("it must be isotropic");
+  const bool isotropic = norm(turned) <= SAME * norm(wanted);
+  if (!axes && !isotropic) throw std::runtime_error("it must be isotropic");
+  if (!axes) return;
+  if (along != 2 || dim != 3 || !compression)
+    throw std::runtime_error("axes are for surfaces in 3d that resist compression");
+  if (isotropic) throw std::runtime_error("it is isotropic, and has no axes");
+  if (!(std::fabs(stress[2]) + std::fabs(stress[5]) <= SAME * norm(stress)))
+    throw std::runtime_error("the plane of its axes x and y is no plane of symmetry");
 }
 
 void PlaneStress::check_elasticity() const
@@ -441,6 +467,7 @@ void PlaneStress::check_elasticity() const
 /** From the stress in a small strain, 2 mu e + lambda tr(e) I. */
 std::array<double, 2> PlaneStress::elastic_constants() const
 {
+  if (axes) throw std::runtime_error("it must be isotropic");
   check_elasticity();
   double stress[9];
   One one(material);

@@ -25,7 +25,8 @@ namespace MPM_NS {
  *  85); what is shortened along all axes is slack, and free of stress.
  *
  *  The material must be isotropic; without compression also elastic, without history variables, and free of stress when
- *  undeformed. */
+ *  undeformed. Surfaces that resist compression can also be of a material with axes: of its own axes x y z, the first two are then those
+ *  of Point::frame along the surface, whose plane must be one of its planes of symmetry. */
 class PlaneStress {
  public:
   struct Point {
@@ -38,8 +39,9 @@ class PlaneStress {
         *old;    ///< [9] deformation gradient at the start of the step, as this class has found it
   };
 
-  /** dim: of space; along: of the body. Throws std::runtime_error when the material is none of those above. */
-  PlaneStress(const Material &, int dim, int along, bool compression);
+  /** dim: of space; along: of the body; axes: has the material the axes of the frame? Throws std::runtime_error when the
+   *  material is none of those above. */
+  PlaneStress(const Material &, int dim, int along, bool compression, bool axes = false);
 
   /** The step of a batch, with n, dt, h, time, vol0, and history and stress of the start of the step, and A, F, and J that
    *  are zero where the law does not use them. Sets A, F, J, Jold, and leaves the rest to last, which is called once, in the
@@ -49,13 +51,16 @@ class PlaneStress {
   /** Young's modulus and Poisson's ratio at rest. Throws std::runtime_error when the material is not elastic, see above. */
   std::array<double, 2> elastic_constants() const;
 
+  /** F [9], row-major, of a motion from the axes of the frame, as a material with axes sees it; others leave it as it is. */
+  void turn_to_material(const Point &, double *F) const;
+
   /** Orthonormal axes for Point::frame from gradients along the body: directions a and, for surfaces, b. */
   void make_frame(const double *a, const double *b, double (*frame)[3]) const;
 
  private:
   const Material &material;
   const int dim, along;
-  const bool compression;
+  const bool compression, axes;
 
   /** F = fixed + stretch * across. */
   struct State {
@@ -77,7 +82,7 @@ class PlaneStress {
   void stress_across(Batch &, const Point *, double *s);
   int iterate(Batch &, const Point *);
   int solve(Batch &, const Point *);
-  void check_isotropy();
+  void check_symmetry();
   void check_elasticity() const;
 };
 

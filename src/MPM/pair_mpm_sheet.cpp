@@ -1,0 +1,327 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "pair_mpm_sheet.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_mpm_elements.h"
+#include "force.h"
+#include "math_extra.h"
+#include "memory.h"
+#include "modify.h"
+#include "mpm_options.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int NO_BODY = -1;
+// paths along a sheet that are shorter than this many distances: a fold whose layers touch has one of pi/2 distances around it
+static constexpr double NEAR = 2.0;
+// nodes that are so much closer than the distance may get to the other side
+static constexpr double DEEP = 0.5;
+
+/* ---------------------------------------------------------------------- */
+
+PairMPMSheet::PairMPMSheet(LAMMPS *lmp) : Pair(lmp)
+{
+  single_enable = 0;
+  nextra = 2;
+  pvector = new double[nextra]();
+}
+
+PairMPMSheet::~PairMPMSheet()
+{
+  if (copymode) return;
+  delete[] pvector;
+  if (allocated) {
+    memory->destroy(setflag);
+    memory->destroy(cutsq);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairMPMSheet::compute(int eflag, int vflag)
+{
+  ev_init(eflag, vflag);
+  if (neighbor->ago == 0) find_pairs();
+
+  double **x = atom->x, **v = atom->v, **f = atom->f;
+  const int *type = atom->type;
+  const int nlocal = atom->nlocal, newton_pair = force->newton_pair;
+  double contacts = 0.0, dissipated = 0.0;
+  int deep = -1;
+
+  for (const auto &[i, j] : pairs) {
+    double n[3];
+    MathExtra::sub3(x[i], x[j], n);
+    const double rsq = MathExtra::lensq3(n);
+    if (rsq >= distance * distance || rsq == 0.0) continue;
+    const Coeff &c = coeff_of(type[i], type[j]);
+    const double r = sqrt(rsq), overlap = distance - r, elastic = c.stiffness * overlap;
+    if (r < DEEP * distance) deep = i;
+    MathExtra::scale3(1.0 / r, n);
+    double normal = elastic, power = 0.0;
+    if (c.damping > 0.0) {
+      double u[3];
+      MathExtra::sub3(v[i], v[j], u);
+      const double un = MathExtra::dot3(u, n);
+      normal = std::max(0.0, elastic - c.damping * un);    // sheets do not pull on each other
+      power = (elastic - normal) * un;
+    }
+    for (int k = 0; k < 3; k++) {
+      f[i][k] += normal * n[k];
+      if (newton_pair || j < nlocal) f[j][k] -= normal * n[k];
+    }
+    const double share = newton_pair || j < nlocal ? 1.0 : 0.5;
+    contacts += share;
+    dissipated += share * power;
+    if (evflag)
+      ev_tally(i, j, nlocal, newton_pair, eflag ? 0.5 * elastic * overlap : 0.0, 0.0, normal / r,
+               r * n[0], r * n[1], r * n[2]);
+  }
+
+  if (deep >= 0 && !warned_deep) {
+    warned_deep = true;
+    error->warning(FLERR,
+                   "Pair style mpm/sheet: node {} and what it touches are closer than half of the "
+                   "distance {} at step {}: they may pass each other, use a larger stiffness",
+                   atom->tag[deep], distance, update->ntimestep);
+  }
+  pvector[0] = contacts;
+  pvector[1] = dissipated;
+  if (vflag_fdotr) virial_fdotr_compute();
+}
+
+/* ----------------------------------------------------------------------
+   once per neighbor list: of its pairs those with a node of a sheet that are not near each other along it
+------------------------------------------------------------------------- */
+
+void PairMPMSheet::find_pairs()
+{
+  pairs.clear();
+  for (int ii = 0; ii < list->inum; ii++) {
+    const int i = list->ilist[ii], mine = body_of(i);
+    for (int jj = 0; jj < list->numneigh[i]; jj++) {
+      const int j = list->firstneigh[i][jj] & NEIGHMASK, other = body_of(j);
+      if ((mine == NO_BODY && other == NO_BODY) ||
+          coeff_of(atom->type[i], atom->type[j]).stiffness == 0.0)
+        continue;
+      if (mine == other) {
+        const auto &body = bodies[mine];
+        if (body.nodes->near(atom->tag[i] - body.low, atom->tag[j] - body.low)) continue;
+      }
+      pairs.emplace_back(i, j);
+    }
+  }
+  warn_about_step();
+}
+
+int PairMPMSheet::body_of(int i) const
+{
+  for (std::size_t k = 0; k < bodies.size(); k++)
+    if (atom->mask[i] & bodies[k].elements->groupbit) return (int) k;
+  return NO_BODY;
+}
+
+/* ----------------------------------------------------------------------
+   The bound of the elements does not know of contacts. A node between two others that hold still has a frequency of
+   sqrt(2 k/m), and 2/omega is the limit
+------------------------------------------------------------------------- */
+
+void PairMPMSheet::warn_about_step()
+{
+  if (warned_dt) return;
+  double shortest = HUGE_VAL, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (body_of(i) == NO_BODY) continue;
+    for (int t = 1; t <= atom->ntypes; t++) {
+      const double k = coeff_of(atom->type[i], t).stiffness;
+      if (k > 0.0) shortest = std::min(shortest, sqrt(2.0 * atom->rmass[i] / (k * force->ftm2v)));
+    }
+  }
+  MPI_Allreduce(&shortest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (!(update->dt > all)) return;
+  warned_dt = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Pair style mpm/sheet: the time step {:.6g} is above the limit {:.6g} of a node "
+                   "between two others: use a smaller stiffness or time step",
+                   update->dt, all);
+}
+
+/* ----------------------------------------------------------------------
+   pair_style mpm/sheet D
+------------------------------------------------------------------------- */
+
+Options MPMSheetOptions::declare()
+{
+  using namespace option;
+  Options o("pair_style mpm/sheet");
+  o.argument(number(distance, "D", POSITIVE));
+  return o;
+}
+
+void PairMPMSheet::settings(int narg, char **arg)
+{
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 0);
+}
+
+void PairMPMSheet::allocate()
+{
+  allocated = 1;
+  const int n = atom->ntypes + 1;
+  memory->create(setflag, n, n, "pair:setflag");
+  memory->create(cutsq, n, n, "pair:cutsq");
+  memset(&setflag[0][0], 0, n * n * sizeof(int));
+  memset(&cutsq[0][0], 0, n * n * sizeof(double));
+  coeffs.assign(n * n, Coeff());
+}
+
+PairMPMSheet::Coeff &PairMPMSheet::coeff_of(int i, int j)
+{
+  return coeffs[std::min(i, j) * (atom->ntypes + 1) + std::max(i, j)];
+}
+
+/* ----------------------------------------------------------------------
+   pair_coeff I J k keyword values ...
+------------------------------------------------------------------------- */
+
+Options MPMSheetCoeff::declare()
+{
+  using namespace option;
+  Options o("pair_coeff mpm/sheet");
+  o.argument(number(stiffness, "k", NOT_NEGATIVE));
+  o.add("damping",
+        {number(damping, "c", NOT_NEGATIVE, "force/velocity",
+                "force against the velocity at which two nodes come closer or part")});
+  return o;
+}
+
+void PairMPMSheet::coeff(int narg, char **arg)
+{
+  if (narg < 3) utils::missing_cmd_args(FLERR, "pair_coeff mpm/sheet", error);
+  if (!allocated) allocate();
+  int ilo, ihi, jlo, jhi;
+  utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
+  utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
+  Coeff c;
+  Options options = c.declare();
+  read_options(lmp, options, narg, arg, 2);
+  c.set = 1;
+
+  int count = 0;
+  for (int i = ilo; i <= ihi; i++)
+    for (int j = std::max(jlo, i); j <= jhi; j++) {
+      coeff_of(i, j) = c;
+      setflag[i][j] = 1;
+      count++;
+    }
+  if (count == 0) error->all(FLERR, "Incorrect args for pair_coeff mpm/sheet: no types I <= J");
+}
+
+/* ---------------------------------------------------------------------- */
+
+void PairMPMSheet::init_style()
+{
+  find_bodies();
+  const bool damped = std::any_of(coeffs.begin(), coeffs.end(), [](const Coeff &c) {
+    return c.damping > 0.0;
+  });
+  if (damped && !comm->ghost_velocity)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Pair style mpm/sheet with damping needs the velocities of ghost atoms: use "
+               "comm_modify vel yes");
+  warned_deep = warned_dt = false;
+  neighbor->add_request(this);
+}
+
+/* ----------------------------------------------------------------------
+   all ranks know which nodes are near each other, as any can be ghosts
+------------------------------------------------------------------------- */
+
+void PairMPMSheet::find_bodies()
+{
+  bodies.clear();
+  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$")) {
+    auto *const elements = dynamic_cast<FixMPMElements *>(ifix);
+    if (!elements->is_thin()) continue;
+    if (const char *field = elements->field_of_nodes())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Pair style mpm/sheet: the nodes of fix mpm/elements {} belong to fix mpm {}, "
+                 "whose lattice holds together what is closer than its cells: move them with fix "
+                 "nve, or use fix mpm/contact",
+                 elements->id, field);
+    bodies.push_back({elements, elements->first_node(),
+                      std::make_unique<NearNodes>(elements->number_of_nodes(), elements->edges(),
+                                                  NEAR * distance)});
+  }
+  if (bodies.empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Pair style mpm/sheet needs a fix mpm/elements with thickness or section");
+}
+
+double PairMPMSheet::init_one(int i, int j)
+{
+  if (!coeff_of(i, j).set)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Pair style mpm/sheet has no pair_coeff for types {} and {}: give one, with "
+               "stiffness 0 if they shall not touch",
+               i, j);
+  return coeff_of(i, j).stiffness > 0.0 ? distance : 0.0;
+}
+
+/* ----------------------------------------------------------------------
+   restart
+------------------------------------------------------------------------- */
+
+void PairMPMSheet::write_restart(FILE *fp)
+{
+  write_restart_settings(fp);
+  fwrite(coeffs.data(), sizeof(Coeff), coeffs.size(), fp);
+}
+
+void PairMPMSheet::read_restart(FILE *fp)
+{
+  read_restart_settings(fp);
+  allocate();
+  if (comm->me == 0)
+    utils::sfread(FLERR, coeffs.data(), sizeof(Coeff), coeffs.size(), fp, nullptr, error);
+  MPI_Bcast(coeffs.data(), (int) (coeffs.size() * sizeof(Coeff)), MPI_BYTE, 0, world);
+  for (int i = 1; i <= atom->ntypes; i++)
+    for (int j = i; j <= atom->ntypes; j++)
+      if (coeff_of(i, j).set) setflag[i][j] = 1;
+}
+
+void PairMPMSheet::write_restart_settings(FILE *fp)
+{
+  fwrite(&distance, sizeof(double), 1, fp);
+}
+
+void PairMPMSheet::read_restart_settings(FILE *fp)
+{
+  if (comm->me == 0) utils::sfread(FLERR, &distance, sizeof(double), 1, fp, nullptr, error);
+  MPI_Bcast(&distance, 1, MPI_DOUBLE, 0, world);
+}
+
+double PairMPMSheet::memory_usage()
+{
+  double bytes = Pair::memory_usage() + (double) pairs.capacity() * sizeof(pairs[0]);
+  for (const auto &body : bodies) bytes += body.nodes->memory();
+  return bytes;
+}

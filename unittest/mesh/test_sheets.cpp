@@ -1,0 +1,218 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 300
+
+// Surfaces and lines without a lattice, moved by fix nve, which touch themselves by pair style mpm/sheet: folds part, and layers do not
+// pass each other. Values of sections R and V of the benchmarks.
+
+#include "fix_mpm_elements.h"
+#include "mesh/thin_testing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** A box with one type of atoms and a body without a lattice. */
+std::string free_body(int dim, double low, double high, double skin, const std::string &file,
+                      const std::string &thin, const std::string &material,
+                      const std::string &more = "")
+{
+  const std::string range = strprintf("%g %g ", low, high);
+  return MPM_TEST::box(dim, "si", dim == 2 ? "f f p" : "f f f",
+                       range + range + (dim == 2 ? "-0.01 0.01" : range), 1, skin) +
+      thin_body(file, thin, material, more);
+}
+
+/** A strip of n x m squares with edges a, cut in triangles, folded to layers of n squares each with a gap between them. */
+std::string folded(int layers, int n, int m, double a, double gap)
+{
+  std::vector<Node> line, x;
+  for (int k = 0; k < layers; k++)
+    for (int i = 0; i <= n; i++) line.push_back({a * (k % 2 ? n - i : i), 0.0, gap * k});
+  std::vector<std::vector<int>> f;
+  for (const Node &at : line)
+    for (int j = 0; j <= m; j++) x.push_back({at[0], a * j, at[2]});
+  for (int i = 0; i + 1 < (int) line.size(); i++)
+    for (int j = 0; j < m; j++) {
+      const int p = i * (m + 1) + j, q = p + m + 1;
+      f.push_back({p, q, p + 1});
+      f.push_back({q, q + 1, p + 1});
+    }
+  return gmsh(2, x, f);
+}
+
+}    // namespace
+
+// R3: a chain that is folded in the middle, and released at one end, which falls faster than freely: its two arms hang beside each
+// other, closer than any lattice would let them part. x/L of the falling arm at times of sqrt(L/g), by a node five lines from its end: the very
+// end is ahead by the speed that the wave of its release, g L/c, gives it
+SERIAL_TEST(Sheets, FoldedChainFallsFasterThanFreely)
+{
+  const int n = 100;
+  const double a = 1.0 / n, gap = 0.012;
+  std::vector<Node> x;
+  std::vector<std::vector<int>> lines;
+  for (int i = 0; i <= n; i++)
+    x.push_back({i <= n / 2 ? 0.0 : gap, -a * (i <= n / 2 ? i : n - i) - 1e-3, 0.0});
+  for (int i = 0; i < n; i++) lines.push_back({i, i + 1});
+  ScratchFile file("chain.msh", gmsh(1, x, lines));
+  Scene run(MPM_TEST::box(2, "si", "f f p", "-0.5 0.5 -1.2 0.2 -0.01 0.01", 1, 0.01) +
+            thin_body(file.name, "thickness 0.001", "neohookean 2e7 0", "compression no") +
+            "pair_style mpm/sheet 0.009\npair_coeff * * 100.0\n"
+            "group top id 1\ngroup rest subtract all top\nfix move rest nve\n"
+            "fix g all gravity 9.81 vector 0 -1 0\ntimestep 1e-5\n");
+  const double unit = 1.0 / sqrt(9.81);
+  double time = 0.0;
+  for (const auto &[at, exact] :
+       {std::pair(0.5, 0.127870), std::pair(0.8, 0.342171), std::pair(1.0, 0.567356)}) {
+    run.commands(strprintf("run %d\n", (int) lround((at * unit - time) / 1e-5)));
+    time = run.evaluate("time");
+    double end = 0.0;
+    for (const auto &s : run.gather())
+      if (s.tag == n - 4) end = -0.05 - 1e-3 - s.x[1];
+    EXPECT_NEAR(measured("fallen", end) / exact, 1.0, 0.02);
+    EXPECT_GE(end, 0.5 * at * at);
+  }
+}
+
+// a strip that lies in three layers on a table, which is its lowest one: the others stay above it under their weight, which it bears. It is
+// then lifted by its end, and unfolds. Without the pair style the layers fall through the table
+SERIAL_TEST(Sheets, LayersDoNotPassEachOther)
+{
+  const int n = 6, m = 3;
+  const double a = 0.05, gap = 0.045;
+  ScratchFile file("strip.msh", folded(3, n, m, a, gap));
+  for (const double k : {40.0, 0.0}) {
+    Scene run(free_body(3, -0.6, 1.2, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+              strprintf("pair_style mpm/sheet 0.045\npair_coeff * * %g damping 0.02\n"
+                        "comm_modify vel yes\n",
+                        k) +
+              strprintf("group table id <= %d\ngroup rest subtract all table\nfix move rest nve\n",
+                        (n + 1) * (m + 1)) +
+              "fix v rest viscous 0.02\nfix g all gravity 9.81 vector 0 0 -1\n"
+              "compute w table reduce sum fz\ntimestep 5e-4\nthermo_style custom step c_w\n" +
+              (k > 0.0 ? "run 3000\n" : "run 600\n"));
+    double least[3] = {1.0, 1.0, 1.0}, most[3] = {-1.0, -1.0, -1.0};
+    for (const auto &s : run.gather()) {
+      const int layer = (int) (s.tag - 1) / ((n + 1) * (m + 1));
+      least[layer] = std::min(least[layer], s.x[2]);
+      most[layer] = std::max(most[layer], s.x[2]);
+    }
+    if (k == 0.0) {
+      EXPECT_LT(least[1], -0.1);
+      continue;
+    }
+    EXPECT_GT(measured("lowest node of the second layer", least[1]), 0.2 * gap);
+    EXPECT_GT(measured("lowest node of the third layer", least[2]), 0.8 * gap);
+    EXPECT_LT(most[1], 1.5 * gap);
+    const double weight = 9.81 * 1000.0 * 0.001 * (3 * n * m * a * a + 2 * m * a * gap);
+    EXPECT_NEAR(measured("weight on the table", -run.evaluate("c_w")) / weight, 1.0, 0.02);
+
+    // pulled up by its end, it hangs from there, all of it
+    run.commands(strprintf("group end id > %d\ngroup inner subtract rest end\nunfix move\n"
+                           "fix move inner nve\nvelocity end set 0 0 1\nfix lift end move linear 0 "
+                           "0 1.0\nrun 1000\n",
+                           3 * (n + 1) * (m + 1) - (m + 1)));
+    double high = 0.0;
+    for (const auto &s : run.gather()) high = std::max(high, s.x[2]);
+    EXPECT_GT(high, 0.5);
+    for (const auto &s : run.gather()) EXPECT_GT(s.x[2], -1e-9);
+  }
+}
+
+// nodes of a sheet with edges below the distance leave each other alone, also where it is curved; those that a fold has brought there do not
+SERIAL_TEST(Sheets, NearNodesDoNotTouch)
+{
+  ScratchFile file("strip.msh", folded(1, 8, 3, 0.05, 0.0));
+  Scene run(free_body(3, -0.6, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+            "pair_style mpm/sheet 0.08\npair_coeff * * 1.0\nfix move all nve\n"
+            "compute touch all pair mpm/sheet\ntimestep 1e-5\n"
+            "thermo_style custom step pe c_touch[1]\nrun 0\n");
+  EXPECT_EQ(run.evaluate("c_touch[1]"), 0.0);
+  EXPECT_EQ(run.evaluate("pe"), 0.0);
+  // bent to three quarters of a cylinder, and then to a fold whose halves lie on each other
+  for (const bool folds : {false, true}) {
+    for (int i = 0; i < run.n(); i++) {
+      const int k = (int) (run.lmp->atom->tag[i] - 1) / 4;
+      const double angle = 1.5 * PI * (k - 4) / 8.0, R = 0.4 / (1.5 * PI);
+      run.x()[i][0] = folds ? 0.05 * std::abs(k - 4) : R * sin(angle);
+      run.x()[i][2] = folds ? (k < 4 ? 0.03 : 0.0) : R * cos(angle);
+    }
+    run.commands("run 0\n");
+    if (folds)
+      EXPECT_GT(run.evaluate("c_touch[1]"), 10.0);
+    else
+      EXPECT_EQ(run.evaluate("c_touch[1]"), 0.0);
+  }
+}
+
+// V4: a bag between two plates, of lines that hardly stretch, with a gas of 1.1e5 against 1e5 outside: the force on a plate when half of
+// its height is left, with the temperature or the entropy of the gas kept
+SERIAL_TEST(Sheets, BagBetweenPlates)
+{
+  const int n = 120;
+  const double R = 0.1;
+  std::vector<Node> x;
+  std::vector<std::vector<int>> lines;
+  for (int i = 0; i < n; i++) {
+    x.push_back({R * cos(2.0 * PI * i / n), R * sin(2.0 * PI * i / n), 0.0});
+    lines.push_back({i, (i + 1) % n});
+  }
+  ScratchFile file("bag.msh", gmsh(1, x, lines));
+  for (const auto &[gamma, force] : {std::pair(1.0, 7330.383), std::pair(1.4, 10140.028)}) {
+    Scene run(free_body(2, -0.2, 0.2, 0.01, file.name, "thickness 0.001", "neohookean 1e10 0") +
+              strprintf("fix b all mpm/airbag e gas 1.1e5 %g outside 1e5\n", gamma) +
+              "fix move all nve\nvariable up equal 0.1-0.05*ramp(0,1)\nvariable down equal -v_up\n"
+              "fix top all indent 1e13 plane y v_up hi\nfix low all indent 1e13 plane y v_down lo\n"
+              "fix v all viscous 10.0\ntimestep 1e-6\nrun 8000\nvariable up equal 0.05\n"
+              "run 9000\n");
+    EXPECT_NEAR(measured("force", std::fabs(run.evaluate("f_top[2]"))) / force, 1.0, 0.03);
+  }
+}
+
+TEST(Sheets, RanksAndRestart)
+{
+  ScratchFile file("ranks.msh", folded(3, 6, 3, 0.05, 0.045));
+  const std::string mine = file.name;
+  ScratchFile own("serial.msh", folded(3, 6, 3, 0.05, 0.045));
+  const std::string head = MPM_TEST::box(3, "si", "f f f", "-0.3 0.6 -0.3 0.6 -0.3 0.6", 1, 0.02) +
+      "comm_modify vel yes\n";
+  const std::string points = "create_points 1 mesh " + mine + " thickness 0.001\n";
+  const std::string rest = "fix m all mpm/material density 1000 neohookean 1e5 0.3\n"
+                           "fix e all mpm/elements " +
+      mine + " thickness 0.001\npair_style mpm/sheet 0.045\npair_coeff * * 40\n" +
+      strprintf("group rest id > %d\nfix move rest nve\n", 7 * 4) +
+      "fix g all gravity 9.81 vector 0 0.3 -1\ntimestep 2e-4\n";
+  const std::string start = head + points + rest;
+  Scene serial(replaced(start, mine, own.name) + "run 200\n", MPI_COMM_SELF);
+  Continued run(start, 100, "neighbor 0.02 bin\ncomm_modify vel yes\n" + rest, 100);
+  const auto state = run.whole.gather();
+  EXPECT_LT(measured("ranks", difference(serial.gather(), state)), 1e-9);
+  EXPECT_TRUE(identical(state, run.again.gather()));
+}
+
+SERIAL_TEST(Sheets, BadInput)
+{
+  ScratchFile file("strip.msh", folded(3, 6, 3, 0.05, 0.045));
+  const auto failure = [&](const std::string &pair, const std::string &moves = "fix n all nve\n",
+                           const std::string &step = "1e-5") {
+    Scene run;
+    return run.error(
+        free_body(3, -0.6, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") + pair +
+        moves + "timestep " + step + "\nrun 1\n");
+  };
+  const std::string good = "pair_style mpm/sheet 0.045\npair_coeff 1 1 1.0\n";
+  EXPECT_THAT(failure(good), "");
+  EXPECT_THAT(failure("pair_style mpm/sheet\n"), HasSubstr("missing argument"));
+  EXPECT_THAT(failure("pair_style mpm/sheet 0\n"), HasSubstr("0"));
+  EXPECT_THAT(failure("pair_style mpm/sheet 0.045\npair_coeff 1 1 -1\n"), HasSubstr("-1"));
+  EXPECT_THAT(failure("pair_style mpm/sheet 0.045\npair_coeff 1 1\n"), HasSubstr("pair_coeff"));
+  EXPECT_THAT(failure("pair_style mpm/sheet 0.045\npair_coeff 1 1 1 damping 1\n"),
+              HasSubstr("comm_modify vel yes"));
+  EXPECT_THAT(failure(good, "fix n all mpm 0.05\n"), HasSubstr("move them with fix nve"));
+  EXPECT_THAT(failure(good, "unfix e\nfix n all nve\n"), HasSubstr("needs a fix mpm/elements"));
+  EXPECT_THAT(failure("", "fix n all nve\n", "1.0"), HasSubstr("above the limit"));
+}
