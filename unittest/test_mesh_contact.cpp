@@ -191,7 +191,10 @@ TEST(MeshContact, RanksAndRestart)
     const std::string scene = slide(kind, file.name, "law coulomb 0.3 0.5");
     const std::string fixes = "fix m all" + scene.substr(scene.find(" mpm/material"));
     const std::string next = "neighbor 0.1 bin\n" + replaced(fixes, "velocity b2 set 1 0 0", "");
-    Twins(scene, 40, next, 40, 1e-11);
+    Twins twins(scene, 40, next, 40, 1e-11);
+    const double work = twins.whole.lmp->modify->get_fix_by_id("touch")->compute_scalar();
+    EXPECT_LT(work, -1e-3);
+    EXPECT_DOUBLE_EQ(twins.again.lmp->modify->get_fix_by_id("touch")->compute_scalar(), work);
     OnRanks balanced(scene, "run 80\n", "fix b all balance 20 1.0 shift xy 5 1.1\n");
     EXPECT_LT(measured("difference with balance", balanced.difference()), 1e-11);
     for (int k = 0; k < 5; k++)

@@ -247,6 +247,32 @@ SERIAL_TEST(MeshGrid, SlipInACorner)
     }
 }
 
+// Creeping flow: a cylinder of radius 1 that moves in the middle of one of radius 4 feels a drag of 4 pi mu U/(ln 4 - 15/17) per length.
+// One point per quadrangle, as these lock with more
+SERIAL_TEST(MeshGrid, CreepingFlowAroundACylinder)
+{
+  const double exact = 4.0 * PI / (log(4.0) - 15.0 / 17.0), U = 1e-3;
+  double error[2];
+  for (const int n : {6, 12}) {
+    const auto half =
+        gmsh(QUADS, {n, (int) lround(n * PI / log(4.0)), 0}, [](double s, double t, double) {
+          const double r = pow(4.0, s), y = t < 1.0 ? r * sin(PI * t) : 0.0;
+          return std::array<double, 3>{r * cos(PI * t), y, 0.0};
+        });
+    const ScratchFile file("flow.msh", half);
+    Scene run(box(2, "lj", "f f p", "-4.2 4.2 -0.2 4.2 -0.5 0.5", 1, 0.3) +
+              "create_points 1 elements " + file.name +
+              " halve 0\nfix m all mpm/material density 1 eos linear 25 viscosity newtonian 1\n"
+              "fix g all mpm/mesh " +
+              file.name +
+              " transfer flip 1 slip ylo slip yhi velocity xlo 1e-3 0 velocity xhi 0 0\n"
+              "fix d all mpm/dt 0.4 until 5\nrun 100000\n");
+    error[n == 12] = measured("error of the drag", 2.0 * entry(run, 11) / U / exact - 1.0);
+  }
+  EXPECT_LT(std::fabs(error[1]), 0.05);
+  EXPECT_GT(error[0] / error[1], 2.5);
+}
+
 TEST(MeshGrid, RanksAndRestart)
 {
   for (const bool total : {true, false})
