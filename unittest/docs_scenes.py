@@ -80,7 +80,7 @@ IMAGES = {"grains.csv": b"x,y,z,mass,rho\n50,50,50,1e-3,2.7\n", "bar.5000.vtp": 
 # pages whose inputs test_docs_tasks.py runs and checks
 TASKS = ["Howto_mpm_" + name for name in
          "tutorial tensile two_bodies grains points restart loads loop until pictures scaling".split()]
-BODIES = ["left", "right", "plane", "disk", "block", "pad", "disc"]    # each with a fix mpm
+BODIES = ["left", "right", "plane", "disk", "block", "pad", "disc", "floor"]    # each with a fix mpm, or on one mesh
 
 
 def blocks(path):
@@ -187,6 +187,13 @@ def scene_for(lines):
             before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
+    on_one_mesh = "mpm/mesh/contact" in text
+    if on_one_mesh:
+        grid = "fix grid all mpm/mesh wide.msh\n"
+        for k, name in enumerate(word for word in text.split() if word in BODIES):
+            before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
+                       "create_points %d region body%d spacing 0.005\ngroup %s type %d\n" %
+                       (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, name, k + 1))
     if "mpm/deform" in text:
         head = head.replace("f f f", "p p p")
         grid = grid.replace("\n", " frame total\n")
@@ -246,6 +253,8 @@ def scene_for(lines):
         grid = ""
         before += "fix skin all mpm/elements ball.msh thickness 0.001\nfix move all nve\n"
         text = re.sub("^(pair_style .*)", r"\1\npair_coeff * * 1.0", text)
+    if on_one_mesh:
+        points = ""
     own_grid = re.search(r"^fix\s+\S+\s+\S+\s+mpm/mesh\s+(\S+)", text, re.M)
     if own_grid:    # the mesh
         grid = ""
@@ -363,6 +372,8 @@ def block_mesh(dim, low, size, names):
 GRIDS = {"plate.msh": (3, 0.01, 0.08, {"xlo": "left", "ylo": "bottom", "xhi": "right"}),
          "tube.msh": (3, 0.01, 0.08, {"ylo": "xz", "zlo": "yz", "xlo": "bore"}),
          "around.msh": (3, 0.01, 0.08, {"zlo": "bottom", "xlo": "sides", "xhi": "sides", "ylo": "sides", "yhi": "sides"}),
+         "wide.msh": (3, 0.0, 0.2, {"zlo": "bottom"}),
+         "space.msh": (2, 0.0, 4.2, {"ylo": "bottom", "xlo": "sides", "xhi": "sides"}),
          "bar.msh": (2, 0.0, 1.0, {"xlo": "left", "ylo": "bottom", "xhi": "right"})}
 
 

@@ -7,27 +7,16 @@
 ------------------------------------------------------------------------- */
 
 // Normals of fix mpm/contact by logistic regression: the plane that tells the points of two bodies
-// apart best, near a node (J.A. Nairn, C.C. Hammerquist, G.D. Smith, Comput. Methods Appl. Mech. Eng.
-// 362 (2020) 112859; here with the likelihood as measure, whose only minimum Newton's method finds).
-//
-// With the distance r of a point from the node and c = (r, 1), the points of body b, next to those of
-// body a, shall have the probability s(z) = 1/(1 + exp(-z)), z = phi . c. The plane is z = 0, its normal
-// the direction of the first components of phi, which minimize
-//
-//   sum_p w_p [ln(1 + exp(z_p)) - y_p z_p] + RIDGE/2 |n|^2,   y = 0 in a, 1 in b,
-//
-// with the weights w_p of the shape functions. The last term keeps n finite where a plane separates all
-// points; the smaller it is, the closer is the plane to the one in the middle of the gap.
+// apart best, near a node, with the weights of the shape functions
 
 #include "fix_mpm_contact.h"
 
 #include "comm.h"
+#include "math/plane_between.h"
 #include "math_extra.h"
 #include "mpm_field.h"
 #include "mpm_halo.h"
 #include "mpm_node_sums.h"
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +26,7 @@ using namespace MPM_NS;
 
 void FixMPMContact::separate_points()
 {
-  constexpr int ROUNDS = 6,
-                NREAL = 14;    // converged to 1e-4; 4 of the gradient, 10 second derivatives
-  constexpr double RIDGE = 1.0e-3;
+  constexpr int NREAL = PlaneBetween::NREAL;
   const int dim = bodies[0].field->lattice.dim, nfields = (int) bodies.size();
 
   // contact nodes by their places in the grids of the fields; images on periodic axes are the same node
@@ -61,9 +48,9 @@ void FixMPMContact::separate_points()
       }
   }
 
-  std::vector<std::array<double, 4>> phi(pairs.size(), {0.0, 0.0, 0.0, 0.0});
+  std::vector<PlaneBetween> planes(pairs.size());
   std::vector<double> sums(pairs.size() * NREAL), shared;
-  for (int round = 0; round < ROUNDS; round++) {
+  for (int round = 0; round < PlaneBetween::ROUNDS; round++) {
     sums.assign(sums.size(), 0.0);
     for (int k = 0; k < nfields; k++)
       visit_points(*bodies[k].field, wanted[k],
@@ -72,14 +59,7 @@ void FixMPMContact::separate_points()
                      for (int p = node.first; p < node.last; p++) {
                        const Pair &pair = pairs[p];
                        if (pair.a != k && pair.b != k) continue;
-                       double c[4] = {r[0], r[1], r[2], 1.0}, z = 0.0;
-                       for (int i = 0; i < 4; i++) z += phi[p][i] * c[i];
-                       const double s = 1.0 / (1.0 + std::exp(-z)), slope = weight * s * (1.0 - s);
-                       double *const to = &sums[(std::size_t) p * NREAL];
-                       for (int i = 0, m = 4; i < 4; i++) {
-                         to[i] += weight * (s - (pair.b == k)) * c[i];
-                         for (int j = 0; j <= i; j++) to[m++] += slope * c[i] * c[j];
-                       }
+                       planes[p].add(weight, r, pair.b == k, &sums[(std::size_t) p * NREAL]);
                      }
                    });
 
@@ -100,28 +80,12 @@ void FixMPMContact::separate_points()
         }
       }
 
-    for (std::size_t p = 0; p < pairs.size(); p++) {
-      const double *from = &sums[p * NREAL];
-      Eigen::Matrix4d H;
-      Eigen::Vector4d g;
-      for (int i = 0, m = 4; i < 4; i++) {
-        g(i) = from[i];
-        for (int j = 0; j <= i; j++) H(i, j) = H(j, i) = from[m++];
-      }
-      for (int i = 0; i < 3; i++) {
-        g(i) += RIDGE * phi[p][i];
-        H(i, i) += i < dim ? RIDGE : 1.0;
-      }
-      H(3, 3) += 1.0e-10;
-      Eigen::Vector4d step = H.ldlt().solve(g);
-      const double size = step.norm();    // far from the minimum, Newton's steps can be too long
-      if (size > 4.0) step *= 4.0 / size;
-      for (int i = 0; i < 4; i++) phi[p][i] -= step(i);
-    }
+    for (std::size_t p = 0; p < pairs.size(); p++) planes[p].advance(&sums[p * NREAL], dim);
   }
 
   for (std::size_t p = 0; p < pairs.size(); p++) {
-    double n[3] = {phi[p][0], phi[p][1], dim == 3 ? phi[p][2] : 0.0};
+    const double *const phi = planes[p].phi;
+    double n[3] = {phi[0], phi[1], dim == 3 ? phi[2] : 0.0};
     const double length = MathExtra::len3(n);
     // points that lie in a line do not say more than the gradient
     if (!(length > 0.0) || MathExtra::dot3(n, pairs[p].n) < 0.5 * length) continue;

@@ -9,6 +9,7 @@
 #include "fix_mpm_mesh.h"
 
 #include "fix_mpm_material.h"
+#include "fix_mpm_mesh_contact.h"
 #include "material/batch.h"
 #include "material/material.h"
 #include "math/matrix.h"
@@ -124,10 +125,6 @@ FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) :
   }
   shortest = std::numeric_limits<double>::max();
   for (const auto &one : mesh->cells) shortest = std::min(shortest, one.height);
-  sums.resize(mesh->nodes.size());
-  before.resize(mesh->nodes.size());
-  after.resize(mesh->nodes.size());
-  if (musl) mapped.resize(mesh->nodes.size());
   follows = total && forces->has_pressure();
   if (follows) positions = mesh->nodes;
   if (comm->me == 0)
@@ -190,6 +187,7 @@ void FixMPMMesh::init()
   }
 
   points = MPMPoints::get(atom);
+  find_contact();
   find_materials();
   kernels = BatchKernels::select(mesh->dim);
   bool can_run = kernels != nullptr;
@@ -208,6 +206,62 @@ void FixMPMMesh::init()
   if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
   if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
   atom->sortfreq = 0;
+}
+
+/** Bodies with their own velocities at the nodes. */
+void FixMPMMesh::find_contact()
+{
+  contact = nullptr;
+  for (auto *other : modify->get_fix_by_style("^mpm/mesh/contact$")) {
+    auto *mine = dynamic_cast<FixMPMMeshContact *>(other);
+    if (mine->of_mesh() != id) continue;
+    if (contact)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/mesh/contact {} and {} are of the same fix mpm/mesh {}: name all bodies in "
+          "one of them",
+          contact->id, mine->id, id);
+    contact = mine;
+  }
+  if (contact && total)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh/contact {} cannot be used with frame total of fix mpm/mesh {}, whose "
+               "nodes are not where the bodies are: use frame updated",
+               contact->id, id);
+  if (contact && C)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/mesh/contact {} cannot be used with transfer apic of fix mpm/mesh {}, in which "
+        "elastic bodies gain energy with frame updated: use transfer flip",
+        contact->id, id);
+  if (contact && forces->has_loads())
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/mesh/contact {} cannot be used with pressure or traction of fix mpm/mesh {}, "
+        "which do not know which body they load: use fix addforce",
+        contact->id, id);
+  const std::size_t rows = count_bodies() * mesh->nodes.size();
+  sums.resize(rows);
+  before.resize(rows);
+  after.resize(rows);
+  if (musl) mapped.resize(rows);
+  if (contact) contact->begin_run(*mesh);
+}
+
+int FixMPMMesh::count_bodies() const
+{
+  return contact ? contact->count() : 1;
+}
+
+/** The row of the first node of the body of a point. */
+std::size_t FixMPMMesh::rows_of(int i) const
+{
+  return contact ? contact->body_of(atom->mask[i]) * mesh->nodes.size() : 0;
+}
+
+MPMMeshBodies FixMPMMesh::bodies()
+{
+  return {*mesh, ranks, *forces, order, places, &sums[0].mass, WIDTH};
 }
 
 void FixMPMMesh::find_materials()
@@ -251,6 +305,12 @@ void FixMPMMesh::check_points()
   for (int i = 0; i < atom->nlocal; i++) {
     if (!is_point(i)) continue;
     mine++;
+    if (contact && contact->body_of(atom->mask[i]) < 0)
+      error->one(FLERR, Error::NOLASTLINE,
+                 "Material point {} of fix mpm/mesh {} is in {} of the groups of fix "
+                 "mpm/mesh/contact {}: each point must be of one body",
+                 atom->tag[i], id, contact->body_of(atom->mask[i]) == -1 ? "none" : "several",
+                 contact->id);
     if (!material_of(i))
       error->one(FLERR, Error::NOLASTLINE,
                  "Material point {} of fix mpm/mesh {} has no material: define a fix mpm/material "
@@ -421,7 +481,9 @@ void FixMPMMesh::initial_integrate(int)
 
 void FixMPMMesh::points_to_nodes()
 {
-  for (const int node : ranks.nodes) sums[node] = {};
+  const std::size_t nnode = mesh->nodes.size();
+  for (int body = 0; body < count_bodies(); body++)
+    for (const int node : ranks.nodes) sums[body * nnode + node] = {};
   const int dim = mesh->dim;
   const double unit = 1.0 / force->nktv2p;
   for (const int i : order) {
@@ -442,8 +504,9 @@ void FixMPMMesh::points_to_nodes()
         }
       std::copy_n(product, 9, P);
     }
+    const std::size_t rows = rows_of(i);
     for (int k = 0; k < one.nnode; k++) {
-      Node &node = sums[one.node[k]];
+      Node &node = sums[rows + one.node[k]];
       const double w = m * place.N[k], *const g = place.g[k];
       double u[3] = {v[0], v[1], v[2]};
       if (C) {
@@ -460,7 +523,7 @@ void FixMPMMesh::points_to_nodes()
       }
     }
   }
-  ranks.sum(&sums[0].mass, WIDTH);
+  for (int body = 0; body < count_bodies(); body++) ranks.sum(&sums[body * nnode].mass, WIDTH);
 }
 
 /* ----------------------------------------------------------------------
@@ -472,23 +535,32 @@ void FixMPMMesh::find_velocities()
 {
   const int dim = mesh->dim;
   const double dt = update->dt, impulse = dt * force->ftm2v;
-  for (const int node : ranks.nodes) {
-    Node &mine = sums[node];
-    before[node] = after[node] = {0.0, 0.0, 0.0};
-    if (!(mine.mass > 0.0)) continue;
-    const bool counts = ranks.first[node];
-    forces->add_load(node, counts, mine.load);
-    MeshVector &v = after[node];
+  const auto each = [&](auto f) {
+    for (int body = 0; body < count_bodies(); body++)
+      for (const int node : ranks.nodes) f(node, body * mesh->nodes.size() + node);
+  };
+  each([&](int node, std::size_t row) {
+    Node &mine = sums[row];
+    before[row] = after[row] = {0.0, 0.0, 0.0};
+    if (!(mine.mass > 0.0)) return;
+    forces->add_load(node, ranks.first[node], mine.load);
     for (int d = 0; d < dim; d++) {
-      before[node][d] = mine.momentum[d] / mine.mass;
-      v[d] = before[node][d] + impulse * (mine.force[d] + mine.load[d]) / mine.mass;
+      before[row][d] = mine.momentum[d] / mine.mass;
+      after[row][d] = before[row][d] + impulse * (mine.force[d] + mine.load[d]) / mine.mass;
     }
+  });
+  if (contact) contact->act(bodies(), after, false);
+  each([&](int node, std::size_t row) {
+    const Node &mine = sums[row];
+    if (!(mine.mass > 0.0)) return;
+    const bool counts = ranks.first[node];
+    MeshVector &v = after[row];
     const MeshVector free = v;
     forces->constrain(node, counts ? mine.mass / impulse : 0.0, v.data());
     for (int d = 0; d < dim && counts; d++)
-      load_work += 0.5 * (before[node][d] + v[d]) *
+      load_work += 0.5 * (before[row][d] + v[d]) *
           (dt * mine.load[d] + mine.mass * (v[d] - free[d]) / force->ftm2v);
-  }
+  });
 }
 
 /** Velocities of points. */
@@ -498,10 +570,11 @@ void FixMPMMesh::nodes_to_points()
   for (const int i : order) {
     const auto &place = places[i];
     const auto &one = mesh->cells[place.cell];
+    const std::size_t rows = rows_of(i);
     double v[3] = {0.0, 0.0, 0.0}, change[3] = {0.0, 0.0, 0.0};
     for (int k = 0; k < one.nnode; k++) {
-      const double N = place.N[k], *const a = after[one.node[k]].data(),
-                   *const b = before[one.node[k]].data();
+      const double N = place.N[k], *const a = after[rows + one.node[k]].data(),
+                   *const b = before[rows + one.node[k]].data();
       for (int d = 0; d < dim; d++) {
         v[d] += N * a[d];
         change[d] += N * (a[d] - b[d]);
@@ -517,10 +590,13 @@ void FixMPMMesh::nodes_to_points()
 void FixMPMMesh::map_back()
 {
   const int dim = mesh->dim;
-  for (const int node : ranks.nodes) mapped[node] = {0.0, 0.0, 0.0};
+  const std::size_t nnode = mesh->nodes.size();
+  for (int body = 0; body < count_bodies(); body++)
+    for (const int node : ranks.nodes) mapped[body * nnode + node] = {0.0, 0.0, 0.0};
   for (const int i : order) {
     const auto &place = places[i];
     const auto &one = mesh->cells[place.cell];
+    const std::size_t rows = rows_of(i);
     for (int k = 0; k < one.nnode; k++) {
       double u[3] = {atom->v[i][0], atom->v[i][1], atom->v[i][2]}, r[3];
       if (C) {
@@ -528,16 +604,23 @@ void FixMPMMesh::map_back()
         for (int d = 0; d < dim; d++)
           for (int e = 0; e < dim; e++) u[d] += C[i][3 * d + e] * r[e];
       }
-      for (int d = 0; d < dim; d++) mapped[one.node[k]][d] += atom->rmass[i] * place.N[k] * u[d];
+      for (int d = 0; d < dim; d++)
+        mapped[rows + one.node[k]][d] += atom->rmass[i] * place.N[k] * u[d];
     }
   }
-  ranks.sum(mapped[0].data(), 3);
-  for (const int node : ranks.nodes) {
-    const double m = sums[node].mass;
-    if (!(m > 0.0)) continue;
-    for (double &v : mapped[node]) v /= m;
-    forces->constrain(node, 0.0, mapped[node].data());
-  }
+  for (int body = 0; body < count_bodies(); body++) ranks.sum(mapped[body * nnode].data(), 3);
+  const auto each = [&](auto f) {
+    for (int body = 0; body < count_bodies(); body++)
+      for (const int node : ranks.nodes)
+        if (sums[body * nnode + node].mass > 0.0) f(node, body * nnode + node);
+  };
+  each([&](int, std::size_t row) {
+    for (double &v : mapped[row]) v /= sums[row].mass;
+  });
+  if (contact) contact->act(bodies(), mapped, true);
+  each([&](int node, std::size_t row) {
+    forces->constrain(node, 0.0, mapped[row].data());
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -577,8 +660,9 @@ void FixMPMMesh::move_and_strain()
       const int i = list[p];
       const auto &place = places[i];
       const auto &one = mesh->cells[place.cell];
+      const std::size_t rows = rows_of(i);
       for (int k = 0; k < one.nnode; k++) {
-        const auto &u = strains[one.node[k]], &v = moves[one.node[k]];
+        const auto &u = strains[rows + one.node[k]], &v = moves[rows + one.node[k]];
         for (int d = 0; d < dim; d++) {
           atom->x[i][d] += dt * place.N[k] * v[d];
           for (int e = 0; e < dim; e++) L[nL * p + dim * e + d] += u[d] * place.g[k][e];
@@ -653,6 +737,14 @@ void FixMPMMesh::visit_batches(int group_bits, const BatchVisitor &visit)
 
 double FixMPMMesh::stable_dt(tagint &tag) const
 {
+  // at the end of a step points have moved since their cells were found, unless there was a new neighbor list
+
+  const auto cell_now = [this](int i) {
+    BackgroundMesh::Place place = places[i];
+    if (!total) mesh->find(position(i), places[i].cell, place);
+    return place.cell < 0 ? places[i].cell : place.cell;
+  };
+
   double smallest = std::numeric_limits<double>::max(), c[BATCH];
   tag = 0;
   for_batches(order, [&](const int *list, int n, const FixMPMMaterial *material) {
@@ -660,7 +752,7 @@ double FixMPMMesh::stable_dt(tagint &tag) const
     material->material->wave_speed(*batch, c);
     for (int p = 0; p < n; p++) {
       const int i = list[p];
-      double h = mesh->cells[places[i].cell].height, speed = c[p];
+      double h = mesh->cells[cell_now(i)].height, speed = c[p];
       if (total) {
         const double *const F = points->F[i];
         const double cofactors[9] = MPM_COFACTORS(F), inv = 1.0 / dot(F, cofactors);

@@ -34,6 +34,8 @@ struct BatchKernels;
 
 namespace LAMMPS_NS {
 class FixMPMMaterial;
+class FixMPMMeshContact;
+struct MPMMeshBodies;
 struct MPMPoints;
 
 struct MPMMeshOptions {
@@ -95,8 +97,9 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   std::vector<MPM_NS::BackgroundMesh::Place> places;
   std::vector<int> order;    // of points of this rank: by ID
 
-  // of nodes
+  // of nodes; with contact, of the nodes of each body, one after the other
 
+  FixMPMMeshContact *contact = nullptr;
   std::vector<char> has_node;    // on this rank
   std::vector<Node> sums;
   std::vector<MPM_NS::MeshVector> before, after, mapped;    // velocities
@@ -117,6 +120,9 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
 
   bool is_point(int i) const;
   const double *position(int i) const;
+  int count_bodies() const;
+  std::size_t rows_of(int i) const;
+  MPMMeshBodies bodies();
   FixMPMMaterial *material_of(int i) const;
   void check_points();
   void find_places();
@@ -131,6 +137,7 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   void give_initial_stress();
   void check_dt();
   void find_materials();
+  void find_contact();
   template <class Visit> void for_batches(const std::vector<int> &of, Visit) const;
   void load_state(const int *list, int n, const FixMPMMaterial *) const;
 };

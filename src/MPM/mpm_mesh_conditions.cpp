@@ -210,6 +210,13 @@ void MPMMeshForces::constrain(int node, double mass_per_time, double *v)
   }
 }
 
+bool MPMMeshForces::has_loads() const
+{
+  return std::any_of(list.begin(), list.end(), [](const Active &c) {
+    return c.given.kind == MPMMeshCondition::PRESSURE || c.given.kind == MPMMeshCondition::TRACTION;
+  });
+}
+
 void MPMMeshForces::clear_sums()
 {
   for (auto &c : list) c.sum = {0.0, 0.0, 0.0};

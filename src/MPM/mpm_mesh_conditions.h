@@ -50,6 +50,8 @@ class MPMMeshForces : protected Pointers {
 
   /** Is there a pressure? */
   bool has_pressure() const { return npressure > 0; }
+  /** Or a pressure or a traction? */
+  bool has_loads() const;
   /** Pressure acts on sides whose nodes have gone to these positions; cells: those whose sides this rank looks at. Collective. */
   void follow(const std::vector<char> &cells, const std::vector<MPM_NS::MeshVector> &positions,
               class MPMMeshRanks &ranks);

@@ -56,35 +56,53 @@ void MPMMeshRanks::find(const std::vector<char> &mine)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMMeshRanks::sum(double *values, int width)
+/** Values of the ranks that share nodes with this one go to in. */
+void MPMMeshRanks::exchange(const double *values, int width, const int *row)
 {
-  if (neighbors.empty()) return;
   constexpr int TAG = 7;
-  std::vector<MPI_Request> requests(neighbors.size());
-  for (std::size_t k = 0; k < neighbors.size(); k++) {
-    auto &n = neighbors[k];
-    n.in.resize(width * n.nodes.size());
-    MPI_Irecv(n.in.data(), (int) n.in.size(), MPI_DOUBLE, n.rank, TAG, world, &requests[k]);
+  std::vector<MPI_Request> requests;
+  for (auto &n : neighbors) {
+    std::size_t rows = n.nodes.size();
+    if (row)
+      rows = std::count_if(n.nodes.begin(), n.nodes.end(), [row](int node) {
+        return row[node] >= 0;
+      });
+    n.in.resize(width * rows);
+    if (n.in.empty()) continue;    // the other rank knows that, too
+    MPI_Irecv(n.in.data(), (int) n.in.size(), MPI_DOUBLE, n.rank, TAG, world,
+              &requests.emplace_back());
   }
   for (auto &n : neighbors) {
-    n.out.resize(width * n.nodes.size());
-    for (std::size_t i = 0; i < n.nodes.size(); i++)
-      std::copy_n(values + (std::size_t) width * n.nodes[i], width, &n.out[width * i]);
-    MPI_Send(n.out.data(), (int) n.out.size(), MPI_DOUBLE, n.rank, TAG, world);
-  }
-  own.resize(width * shared.size());
-  for (std::size_t i = 0; i < shared.size(); i++) {
-    double *const row = values + (std::size_t) width * shared[i];
-    std::copy_n(row, width, &own[width * i]);
-    std::fill_n(row, width, 0.0);
+    n.out.clear();
+    for (const int node : n.nodes) {
+      const int at = row ? row[node] : node;
+      if (at >= 0)
+        n.out.insert(n.out.end(), values + (std::size_t) width * at,
+                     values + (std::size_t) width * (at + 1));
+    }
+    if (!n.out.empty()) MPI_Send(n.out.data(), (int) n.out.size(), MPI_DOUBLE, n.rank, TAG, world);
   }
   MPI_Waitall((int) requests.size(), requests.data(), MPI_STATUSES_IGNORE);
+}
 
-  // in the order of ranks
-
+/** In the order of ranks. */
+void MPMMeshRanks::sum(double *values, int width, const int *row)
+{
+  if (neighbors.empty()) return;
+  exchange(values, width, row);
+  own.clear();
+  for (const int node : shared) {
+    const int at = row ? row[node] : node;
+    if (at < 0) continue;
+    double *const first = values + (std::size_t) width * at;
+    own.insert(own.end(), first, first + width);
+    std::fill_n(first, width, 0.0);
+  }
   const auto add = [&](const std::vector<int> &list, const double *from) {
-    for (const int i : list)
-      for (int c = 0; c < width; c++) values[(std::size_t) width * i + c] += *from++;
+    for (const int node : list) {
+      const int at = row ? row[node] : node;
+      for (int c = 0; c < width && at >= 0; c++) values[(std::size_t) width * at + c] += *from++;
+    }
   };
   bool added = false;
   for (const auto &n : neighbors) {
@@ -95,6 +113,23 @@ void MPMMeshRanks::sum(double *values, int width)
     add(n.nodes, n.in.data());
   }
   if (!added) add(shared, own.data());
+}
+
+void MPMMeshRanks::largest(double *values, int width, int parts, const int *row)
+{
+  if (neighbors.empty()) return;
+  exchange(values, width * parts, row);
+  for (const auto &n : neighbors) {
+    const double *from = n.in.data();
+    for (const int node : n.nodes) {
+      const int at = row ? row[node] : node;
+      for (int p = 0; p < parts && at >= 0; p++, from += width) {
+        double *const to = values + (std::size_t) width * (parts * at + p);
+        if (std::lexicographical_compare(to, to + width, from, from + width))
+          std::copy_n(from, width, to);
+      }
+    }
+  }
 }
 
 double MPMMeshRanks::memory_usage() const

@@ -26,8 +26,13 @@ class MPMMeshRanks : protected Pointers {
   /** mine: [node] does this rank need it? Collective. */
   void find(const std::vector<char> &mine);
 
-  /** Sum rows of values, [node][width], over ranks; all ranks get the same bits. Nodes of other ranks are left alone. */
-  void sum(double *values, int width);
+  /** Sum rows of values, [node][width], over ranks; all ranks get the same bits. Nodes of other ranks are left alone.
+   *  row: [node] the row of this node in values, -1: none, the same nodes on all ranks that have them; null: all nodes. */
+  void sum(double *values, int width, const int *row = nullptr);
+
+  /** Rows of parts of this width: each part is that of the rank whose is the greatest, by its first value, of those that are equal
+   *  by the next. */
+  void largest(double *values, int width, int parts, const int *row);
 
   double memory_usage() const;
 
@@ -41,6 +46,8 @@ class MPMMeshRanks : protected Pointers {
   std::vector<Neighbor> neighbors;
   std::vector<int> shared;    // nodes that another rank has, too
   std::vector<double> own;    // their values
+
+  void exchange(const double *values, int width, const int *row);
 };
 
 }    // namespace LAMMPS_NS
