@@ -133,7 +133,6 @@ class MPMFlowPressure : public MPMNodeSystem {
   void follow_neighbors();
   void find_weights();
   void find_levels();
-  void find_weights();
   double light(int64_t cell, int axis) const
   {
     return lightness ? (*lightness)[cell * cells.lattice.dim + axis] : 1.0;

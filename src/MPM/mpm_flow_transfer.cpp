@@ -126,7 +126,7 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
 {
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
-  Reach<dim> reach;
+  MPMFlowReach<dim> reach;
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
     for (int i = run.first; i < run.last; i++) {
