@@ -197,6 +197,8 @@ def scene_for(lines):
     if "mpm/deform" in text:
         head = head.replace("f f f", "p p p")
         grid = grid.replace("\n", " frame total\n")
+    if re.search("mpm/implicit (newmark|alpha|hht)", text):
+        grid = grid.replace("\n", " transfer flip 1.0\n")
     if "mpm/incompressible" in text:    # has a lattice of its own, and no materials
         grid = ""
     mixture = "mpm/mixture" in text and not makes_points
