@@ -25,7 +25,7 @@ PAGE = os.path.join(PAGES, "Howto_mpm_gallery.rst")
 TOPICS = {
     "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall hypervelocity "
                          "ring-on-block scratch blast-on-plate microstructure foam",
-    "Elastic bodies": "rubber-band beam arch buckling tube plate-with-hole airbag cook-membrane tissue two-disks ring-collision spinning-disk incline vortex hare net tent press-fit",
+    "Elastic bodies": "rubber-band beam arch buckling tube plate-with-hole airbag cook-membrane tissue two-disks ring-collision spinning-disk incline vortex hare net tent press-fit refined-plate",
     "Heat": "cooling-plate quench casting friction-weld machining hot-grains",
     "Fluids and gases": "dam-break sloshing boat pouring-honey extruder elastic-gate elastic-plate poiseuille shock-tube settling drop",
     "Soil and grains": "sand-column footing consolidation settlement earthquake-slope levee submarine-slide ball-in-sand hopper boulders-in-debris tyre-on-gravel "

@@ -210,6 +210,14 @@ def scene_for(lines):
         before += ("region column block 0.07 0.08 0.02 0.05 0.02 0.05\ncreate_points 2 region column spacing 0.005\n"
                    "group soil type 1\ngroup column type 2\nregion east plane 0.05 0 0 -1 0 0\n")
         before += "" if "mpm/column" in text else "fix free all mpm/column far y\n"
+    refined = re.search(r"mpm/refine (.*)", text) if not makes_points else None
+    if refined:    # bodies side by side, each on a lattice of half the spacing
+        grid = ""
+        for k, name in enumerate(refined.group(1).split()):
+            origin = 0.005 * (1 - 0.5 ** k)
+            grid += "group %s type %d\nfix %s %s mpm %g origin %g %g %g\n" % (name, k + 1, name, name, 0.01 * 0.5 ** k, *[origin] * 3)
+            before += ("region part%d block %g %g 0.06 0.08 0.06 0.08\ncreate_points %d region part%d ppc 2 fix %s\n"
+                       "group %s type %d\n" % (k, 0.02 + 0.02 * k, 0.04 + 0.02 * k, k + 1, k, name, name, k + 1))
     if heat_contact:
         before += "fix touch all mpm/contact %s\n" % " ".join(named)
     material = "" if "mpm/material" in text or own_field and grid == "" else MATERIAL
@@ -234,7 +242,7 @@ def scene_for(lines):
         material = ("fix ms soil mpm/material density 1590 linear 1.0e6 0.3\n"
                     "fix mw water mpm/material density 1000 eos linear 1.0e6\n")
     points = POINTS.replace("0.05*", "0.025*") if "gimp" in text else POINTS    # below a cell
-    points = "" if makes_points else points + "".join("group %s type 1\n" % g for g in GROUPS)
+    points = "" if makes_points or refined else points + "".join("group %s type 1\n" % g for g in GROUPS)
     if "mpm_geostatic" in text:
         before += "fix weight all gravity 9.81 vector 0 0 -1\n"
         points = points.replace("$(0.2*lx) $(0.5*lx)", "INF INF")

@@ -113,6 +113,41 @@ PARAMETER_TEST(Pressure, IsInBalance, Patch,
             p.shape == std::string("linear") ? 1e-12 : 1e-2);
 }
 
+// The finest points touch the coarsest ones, so that nodes between are tied to tied ones: linear velocities stay, also by their change
+// (aflip), which takes the old velocities of tied nodes, and uniform pressure gives no force
+SERIAL_TEST(Skip, ALatticeBetweenIsLeftOut)
+{
+  const std::vector<std::string> regions = {"block 0 12 0 11 INF INF", "block 3 10 3 9 INF INF",
+                                            "block 3 8 5 8 INF INF"};
+  for (const std::string shape : {"linear", "quadratic", "cubic"})
+    for (const std::string options : {"frame total", "transfer aflip 1.0"}) {
+      Scene run(plane("lj", "f f", "-1 13 -1 12", 3, 0.2) + lattices(2, shape, options, regions) +
+                "fix m all mpm/material density 1 linear 1e-12 0.25\n"
+                "variable vx atom 0.3+0.02*x-0.05*y\nvariable vy atom 0.1+0.05*x-0.01*y\n"
+                "velocity all set v_vx v_vy 0\ntimestep 0.05\nrun 0\n");
+      const auto before = run.gather();
+      // where points move over the lattice, their gradients are later those of the step before
+      run.commands(options == "frame total" ? "run 10\n" : "run 1\n");
+      for (int n = 0; n < 4; n++) EXPECT_GT(run.fix("one")->compute_vector(n), 20.0) << n;
+      const auto after = run.gather();
+      double worst = 0.0;
+      for (std::size_t k = 0; k < after.size(); k++)
+        for (int d = 0; d < 2; d++)
+          worst = std::max(worst, std::fabs(after[k].v[d] - before[k].v[d]));
+      EXPECT_LT(measured("change of velocity", worst), 1e-13);
+    }
+
+  Scene run(plane("lj", "p p", "0 12 0 11", 3, 0.2) + lattices(2, "linear", "", regions) + law +
+            "timestep 0.001\nrun 0\n");
+  for (int i = 0; i < run.n(); i++)
+    for (int c = 0; c < 3; c++) run.points().tau[i][c] = -1.0;
+  run.commands("run 1\n");
+  double worst = 0.0;
+  for (const auto &point : run.gather())
+    for (int d = 0; d < 2; d++) worst = std::max(worst, std::fabs(point.v[d]));
+  EXPECT_LT(measured("velocity over that of pressure on a cell", worst / 0.001), 1e-12);
+}
+
 // A spinning body whose finer part crosses cells and periodic faces: momentum to round-off, energy as on one lattice
 SERIAL_TEST(Momentum, OfABodyThatSpins)
 {
@@ -242,7 +277,7 @@ SERIAL_TEST(BadInput, IsRefused)
       {"shape gimp transfer apic", "0.5 shape gimp transfer apic", "use shape linear, quadratic"},
       {"frame total reference update 1.1", "0.5 origin 0.25 0.25 frame total reference update 1.1",
        "frame updated"},
-
+      {"axisymmetric yes", "0.5 origin 0.25 0.25 axisymmetric yes", "use a plane"},
       {"scheme usf", "0.5 origin 0.25 0.25 scheme usf", "use usl or musl"},
   };
   for (const auto &f : fields) expect_error(scene(f.coarse, f.fine) + fix + run, f.words);
@@ -260,4 +295,7 @@ SERIAL_TEST(BadInput, IsRefused)
       "create_points 2 region m ppc 2 fix b\ngroup a type 1\n"
       "group b type 2\n";
   EXPECT_EQ(lines_that_say(apart + law + fix + "\nrun 1\n", "do not meet").size(), 1u);
+  const std::string touching = scene("", "0.5 origin 0.25 0.25") + fix +
+      "\ngroup t empty\nfix t t mpm 1.0\nfix c all mpm/contact a t\nrun 1\n";
+  EXPECT_EQ(lines_that_say(touching, "let them meet through pair_style").size(), 1u);
 }

@@ -115,6 +115,7 @@ void FixMPMRefine::check(MPMField &coarse, MPMField &fine) const
           "its lattices would part: use frame total without, or frame updated"},
          {o.modified_edges, "edges modified", "use edges plain"},
          {o.smooths_volumes(), "smooth", "leave it out"},
+         {o.axisymmetric, "axisymmetric", "use a plane or 3d"},
          {o.has_light_nodes(), "light", "leave it out"}});
   }
   const auto &of = fine.options;
@@ -158,6 +159,14 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
                        "Fix mpm/refine {}: the fields {} and {} are one body, which fix "
                        "mpm/contact {} takes for two: leave one of them out there",
                        id, a, b, ifix->id);
+    for (const auto *field : fields)
+      if (contact && contact->decides_contact(*field) && comm->me == 0)
+        error->warning(FLERR,
+                       "Fix mpm/refine {}: fix mpm/contact {} acts on nodes of {} alone, and sees "
+                       "nothing of the points of the other fields and at the rim to these: keep "
+                       "bodies that touch away from there, or let them meet through pair_style "
+                       "mpm/penalty",
+                       id, ifix->id, field->id());
     if (!contact && !dynamic_cast<FixMPMRefine *>(action) &&
         !dynamic_cast<FixMPMBoundary *>(action) && !dynamic_cast<FixMPMRigid *>(action) &&
         !dynamic_cast<FixMPMDashpot *>(action))
