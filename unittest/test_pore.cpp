@@ -458,6 +458,34 @@ SERIAL_TEST(Consolidation, InThreeDimensions)
   }
 }
 
+// With other physics, which might look at the points before they move, the gradients of the motion are found apart
+// from it: a fix mpm/heat without points that conduct makes no other difference
+TEST(Motion, IsTheSameWithOtherPhysics)
+{
+  const auto scene = between_walls(blocks("free pressure 0 ylo flux 0.01 initial v_p")) + PORE;
+  Scene first(scene),
+      apart(scene +
+            "group none empty\nfix unused none mpm/material density 1.0 neohookean 10.0 0.3 "
+            "thermal conducting 1.0 300.0 0.5\nfix heat all mpm/heat\n");
+  for (auto *run : {&first, &apart}) run->commands("run 100\n");
+  EXPECT_LT(measured("water", water_difference(first, apart)), 1e-10);
+  double most = 0.0;
+  for (int i = 0; i < first.n(); i++)
+    for (int d = 0; d < 2; d++) most = std::max(most, std::fabs(first.x()[i][d] - apart.x()[i][d]));
+  EXPECT_LT(measured("places", over_ranks(most)), 1e-12);
+}
+
+// where no point has water, mechanics are the same to the last bit
+TEST(Idle, ChangesNothing)
+{
+  const std::string water = "20.0 0.5 2.0 soil unused 0.4 constant 0.01";
+  const std::string idle = colliding(
+      "group none empty\nfix unused none mpm/material density 1.0 neohookean 10.0 0.3\n", water);
+  Scene with(idle + "run 60\n"),
+      without(replaced(idle, "fix water all mpm/pore " + water + "\n", "") + "run 60\n");
+  EXPECT_TRUE(identical(with.gather(), without.gather()));
+}
+
 TEST(Ranks, Agree)
 {
   const auto scene = blocks("initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01");

@@ -486,10 +486,17 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("inertia of pore water", [this]() {
       take_off();
     });
-  if (place == MPMPlan::AFTER_SOLVE && !is_implicit)
+  if (place == MPMPlan::AFTER_SOLVE && !is_implicit) {
+    const auto move = [this](MPMField &field) {
+      of(field).take_motion();
+    };
+    plan.each("nodes to points with material", move, [this](const MPMField &field) {
+      return of(field).moves_first();
+    });
     plan.together("flow of pore water", [this]() {
       flow();
     });
+  }
   // fix mpm/implicit has left the velocities of the step to nodes by then
   if (place == MPMPlan::BEFORE_STRAIN && is_implicit)
     plan.together("flow of pore water", [this]() {
@@ -631,7 +638,7 @@ void FixMPMPore::know_rates()
 void FixMPMPore::flow()
 {
   for (auto *field : wet) {
-    field->take_motion();
+    if (!field->moves_first()) field->take_motion();
     field->move_water();
   }
   // waves limit the step of water with inertia, which is one of theirs

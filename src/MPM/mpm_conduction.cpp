@@ -80,6 +80,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -385,14 +386,22 @@ double MPMConduction::row_bound(double usual)
   return limit;
 }
 
-/** The first dim reals of n rows of these widths. */
-static void copy_rows(int dim, int n, const double *from, int width, double *to, int to_width)
+/** Calls loop(plain) with what is known as a constant: loops over points then have neither branches nor calls for what all of
+ *  them have alike. */
+template <class Loop> static void if_plain(bool plain, const Loop &loop)
 {
-  for (int p = 0; p < n; p++, from += width, to += to_width) {
-    to[0] = from[0];
-    to[1] = from[1];
-    if (dim == 3) to[2] = from[2];
-  }
+  if (plain)
+    loop(std::true_type());
+  else
+    loop(std::false_type());
+}
+
+/** The first DIM reals of n rows of these widths. */
+template <int DIM, int WIDTH, int TO_WIDTH>
+static void copy_rows(int n, const double *from, double *to)
+{
+  for (int p = 0; p < n; p++)
+    for (int d = 0; d < DIM; d++) to[TO_WIDTH * p + d] = from[WIDTH * p + d];
 }
 
 /* ----------------------------------------------------------------------
@@ -427,22 +436,26 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
         for (int p = 0; p < n; p++) V[p] = vfrac[p] * J[p];
         Conduction c = t->all;
         double greatest = c.most();
-        for (int p = 0; p < n; p++) {
-          const int i = first + p;
-          const double *const history = t->fix->history[i];
-          if (t->varies) {
-            c = t->fix->material->conduction(history);
-            greatest = c.most();
+        const double *const history = t->fix->history[first];
+        const int width = t->fix->nhistory;
+        if_plain(simple && !t->varies && !layers, [&](auto plain) {
+          for (int p = 0; p < n; p++) {
+            if (!plain && t->varies) {
+              c = t->fix->material->conduction(history + width * p);
+              greatest = c.most();
+            }
+            if (!plain && layers) greatest = layers->most(first + p);
+            if (!plain && !simple) most = std::max(most, bound(*t, first + p, V[p]));
+            points.capacity[p] = rmass[p] * c.capacity;
+            points.row[p][3] = history[width * p + t->temperature];
+            room[p] = greatest * V[p];
           }
-          if (layers) greatest = layers->most(i);
-          const double C = points.capacity[p] = rmass[p] * c.capacity;
-          points.row[p][3] = history[t->temperature];
-          if (!simple)
-            most = std::max(most, bound(*t, i, V[p]));
-          else if (greatest * V[p] > most * C)    // hardly ever: no division
-            most = greatest * V[p] / C;
-        }
-        if (gradients) copy_rows(dim, n, gradients[first], dim, points.row[0], 4);
+        });
+        if (simple) raise_ratio(most, n, room, points.capacity);
+        if (gradients && dim == 3)
+          copy_rows<3, 3, 4>(n, gradients[first], points.row[0]);
+        else if (gradients)
+          copy_rows<2, 2, 4>(n, gradients[first], points.row[0]);
         for (int p = 0; wants_volumes && p < n; p++)
           points.volume[p] = total ? vfrac[p] * field.frame->lattice_jacobian(first + p) : V[p];
         return true;
@@ -481,22 +494,25 @@ void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::R
   const double *const V = volumes.data() + first;
   const double *const share = shares.empty() ? nullptr : shares.data() + first;
   Conduction room;
-  for (int p = 0; p < n; p++) {
-    const double conducting = share ? V[p] * share[p] : V[p];
-    if (total || t.all.orthotropic) {
-      double k[3][3], flux[3];
-      tensor(t, first + p, k);
-      MathExtra::matvec(k, q[p], flux);
-      for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
-    } else if (layers) {
-      layers->multiply(first + p, q[p]);
-      for (int d = 0; d < 3; d++) q[p][d] *= -conducting;
-    } else {
-      const double factor = -conducting * t.at(first + p, room).conductivity;
-      for (int d = 0; d < 4; d++) q[p][d] *= factor;
+  if_plain(!total && !t.all.orthotropic && !layers && !share && !t.varies, [&](auto plain) {
+    for (int p = 0; p < n; p++) {
+      const double conducting = !plain && share ? V[p] * share[p] : V[p];
+      if (!plain && (total || t.all.orthotropic)) {
+        double k[3][3], flux[3];
+        tensor(t, first + p, k);
+        MathExtra::matvec(k, q[p], flux);
+        for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
+      } else if (!plain && layers) {
+        layers->multiply(first + p, q[p]);
+        for (int d = 0; d < 3; d++) q[p][d] *= -conducting;
+      } else {
+        const auto &c = plain ? t.all : t.at(first + p, room);
+        const double factor = -conducting * c.conductivity;
+        for (int d = 0; d < 4; d++) q[p][d] *= factor;
+      }
+      q[p][3] = 0.0;
     }
-    q[p][3] = 0.0;
-  }
+  });
 }
 
 void MPMConduction::find_changes()
@@ -570,22 +586,29 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
           const double *before) {
         const Thermal *const t = thermal(run.material);
         Conduction c = t->all;
-        double sum = 0.0;
-        for (int p = 0; p < n; p++) {
-          double *const history = t->fix->history[first + p], &T = history[t->temperature];
-          if (t->varies) c = t->fix->material->conduction(history);
-          double now = q[p][3];
-          if (relaxes) now += keep * (T - before[p]);
-          if (xpic) now -= before[p];
-          sum += atom->rmass[first + p] * c.capacity * (now - T);
-          if (c.by_enthalpy) {
-            t->fix->material->warm(history, c.capacity * (now - T));
-          } else {
-            T = now;
-            if (t->molten >= 0) c.melting.settle(T, history[t->molten]);
+        double sum = 0.0, *const rows = t->fix->history[first];
+        const double *const rmass = atom->rmass + first;
+        const int width = t->fix->nhistory;
+        if_plain(relaxes && !t->varies && !c.by_enthalpy && t->molten < 0, [&](auto plain) {
+          for (int p = 0; p < n; p++) {
+            double *const history = rows + width * p, &T = history[t->temperature];
+            if (!plain && t->varies) c = t->fix->material->conduction(history);
+            double now = q[p][3];
+            if (plain || relaxes) now += keep * (T - before[p]);
+            if (!plain && xpic) now -= before[p];
+            sum += rmass[p] * c.capacity * (now - T);
+            if (!plain && c.by_enthalpy) {
+              t->fix->material->warm(history, c.capacity * (now - T));
+            } else {
+              T = now;
+              if (!plain && t->molten >= 0) c.melting.settle(T, history[t->molten]);
+            }
           }
-        }
-        if (gradients) copy_rows(dim, n, q[0], 4, gradients[first], dim);
+        });
+        if (gradients && dim == 3)
+          copy_rows<3, 4, 3>(n, q[0], gradients[first]);
+        else if (gradients)
+          copy_rows<2, 4, 2>(n, q[0], gradients[first]);
         got += sum;
       },
       relaxes || xpic);

@@ -138,7 +138,7 @@ void MPMField::check_box()
 void MPMField::init(MPMPlan *plan_of_all)
 {
   plan = plan_of_all;
-  running = time_limit->watch_volume = keep_old = keep_old_now = false;
+  running = has_moved = time_limit->watch_volume = keep_old = keep_old_now = false;
   time_limit->bound = true;
   check_box();
   frame->check();

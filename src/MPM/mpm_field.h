@@ -79,6 +79,8 @@ class MPMField : protected Pointers {
   /** The same until the blocks are renewed: set by its blocks_found(), followed by choose_kernels(). */
   bool keep_old_now = false;
   bool running = false;    ///< between the set-up and the end of a run
+  bool has_moved =
+      false;    ///< positions of the end of the step wait in work.xnew, see MPMStages::nodes_to_points()
   double last_dt = 0.0;    ///< duration of the last step of the cycle; 0: none so far
 
   /** [n][dim] gradients on the lattice that other physics keeps for points; set by its init_physics(). */

@@ -70,13 +70,7 @@ void MPMFrame::shift_gradients(int n, double dt, double *gradients) const
 /** det(I + dt L) - 1 without the loss of digits of that difference. */
 double MPMFrame::volume_change(int, const double *L, double dt) const
 {
-  const int dim = field.lattice.dim;
-  double A[9];
-  for (int c = 0; c < dim * dim; c++) A[c] = dt * L[c];
-  if (dim == 2) return A[0] + A[3] + (A[0] * A[3] - A[1] * A[2]);
-  const double minors =
-      A[0] * A[4] - A[1] * A[3] + A[0] * A[8] - A[2] * A[6] + A[4] * A[8] - A[5] * A[7];
-  return A[0] + A[4] + A[8] + minors + determinant(A);
+  return field.lattice.dim == 2 ? growth<2>(L, dt) : growth<3>(L, dt);
 }
 
 void MPMFrame::begin_strain()

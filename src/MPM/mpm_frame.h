@@ -10,6 +10,7 @@
 #define LMP_MPM_FRAME_H
 
 #include "atom.h"
+#include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_rows.h"
 
@@ -85,6 +86,19 @@ class MPMFrame : protected Pointers {
   void load(MPM_NS::Batch &, int first, int n, double dt, const double *L, const double *F,
             const double *tau, const double *vol0) const;
 
+  /** det(I + dt L) - 1 for a gradient L [DIM*DIM]: the relative change of a volume that moves with it. */
+  template <int DIM> static double growth(const double *L, double dt)
+  {
+    double A[DIM * DIM];
+    for (int c = 0; c < DIM * DIM; c++) A[c] = dt * L[c];
+    if constexpr (DIM == 2) {
+      return A[0] + A[3] + (A[0] * A[3] - A[1] * A[2]);
+    } else {
+      const double minors =
+          A[0] * A[4] - A[1] * A[3] + A[0] * A[8] - A[2] * A[6] + A[4] * A[8] - A[5] * A[7];
+      return A[0] + A[4] + A[8] + minors + MPM_NS::determinant(A);
+    }
+  }
   /** Relative change of the volume of a point in a step. */
   virtual double volume_change(int i, const double *L, double dt) const;
   /** Stretch the motion of a point in the step by the factor 1 + more, in all directions that are not

@@ -105,8 +105,7 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
   sum(value);
   sum(capacity);
   if (volumes) sum(volume);
-  for (std::size_t k = 0; k < nnodes; k++)
-    value[k] = capacity[k] > 0.0 ? value[k] / capacity[k] : 0.0;
+  kernels.divide(value.data(), capacity.data(), nnodes);
   if (keeps) before = value;
 }
 
@@ -167,8 +166,7 @@ void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void(
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
   if (more) more();
   sum(rate);
-  for (std::size_t k = 0; k < rate.size(); k++)
-    rate[k] = capacity[k] > 0.0 ? rate[k] / capacity[k] : 0.0;
+  kernels.divide(rate.data(), capacity.data(), rate.size());
 }
 
 /* ---------------------------------------------------------------------- */

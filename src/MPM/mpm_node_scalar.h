@@ -106,5 +106,14 @@ class MPMNodeScalar {
   int *box_of(const MPMPointMap::ActiveBlock &);
 };
 
+/** most becomes the greatest of itself and of a[p]/b[p] of n points, b > 0, without divisions where it is already. */
+inline void raise_ratio(double &most, int n, const double *a, const double *b)
+{
+  int above = 0;
+  for (int p = 0; p < n; p++) above += a[p] > most * b[p];
+  for (int p = 0; above && p < n; p++)
+    if (a[p] > most * b[p]) most = a[p] / b[p];
+}
+
 }    // namespace LAMMPS_NS
 #endif

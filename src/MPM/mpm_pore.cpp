@@ -50,12 +50,14 @@
 #include "mpm_node_sums.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
+#include "mpm_stages.h"
 #include "mpm_stencil.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -253,6 +255,15 @@ MPMPoreResistance MPMPore::at_interface(int i) const
   return {{linear_mean[i], volumes[i] / conductance[i]}, {quadratic_mean[i], quadratic[i]}};
 }
 
+/** Pressures and gradients of n points as MPMNodeScalar has them. */
+template <int DIM> static void to_rows(const double *state, int n, MPMNodeScalar::Rows row)
+{
+  for (int p = 0; p < n; p++, state += 1 + DIM) {
+    for (int d = 0; d < DIM; d++) row[p][d] = state[1 + d];
+    row[p][3] = state[0];
+  }
+}
+
 void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 {
   if (layers) find_layers(state, formula);
@@ -273,7 +284,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
         }
         double *const C = capacity.data() + first, *const K = conductance.data() + first,
                       *const part = in_forces.data() + first;
-        double V[BATCH], room[BATCH];
+        double room[BATCH], *const V = squeezed.data() + first;
         const double *const J = field.jacobians.get(field, first, n, room),
                             *const initial = atom->vfrac + first;
         for (int p = 0; p < n; p++) V[p] = J[p] * initial[p];
@@ -296,26 +307,20 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
             suction->begin_point(i, s->of, J[p], V[p], mine[0], C[p], K[p], through, part[p]);
           if (open) points.volume[p] = through;
         }
-        double most = fastest;
-        for (int p = 0; p < n; p++) {
-          double greatest = K[p];
-          if (layers) {
-            const int i = first + p;
-            const double k = mobility(*s, i, J[p], formula);
-            if (k > 0.0) volumes[i] = K[p] / k;
-            greatest = volumes[i] * most_of_layers(i, k);
-          }
-          if (greatest > most * C[p]) most = greatest / C[p];    // hardly ever: no division
+        const double *greatest = K;
+        for (int p = 0; layers && p < n; p++) {
+          const int i = first + p;
+          const double k = mobility(*s, i, J[p], formula);
+          if (k > 0.0) volumes[i] = K[p] / k;
+          room[p] = volumes[i] * most_of_layers(i, k);
+          greatest = room;
         }
-        const double *mine = state[first];
-        for (int p = 0; p < n; p++, mine += 1 + dim) {
-          points.capacity[p] = C[p];
-          points.row[p][3] = mine[0];
-          points.row[p][0] = mine[1];
-          points.row[p][1] = mine[2];
-          if (dim == 3) points.row[p][2] = mine[3];
-        }
-        fastest = most;
+        raise_ratio(fastest, n, greatest, C);
+        std::copy_n(C, n, points.capacity);
+        if (dim == 3)
+          to_rows<3>(state[first], n, points.row);
+        else
+          to_rows<2>(state[first], n, points.row);
         return true;
       },
       false);
@@ -437,28 +442,45 @@ void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &
 
 /* ---------------------------------------------------------------------- */
 
+bool MPMPore::moves_first() const
+{
+  return has_water() && !motion && !suction && quadratic.empty() &&
+      MPMStages::can_move_first(field);
+}
+
 void MPMPore::take_motion()
 {
   const int nL = field.lattice.dim * field.lattice.dim;
   const double dt = field.step_dt();
-  const TransferStep step = field.step_data();
-  const PointRows rows = field.rows();
-  double L[9 * BATCH];
-  field.nodes.complete_velocities();
-  points_from_step(field, [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
-    const Soil *const s = soil(run.material);
-    if (!s) return;
-    field.kernel.g2p_gradient(rows, step, first, first + n, base, field.map->tile_load, L);
-    double room[BATCH];
-    const double *const ratios = field.jacobians.get(field, first, n, room);
-    const double *const initial = atom->vfrac + first;
+  const auto take = [&](const Soil &s, int first, int n, const double *L) {
     double *const out = squeezed.data() + first, change[BATCH];
-    for (int p = 0; p < n; p++)
-      change[p] = ratios[p] * initial[p] * field.frame->volume_change(first + p, L + nL * p, dt);
-    const double rate = -s->of.biot / dt;
+    if (nL == 9)
+      for (int p = 0; p < n; p++) change[p] = MPMFrame::growth<3>(L + 9 * p, dt);
+    else
+      for (int p = 0; p < n; p++) change[p] = MPMFrame::growth<2>(L + 4 * p, dt);
+    for (int p = 0; p < n; p++) change[p] *= out[p];
+    const double rate = -s.of.biot / dt;
     for (int p = 0; p < n; p++) out[p] = rate * change[p];
     for (int p = 0; p < n && suction; p++) out[p] *= suction->take_motion(first + p, change[p], dt);
-  });
+  };
+  if (moves_first()) {
+    MPMStages::nodes_to_points(field, MPMStages::STRESS,
+                               [&](const MPMPointMap::Run &run, int first, int n, const double *L) {
+                                 if (const Soil *const s = soil(run.material))
+                                   take(*s, first, n, L);
+                               });
+  } else {
+    const TransferStep step = field.step_data();
+    const PointRows rows = field.rows();
+    double L[9 * BATCH];
+    field.nodes.complete_velocities();
+    points_from_step(field, [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
+      const Soil *const s = soil(run.material);
+      if (!s) return;
+      field.kernel.g2p_gradient(rows, step, first, first + n, base, field.map->tile_load, L);
+      take(*s, first, n, L);
+    });
+  }
   if (suction) suction->take_rates(dt);
 }
 
@@ -500,11 +522,11 @@ void MPMPore::find_rates(std::vector<double> &inflow)
       for (int p = 0; p < n; p++) {
         for (int d = 0; d < 3; d++) {
           q[p][d] = K[p] * (along[d] - q[p][d]);
-          power[d] += q[p][d] * along[d];
+          power[d] += q[p][d];
         }
         q[p][3] = out[p];
       }
-      inflow[MPMPoreSurface::ENERGY] += power[0] + power[1] + power[2];
+      inflow[MPMPoreSurface::ENERGY] += MPM_NS::dot(power, along);
       return;
     }
     for (int p = 0; p < n; p++) {
@@ -591,19 +613,26 @@ void MPMPore::end_step(const MPMRows &state)
   nodes.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q, const double *) {
         if (!suction) {
-          double *mine = state[first];
           const double *const C = capacity.data() + first, *const m = mean.data() + first,
                               *const out = squeezed.data() + first;
           double *const mass = atom->rmass + first;
-          for (int p = 0; p < n; p++, mine += 1 + dim) {
-            const double now = q[p][3] + keep * (mine[0] - m[p]);
-            mass[p] += water.density * (C[p] * (now - mine[0]) - out[p] * dt);
-            if (solve) mass[p] += water.density * C[p] * solve->more[first + p];
-            mine[0] = now;
-            mine[1] = q[p][0];
-            mine[2] = q[p][1];
-            if (dim == 3) mine[3] = q[p][2];
-          }
+          const double density = water.density;
+          const auto take = [&](auto axes) {
+            constexpr int DIM = decltype(axes)::value;
+            double *mine = state[first];
+            for (int p = 0; p < n; p++, mine += 1 + DIM) {
+              const double now = q[p][3] + keep * (mine[0] - m[p]);
+              mass[p] += density * (C[p] * (now - mine[0]) - out[p] * dt);
+              mine[0] = now;
+              for (int d = 0; d < DIM; d++) mine[1 + d] = q[p][d];
+            }
+          };
+          if (dim == 3)
+            take(std::integral_constant<int, 3>());
+          else
+            take(std::integral_constant<int, 2>());
+          if (solve)
+            for (int p = 0; p < n; p++) mass[p] += density * C[p] * solve->more[first + p];
           return;
         }
         const MPMPoreSoil &dries = soil(run.material)->of;

@@ -62,6 +62,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
                           std::vector<double> &force) const;
   /** The velocities of the step are known. */
   void take_motion();
+  /** Does that move and strain the points, too? Nothing in the flow of the step looks at their deformation after it then. */
+  bool moves_first() const;
   /** If the water has inertia: nodes have mass, momentum, and forces, summed over ranks. */
   void take_off();
   /** The same: after take_motion(). */
@@ -125,9 +127,10 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   std::vector<double> capacity;       // [n] storage times volume
   std::vector<double> conductance;    // [n] mobility times volume
   std::vector<double> mean;           // [n] pressure by the nodes, at the start
-  std::vector<double> squeezed;       // [n] rate of the volume of water that the motion drives out
-  std::vector<double> quadratic;      // [n] of the resistance, if there is any
-  std::vector<double> volumes;        // [n] with layers, times the relative permeability
+  std::vector<double>
+      squeezed;    // [n] volume; after take_motion() rate at which this drives water out
+  std::vector<double> quadratic;    // [n] of the resistance, if there is any
+  std::vector<double> volumes;      // [n] with layers, times the relative permeability
   std::vector<double> linear_mean,
       quadratic_mean;             // [n] with layers: resistances across interfaces
   std::vector<double> of_flow;    // [node][8] next to the surface

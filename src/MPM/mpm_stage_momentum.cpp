@@ -58,13 +58,15 @@ bool LAMMPS_NS::surface_force_of_physics(MPMField &field, const std::vector<char
 void LAMMPS_NS::add_pressure(const double *pressure, PointRows &rows, int first, int n,
                              double *room)
 {
-  for (int k = 0; k < 6 * n; k++) room[k] = rows.tau[k];
+  const double *tau = rows.tau;
   const auto next = reinterpret_cast<std::uintptr_t>(rows.tau + 6 * n);    // of the next batch
   for (int k = 0; k < 6 * BATCH; k += 8)
     __builtin_prefetch(reinterpret_cast<const void *>(next + 8 * k));
-  for (int p = 0; p < n; p++)
-    for (int c = 0; c < 3; c++) room[6 * p + c] -= pressure[first + p];
   rows.tau = room;
+  for (int p = 0; p < n; p++, tau += 6, room += 6) {
+    for (int c = 0; c < 3; c++) room[c] = tau[c] - pressure[first + p];
+    for (int c = 3; c < 6; c++) room[c] = tau[c];
+  }
 }
 
 /* ----------------------------------------------------------------------

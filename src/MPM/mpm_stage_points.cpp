@@ -18,6 +18,7 @@
 #include "mpm_guard.h"
 #include "mpm_locking.h"
 #include "mpm_passes.h"
+#include "mpm_physics.h"
 #include "mpm_point_batches.h"
 #include "mpm_points.h"
 #include "mpm_stages.h"
@@ -25,6 +26,7 @@
 #include "mpm_transfer_heat.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -35,11 +37,16 @@ using namespace MPM_NS;
    made at once, while points are in the cache
 ------------------------------------------------------------------------- */
 
-void MPMStages::nodes_to_points(MPMField &field, Strain strain)
+void MPMStages::nodes_to_points(MPMField &field, Strain strain, const UseGradients &use)
 {
+  if (field.has_moved) {
+    move_points(field);
+    field.has_moved = false;
+    return;
+  }
   field.nodes.complete_velocities();
   MPMFrame &frame = *field.frame;
-  const bool late = field.options.moves_late(), strains = strain >= GRADIENTS;
+  const bool late = field.options.moves_late() || use, strains = strain >= GRADIENTS;
   const bool by_gradient = strains && field.options.strains_by_gradient(),
              refers = strains && frame.refers();
   const bool in_C = field.kernel.gradient_in_C && !refers;    // what stress needs is there
@@ -50,6 +57,7 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain)
   double *const kept = keeps ? field.locking->room_for_gradients() : nullptr;
 
   PointRows r = field.rows();
+  if (late) r.xnew = field.work.xnew.data();
   if (field.domains && !field.mapped.g2p) r.corners_new = field.domains->moved(late);
   const TransferStep s = field.step_data();
   const double dt = field.step_dt();
@@ -67,12 +75,27 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain)
         kernel.g2p(r, s, i, last, base, tile, strains && !in_C && !by_gradient ? L : nullptr);
     if (strain != ELSEWHERE) frame.after_motion(r, i, last);
     if (refers) frame.refer_gradients(i, n, L);
-    if (strain == STRESS) update_stress(field, r, run, i, n, in_C ? r.C + (bigint) nL * i : L, dt);
+    const double *const gradients = in_C ? r.C + (bigint) nL * i : L;
+    if (use) use(run, i, n, gradients);
+    if (strain == STRESS) update_stress(field, r, run, i, n, gradients, dt);
   });
+  field.has_moved = static_cast<bool>(use);
   if (strain == GRADIENTS) {
     field.locking->strain(in_C ? r.C : kept, dt);
     move_points(field);
   }
+}
+
+/** Nothing that comes between AFTER_SOLVE and the motion may change velocities of nodes, or look at the state of points. */
+bool MPMStages::can_move_first(const MPMField &field)
+{
+  const auto &o = field.options;
+  const auto &all = field.plan->physics;
+  return o.scheme == MPMFieldOptions::USL && o.strains_while_moving() && !o.heats() && !o.total &&
+      !o.axisymmetric && !o.has_size() &&
+      std::count_if(all.begin(), all.end(), [](const auto *physics) {
+        return !physics->only_loads();
+      }) == 1;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -14,6 +14,8 @@
 #include "mpm_point_map.h"
 #include "transfer/kernels.h"
 
+#include <functional>
+
 namespace LAMMPS_NS {
 class MPMField;
 class MPMPlan;
@@ -45,8 +47,14 @@ namespace MPMStages {
     GRADIENTS,    ///< velocity gradients, too, for MPMLocking::strain()
     STRESS        ///< stress, too
   };
-  /** Velocities, affine matrices and positions of the points. */
-  void nodes_to_points(MPMField &, Strain);
+  /** Calls of a user with batches of n <= BATCH points of a run. L: [n][dim*dim] their velocity gradients, column-major. */
+  using UseGradients =
+      std::function<void(const MPMPointMap::Run &, int first, int n, const double *L)>;
+  /** Velocities, affine matrices and positions of the points. use: it is done for physics at AFTER_SOLVE, which needs the gradients
+   *  of the motion: they are used before the strain, and positions wait until the call that is made in any case. */
+  void nodes_to_points(MPMField &, Strain, const UseGradients &use = nullptr);
+  /** May physics do that? Else it must find gradients on its own. */
+  bool can_move_first(const MPMField &);
   /** Positions and corners of the end of the step, where they had to wait. */
   void move_points(MPMField &);
 

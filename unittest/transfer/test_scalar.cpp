@@ -116,6 +116,22 @@ TEST(Scalar, IsThatOfThePlainLoops)
   });
 }
 
+// nodes without weight get nothing, whatever is there
+TEST(Scalar, IsDividedByWeights)
+{
+  for_all([](const ScalarKernels &kernels, const ScalarKernels &plain, int, Shape) {
+    const int n = integer(0, 40);
+    Reals sums(n), weights(n);
+    fill(sums);
+    for (double &w : weights) w = integer(0, 2) ? uniform(1.0e-300, 2.0) : 0.0;
+    Reals fast = sums, slow = sums;
+    kernels.divide(fast.data(), weights.data(), n);
+    plain.divide(slow.data(), weights.data(), n);
+    EXPECT_EQ(fast, slow);
+    for (int k = 0; k < n; k++) EXPECT_EQ(slow[k], weights[k] > 0.0 ? sums[k] / weights[k] : 0.0);
+  });
+}
+
 // values are kept, slopes have no sum, a linear field has its gradient, and both ways are adjoint
 TEST(Scalar, KeepsSumsAndLinearFields)
 {

@@ -11,6 +11,8 @@
 
 #include "transfer/kernels.h"
 
+#include <cstddef>
+
 namespace MPM_NS {
 
 /** What is meant by the slopes of the weights w of a point. */
@@ -59,6 +61,8 @@ struct ScalarKernels {
   void (*get_values)(const ScalarStencil &, const double *tile, double *q);
   /** As TileIO, with one real for each node. */
   TileIO flush, load;
+  /** Of n nodes: sums become sums over weights, zero where there is no weight. */
+  void (*divide)(double *sums, const double *weights, std::size_t n);
 
   /** Those that go with a table of transfers. Shapes with domains (CPDI) have the plain loops in all of them. */
   static ScalarKernels select(const MPMKernels &, int dim, Shape);

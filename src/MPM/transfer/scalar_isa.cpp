@@ -96,7 +96,7 @@ MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], doubl
   }
 }
 
-template <int DIM, Shape SHAPE, SlopeKind KIND>
+template <int DIM, Shape SHAPE, SlopeKind KIND, bool BOX>
 void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, const int base[3],
                   ScalarStencil &out, int *box)
 {
@@ -129,8 +129,10 @@ void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, co
       constexpr int a = decltype(which)::value;
       constexpr bool is_last = a == DIM - 1;
       const V t = (x[a] - V::all(step.origin[a])) * (step.inv_h / CELL) - shift[a];
-      low[a] = min(low[a], t);
-      high[a] = max(high[a], t);
+      if constexpr (BOX) {
+        low[a] = min(low[a], t);
+        high[a] = max(high[a], t);
+      }
       int cell[4];
       V fraction = t - truncate(t, cell);
       if constexpr (Function::order == 1) fraction = max(fraction, V::all(SMALLEST_FRACTION));
@@ -144,10 +146,10 @@ void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, co
         Function::weights(fraction, w);
       store_weights<N, is_last, less>(w, p, out.last_w, out.w[is_last ? 0 : a]);
       if constexpr (KIND == DISTANCE_SLOPES) {
-        const V distance = CELL == 1 ? fraction + Function::shift
-                                     : static_cast<double>(CELL) * fraction;
+        const V distance = CELL == 1 ? step.h * (fraction + Function::shift)
+                                     : (CELL * step.h) * fraction;
         MPM_UNROLL
-        for (int k = 0; k < N; k++) d[k] = step.h * (w[k] * (V::all(k) - distance));
+        for (int k = 0; k < N; k++) d[k] = w[k] * (V::all(k * step.h) - distance);
       } else if constexpr (KIND != NO_SLOPES) {
         if constexpr (Function::has_size)
           Function::gradients(fraction, size[a], d);
@@ -168,7 +170,7 @@ void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, co
     MPM_UNROLL
     for (int k = 0; k < 4; k++) out.place[p + k] = place[k];
   }
-  for (int a = 0; box && n > 0 && a < DIM; a++) {
+  for (int a = 0; BOX && n > 0 && a < DIM; a++) {
     for (int k = 0; k < 4; k++) {
       lowest[a] = low[a].lane(k) < lowest[a] ? low[a].lane(k) : lowest[a];
       highest[a] = high[a].lane(k) > highest[a] ? high[a].lane(k) : highest[a];
@@ -180,18 +182,28 @@ void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, co
   }
 }
 
+template <int DIM, Shape SHAPE, bool BOX>
+void prepare_box(const PointRows &rows, const TransferStep &step, int n, const int base[3],
+                 SlopeKind kind, ScalarStencil &out, int *box)
+{
+  if (kind == DISTANCE_SLOPES)
+    prepare_kind<DIM, SHAPE, DISTANCE_SLOPES, BOX>(rows, step, n, base, out, box);
+  else if (kind == GRADIENT_SLOPES)
+    prepare_kind<DIM, SHAPE, GRADIENT_SLOPES, BOX>(rows, step, n, base, out, box);
+  else if (kind == NO_SLOPES)
+    prepare_kind<DIM, SHAPE, NO_SLOPES, BOX>(rows, step, n, base, out, box);
+  else
+    prepare_kind<DIM, SHAPE, ABSOLUTE_SLOPES, BOX>(rows, step, n, base, out, box);
+}
+
 template <int DIM, Shape SHAPE>
 void prepare(const PointRows &rows, const TransferStep &step, int n, const int base[3],
              SlopeKind kind, ScalarStencil &out, int *box)
 {
-  if (kind == DISTANCE_SLOPES)
-    prepare_kind<DIM, SHAPE, DISTANCE_SLOPES>(rows, step, n, base, out, box);
-  else if (kind == GRADIENT_SLOPES)
-    prepare_kind<DIM, SHAPE, GRADIENT_SLOPES>(rows, step, n, base, out, box);
-  else if (kind == NO_SLOPES)
-    prepare_kind<DIM, SHAPE, NO_SLOPES>(rows, step, n, base, out, box);
+  if (box)
+    prepare_box<DIM, SHAPE, true>(rows, step, n, base, kind, out, box);
   else
-    prepare_kind<DIM, SHAPE, ABSOLUTE_SLOPES>(rows, step, n, base, out, box);
+    prepare_box<DIM, SHAPE, false>(rows, step, n, base, kind, out, box);
 }
 
 /** The rows of nodes of points that share the first one. Lanes without a node hold whatever follows in the tile.
@@ -436,6 +448,21 @@ void get_values(const ScalarStencil &in, const double *tile, double *q)
   });
 }
 
+/** Nothing over nothing is zero over one. */
+void divide(double *sums, const double *weights, std::size_t n)
+{
+  using W = Vec<REGISTER>;
+  const W none = {}, one = W::all(1.0);
+  std::size_t k = 0;
+  for (; k + REGISTER <= n; k += REGISTER) {
+    const W weight = W::load(weights + k), sum = W::load(sums + k);
+    const auto has = weight.r > none.r;
+    const W above = {has ? sum.r : none.r}, below = {has ? weight.r : one.r};
+    (above / below).store(sums + k);
+  }
+  for (; k < n; k++) sums[k] = weights[k] > 0.0 ? sums[k] / weights[k] : 0.0;
+}
+
 /** Adds a tile's reals to those of the nodes and clears them, or loads them. */
 template <int COUNT, bool FLUSHES> MPM_INLINE void move_some(double *mine, double *theirs)
 {
@@ -485,10 +512,10 @@ ScalarKernels MPM_NS::MPM_OF_ISA(mpm_kernels_scalar)(int dim, Shape shape)
     constexpr int DIM = decltype(d)::value;
     return with<Shape, LINEAR, QUADRATIC, CUBIC, GIMP, BERNSTEIN>(shape, [](auto s) {
       constexpr Shape SHAPE = decltype(s)::value;
-      return ScalarKernels{prepare<DIM, SHAPE>,         add<DIM, SHAPE>,
-                           add_values<DIM, SHAPE>,      get<DIM, SHAPE>,
-                           get_values<DIM, SHAPE>,      move_tile<DIM, SHAPE, true>,
-                           move_tile<DIM, SHAPE, false>};
+      return ScalarKernels{prepare<DIM, SHAPE>,          add<DIM, SHAPE>,
+                           add_values<DIM, SHAPE>,       get<DIM, SHAPE>,
+                           get_values<DIM, SHAPE>,       move_tile<DIM, SHAPE, true>,
+                           move_tile<DIM, SHAPE, false>, divide};
     });
   });
 }

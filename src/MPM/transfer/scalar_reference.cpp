@@ -84,6 +84,9 @@ template <int DIM, Shape SHAPE> ScalarKernels table()
   };
   k.flush = move_box<DIM, SHAPE, 1, FLUSH>;
   k.load = move_box<DIM, SHAPE, 1, LOAD>;
+  k.divide = [](double *sums, const double *weights, std::size_t n) {
+    for (std::size_t i = 0; i < n; i++) sums[i] = weights[i] > 0.0 ? sums[i] / weights[i] : 0.0;
+  };
   return k;
 }
 
