@@ -25,9 +25,9 @@ PAGE = os.path.join(PAGES, "Howto_mpm_gallery.rst")
 TOPICS = {
     "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall hypervelocity "
                          "ring-on-block scratch blast-on-plate microstructure foam",
-    "Elastic bodies": "rubber-band beam arch buckling tube plate-with-hole airbag cook-membrane tissue two-disks ring-collision spinning-disk incline vortex hare net tent press-fit refined-plate",
+    "Elastic bodies": "rubber-band beam arch buckling press-fit tube plate-with-hole refined-plate airbag tent cook-membrane tissue two-disks ring-collision spinning-disk incline vortex hare net",
     "Heat": "cooling-plate quench casting friction-weld machining hot-grains",
-    "Fluids and gases": "dam-break sloshing boat pouring-honey extruder elastic-gate elastic-plate poiseuille shock-tube settling drop",
+    "Fluids and gases": "dam-break sloshing boat drop pouring-honey extruder elastic-gate elastic-plate poiseuille shock-tube settling",
     "Soil and grains": "sand-column footing consolidation settlement earthquake-slope levee submarine-slide ball-in-sand hopper boulders-in-debris tyre-on-gravel "
                        "grains-on-block",
     "Atoms and material points": "handshake impact-on-crystal",
