@@ -73,6 +73,7 @@ PARAMETER_TEST(Velocity, StaysLinear, Patch,
                       Patch{2, 3, "quadratic"}, Patch{2, 3, "cubic"}, Patch{3, 3, "quadratic"},
                       Patch{3, 2, "cubic"}, Patch{3, 2, "linear"}))
 {
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const auto &p = GetParam();
   Scene run(MPI_COMM_SELF);
   run.commands(box(p.dim, "lj", "f f f", "-1 13 -1 12 -1 10", p.levels, 0.2) +
@@ -97,6 +98,7 @@ PARAMETER_TEST(Pressure, IsInBalance, Patch,
                Values(Patch{2, 2, "linear"}, Patch{2, 3, "quadratic"}, Patch{3, 2, "quadratic"},
                       Patch{2, 2, "cubic"}))
 {
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const auto &p = GetParam();
   Scene run(MPI_COMM_SELF);
   const std::string stress = p.shape == std::string("linear") ? "" : "stress gradient";
