@@ -350,4 +350,7 @@ SERIAL_TEST(MeshGrid, BadInput)
        {fix + "\nmin_style cg\nminimize 0 0 1 1", "cannot be used with minimize"}});
   expect_error(replaced(good, "boundary f f p", "boundary p f p") + fix + "\nrun 1\n",
                "has no periodic images of its mesh: use boundary f, s, or m along x");
+  EXPECT_EQ(lines_that_say(good + fix + "transfer apic\nrun 1\n", "gain energy").size(), 1u);
+  EXPECT_EQ(lines_that_say(good + fix + "transfer apic frame total\nrun 1\n", "gain energy").size(),
+            0u);
 }

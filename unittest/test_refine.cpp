@@ -279,7 +279,8 @@ SERIAL_TEST(BadInput, IsRefused)
       {"shape gimp transfer apic", "0.5 shape gimp transfer apic", "use shape linear, quadratic"},
       {"frame total reference update 1.1", "0.5 origin 0.25 0.25 frame total reference update 1.1",
        "frame updated"},
-      {"axisymmetric yes", "0.5 origin 0.25 0.25 axisymmetric yes", "use a plane"},
+      {"axisymmetric yes\nfix ax all mpm/boundary xlo slip",
+       "0.5 origin 0.25 0.25 axisymmetric yes", "use a plane"},
       {"scheme usf", "0.5 origin 0.25 0.25 scheme usf", "use usl or musl"},
   };
   for (const auto &f : fields) expect_error(scene(f.coarse, f.fine) + fix + run, f.words);
@@ -297,7 +298,8 @@ SERIAL_TEST(BadInput, IsRefused)
       "create_points 2 region m ppc 2 fix b\ngroup a type 1\n"
       "group b type 2\n";
   EXPECT_EQ(lines_that_say(apart + law + fix + "\nrun 1\n", "do not meet").size(), 1u);
-  const std::string touching = scene("", "0.5 origin 0.25 0.25") + fix +
-      "\ngroup t empty\nfix t t mpm 1.0\nfix c all mpm/contact a t\nrun 1\n";
+  const std::string touching = replaced(apart, "block 6 8", "block 4 7") + law + fix +
+      "\nregion t block 7 8 0 8 INF INF\ncreate_points 1 region t ppc 2 fix a group t\n"
+      "fix t t mpm 1.0\ngroup a subtract a t\nfix c all mpm/contact a t\nrun 1\n";
   EXPECT_EQ(lines_that_say(touching, "let them meet through pair_style").size(), 1u);
 }

@@ -189,6 +189,14 @@ void FixMPMMesh::init()
   points = MPMPoints::get(atom);
   find_contact();
   find_materials();
+  const bool solid = std::any_of(materials.begin(), materials.end(), [](const auto *material) {
+    return material->material->is_solid();
+  });
+  if (C && !total && solid && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/mesh {}: with transfer apic and frame updated, solids with a free "
+                   "surface gain energy: use transfer flip, or frame total",
+                   id);
   kernels = BatchKernels::select(mesh->dim);
   bool can_run = kernels != nullptr;
   for (auto *material : materials)
