@@ -118,7 +118,7 @@ def examples(path):
 def mentions(line, kind, name):
     """Does a command use this ID?"""
     pattern = {"compute": r"\bc_%s\b", "fix": r"\bf_%s\b|\bfix %s\b", "variable": r"\bv_%s\b",
-               "region": r"\b(?:region|mpm/rigid) %s\b"}.get(kind, r"(?<!_)\b%s\b")
+               "region": r"\b(?:region|mpm/rigid|implicit yes stick) %s\b"}.get(kind, r"(?<!_)\b%s\b")
     pattern = pattern.replace("%s", re.escape(name))
     words = line.split()
     own = words[0] == kind and words[1] == name
@@ -200,7 +200,7 @@ def scene_for(lines):
     if re.search("mpm/implicit (newmark|alpha|hht)", text):
         grid = grid.replace("\n", " transfer flip 1.0\n")
     if "mpm/incompressible" in text:    # has a lattice of its own, and no materials
-        grid = ""
+        grid = "".join("group %s empty\n" % name for name in re.findall(r" liquid (\w+) ", text))
     mixture = "mpm/mixture" in text and not makes_points
     if mixture:
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)

@@ -25,6 +25,7 @@
 
 #include "mpm_implicit_pressure.h"
 
+#include "atom.h"
 #include "mpm_field.h"
 #include "mpm_node_pressure.h"
 
