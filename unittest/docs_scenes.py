@@ -194,6 +194,8 @@ def scene_for(lines):
             before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
                        "create_points %d region body%d spacing 0.005\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, name, k + 1))
+    if "mpm/mesh/heat" in text and not makes_points:
+        grid = "fix grid all mpm/mesh around.msh frame total part cells\n"
     if "mpm/deform" in text:
         head = head.replace("f f f", "p p p")
         grid = grid.replace("\n", " frame total\n")
@@ -234,7 +236,7 @@ def scene_for(lines):
     if "mpm/heat grains" in text:
         before += ("fix prop all property/atom temperature heatflow ghost yes\ngroup grains type 3\n"
                    "fix warm grains heat/flow constant 500\n")
-    if heats or "mpm/heat" in text:
+    if heats or "mpm/heat" in text or "mpm/mesh/heat" in text:
         material = material.replace("\n", " thermal conducting 460 293 52\n")
     if mixture:
         before += ("create_points 2 region base spacing $(0.05*lx) share 0.4\n"

@@ -9,6 +9,8 @@
 
 #include "mpm_lammps.h"
 
+#include <regex>
+
 using namespace MPM_TEST;
 
 namespace {
@@ -210,8 +212,18 @@ SERIAL_TEST(Level, ForcesAndWork)
   run.lmp->modify->get_compute_by_id("e")->compute_scalar();
   const double *const e = run.compute_vector();
   EXPECT_NEAR(measured("residual", e[10] / (e[0] + e[1])), 0.0, 1e-11);
-  // the energy watch knows the work of the stress at the sides, too
-  EXPECT_EQ(run.error("run 1200\n"), "");
+  // the energy watch knows the work of the stress at the sides, too: what it tells is what the ledger has in transfer and integration
+  const double before = e[8] + e[9];
+  const ScratchFile file("log");
+  EXPECT_EQ(run.error("log " + file.name + "\nrun 1200\nlog none\n"), "");
+  run.lmp->modify->get_compute_by_id("e")->compute_scalar();
+  const std::regex energy("friction took ([-+.e0-9]+) .*numerical errors added ([-+.e0-9]+)");
+  std::smatch found;
+  const std::string text = file_text(file.name);
+  ASSERT_TRUE(std::regex_search(text, found, energy));
+  const double added = std::stod(found[2]) - std::stod(found[1]);
+  EXPECT_NEAR(measured("watch less ledger", (added - (e[8] + e[9] - before)) / (e[0] + e[1])), 0.0,
+              0.015);
   // all that came in came through the base
   EXPECT_NEAR(measured("work over energy", e[6] / (e[0] + e[1])), 1.0, 0.03);
 }

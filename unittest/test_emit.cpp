@@ -395,6 +395,43 @@ thermo_style custom step c_e
   }
 }
 
+// no point gets the ID of one that was removed, by any mouth, on any number of ranks, nor after a restart
+TEST(Channel, IDsComeOnce)
+{
+  const std::string fixes = R"(
+fix grid all mpm 0.02
+fix m all mpm/material density 1000 eos linear 0.1
+region mouth block 0.1 0.2 0.2 0.3 INF INF
+region other block 0.15 0.25 0.38 0.44 INF INF
+fix in all mpm/emit 1 region mouth velocity 2 0 0
+fix on all mpm/emit 1 region other velocity 1 0 0
+timestep 0.002
+)";
+  const int body = 20 * 30;
+  const std::string scene = plane("si", "f f", "0 2 0 0.5", 1, 0.01) + fixes +
+      "region b block 1.5 1.7 0.1 0.4 INF INF\ncreate_points 1 region b\n";
+  Scene all(scene + "run 20\n");
+  tagint last = 0;
+  for (const auto &s : all.gather()) last = std::max(last, (tagint) s.tag);
+  EXPECT_GT(last, body + 160 + 80);
+  const std::string removed = "run 20\nregion behind block INF 0.24 INF INF INF INF\n"
+                              "group new region behind\ndelete_atoms group new compress no\n";
+  Twins twins(scene + removed, 0, fixes, 20, 1e-9);
+  int kept = 0, came = 0;
+  for (const auto &s : twins.whole.gather()) (s.tag > last ? came : kept)++;
+  EXPECT_EQ(came,
+            twins.whole.fix("in")->compute_vector(0) + twins.whole.fix("on")->compute_vector(0) -
+                (last - body));
+  EXPECT_GT(came, 80);
+  EXPECT_GT(kept, 40);
+  // the one that comes later knows of the others' points
+  Scene second(scene + removed +
+               "unfix in\nregion third block 0.5 0.6 0.1 0.2 INF INF\n"
+               "fix later all mpm/emit 1 region third velocity 1 0 0\nrun 1\n");
+  for (const auto &s : second.gather())
+    if (s.x[0] < 1.0 && s.x[1] < 0.2) EXPECT_GT(s.tag, last);
+}
+
 // numbers, masses, and momenta balance, and the watch of energies knows of points that come and go
 TEST(Channel, Balance)
 {

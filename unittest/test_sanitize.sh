@@ -109,7 +109,7 @@ CODE
   done
 
   library=("${objects[@]}")
-  for test in declare/test_option transfer/test_shape lattice/test_grid image/test_image mesh/test_gmsh transfer/test_kernels \
+  for test in declare/test_option transfer/test_shape lattice/test_grid image/test_image mesh/test_gmsh transfer/test_kernels transfer/test_scalar \
     transfer/test_cpdi_kernels material/test_materials material/test_tangent; do
     name=${test##*/test_}
     objects=()

@@ -27,7 +27,6 @@
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_input.h"
-#include "mpm_mesh_fields.h"
 #include "mpm_options.h"
 #include "mpm_point_columns.h"
 #include "mpm_region_cut.h"
@@ -110,12 +109,14 @@ void CreatePoints::command(int narg, char **arg)
 
   const bigint natoms_previous = atom->natoms;
   const int nlocal_previous = atom->nlocal;
-  const bigint npoints = mesh ? make_mesh_points() : table ? make_table_points() : make_points();
+  const bigint npoints = mesh ? make_mesh_points()
+      : table                 ? make_table_points()
+      : relax                 ? make_relaxed_points()
+                              : make_points();
 
   atom->data_fix_compute_variable(nlocal_previous, atom->nlocal);
   set_domains(nlocal_previous);
   set_fields(nlocal_previous);
-  if (mesh_fields) mesh_fields->set(nlocal_previous);
   set_columns(nlocal_previous);
 
   bigint nblocal = atom->nlocal;
@@ -212,6 +213,9 @@ void CreatePointsOptions::add_to(Options &o, int dim)
                 "share of the volume of their places that the points have")});
   o.add("cut", {yes_no(cut)},
         "give points at the surface of the region the part of their cell that is inside");
+  o.add("relax",
+        {integer(relax, "N", {0, 10000, true},
+                 "move points N times, to follow the surface of the region with equal volumes")});
   std::vector<OptionValue> words = {
       text(split, "v_n", "variable of style equal: number of points along each axis of a site"),
       text(split_place[0], "v_x",
@@ -230,6 +234,9 @@ OptionRules CreatePointsOptions::rules(bool has_radius) const
       {cut && jitter > 0.0, "cut",
        "puts points at the center of what is inside of the region, from where jitter would move "
        "them: use one of the two"},
+      {relax > 0 && jitter > 0.0, "relax",
+       "puts points at the centers of their cells, from where jitter would move them: use one of "
+       "the two"},
       {!split.empty() && cut, "split",
        "divides whole sites, and cut has parts of them: use one of the two"},
       {!split.empty() && jitter > 0.0, "split", "has no jitter: use one of the two"},
@@ -267,6 +274,9 @@ void CreatePoints::place_sites(const Options &options)
 {
   const int dim = domain->dimension;
   find_group(options, group_id);
+  if (relax && (image || !region))
+    error->all(FLERR, options.where("relax"),
+               "Create_points keyword relax is about the surface of a region: use style region");
   if (cut && (image || !region))
     error->all(FLERR, options.where("cut"),
                "Create_points keyword cut is about the surface of a region: use style region");
@@ -321,6 +331,7 @@ void CreatePoints::place_sites(const Options &options)
                      spacing[d], axis_name[d], fix->id(), fix->lattice.h);
   }
   find_split(options);
+  cut = cut || relax;
   if (cut)
     region_cut = std::make_unique<MPMRegionCut>(lmp, region, origin, spacing,
                                                 fix && fix->options.axisymmetric);
@@ -369,7 +380,8 @@ int CreatePoints::divisions(const bigint *s) const
 }
 
 /** Visits the middle of each part of a divided site that is in the region, x first; returns how many parts there are. */
-template <class F> int CreatePoints::for_parts(const bigint *s, F &&visit) const
+int CreatePoints::for_parts(const bigint *s,
+                            const std::function<void(const double *x)> &visit) const
 {
   const int dim = domain->dimension, n = divisions(s);
   const int total = dim == 2 ? n * n : n * n * n;
@@ -524,8 +536,8 @@ bool CreatePoints::cut_site(const bigint *s, Site &site) const
    visit the sites first to last-1 of a range, x fastest
 ------------------------------------------------------------------------- */
 
-template <class F>
-void CreatePoints::for_sites(const Range *range, bigint first, bigint last, F &&visit) const
+void CreatePoints::for_sites(const Range *range, bigint first, bigint last,
+                             const std::function<void(const bigint *s)> &visit) const
 {
   if (first >= last) return;
   bigint k[3] = {first % range[0].n, first / range[0].n % range[1].n,
@@ -669,13 +681,11 @@ void CreatePoints::point_position(const bigint *s, double *x) const
 }
 
 /* ----------------------------------------------------------------------
-   look at all sites once, in the order of their numbers, and make the points
-   IDs follow that order; returns the number of points
+   sites that are in the box and can be in the region; returns how many there are
 ------------------------------------------------------------------------- */
 
-bigint CreatePoints::make_points()
+bigint CreatePoints::ranges_in_box(Range *range) const
 {
-  Range range[3];
   double nsite = 1.0;
   for (int d = 0; d < 3; d++) {
     const bigint first = std::max(search[d].first, box[d].first);
@@ -688,7 +698,18 @@ bigint CreatePoints::make_points()
                "Create_points would have to look at {:.3g} sites: use a "
                "wider spacing or a region with a bounding box",
                nsite);
-  const bigint n = range[0].n * range[1].n * range[2].n;
+  return range[0].n * range[1].n * range[2].n;
+}
+
+/* ----------------------------------------------------------------------
+   look at all sites once, in the order of their numbers, and make the points
+   IDs follow that order; returns the number of points
+------------------------------------------------------------------------- */
+
+bigint CreatePoints::make_points()
+{
+  Range range[3];
+  const bigint n = ranges_in_box(range);
 
   const tagint maxtag = largest_tag();
   std::vector<Site> made;
@@ -844,11 +865,20 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
   o.add("groups", {word(by_group, {{"none", false}, {"physical", true}})},
         "groups that points join in addition, by the names of physical groups");
   o.add("data",
-        {text(data_name, "name", "data of the file for nodes (mesh) or elements"),
-         text(data_to, "quantity", "velocity, or d_name or i_name of fix property/atom")})
+        {text(one.name, "name", "data of the file for nodes (mesh) or elements"),
+         text(one.quantity, "quantity",
+              "what they are for points, as columns of a table; may be given several times")})
       .standard("none")
       .then([this] {
-        data.push_back({data_name, data_to});
+        data.push_back({one.name, one.quantity, 1.0});
+      });
+  o.add("factor",
+        {text(one.name, "name", "data of the file"),
+         number(one.factor, "a", ANY_NUMBER, "",
+                "factor on their numbers, for other units; may be given for several data")})
+      .standard("1")
+      .then([this] {
+        factors.push_back(one);
       });
   if (nodes) thin.declare(o, dim);
   o.add("halve",
@@ -895,6 +925,17 @@ void CreatePoints::parse_mesh(int narg, char **arg)
     for (int d = 0; d < 3; d++) x[d] = d < dim ? given.move[d] + given.scale * x[d] : 0.0;
 
   for (int k = 0; k < given.halve; k++) mesh.halve_elements();
+  for (const auto &factor : given.factors) {
+    bool used = false;
+    for (auto &data : given.data)
+      if (data.name == factor.name) {
+        data.factor *= factor.factor;
+        used = true;
+      }
+    if (!used)
+      error->all(FLERR, options.where("factor") + 1,
+                 "Create_points factor {}: no keyword data takes data of this name", factor.name);
+  }
   mesh_fields = std::make_unique<MPMMeshFields>(lmp, mesh, !in_elements, type, given.by_type,
                                                 given.by_group, given.data);
   volume = 0.0;
@@ -1038,6 +1079,7 @@ bigint CreatePoints::make_mesh_points()
   std::vector<Corners> mine;
   for (bigint k = 0; k < n; k++) {
     auto &site = mesh_sites[k];
+    site.volume /= mesh_fields->jacobian((int) k);
     if (owner(site.x) != comm->me) continue;
     site.tag = atom->tag_enable ? maxtag + k + 1 : 0;
     mesh_fields->add((int) k);

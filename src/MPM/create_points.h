@@ -17,9 +17,11 @@ CommandStyle(create_points,CreatePoints);
 
 #include "command.h"
 #include "declare/option.h"
+#include "mpm_mesh_fields.h"
 #include "mpm_thin_body.h"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +29,7 @@ CommandStyle(create_points,CreatePoints);
 namespace MPM_NS {
 struct ImageBody;
 struct Mesh;
+class RelaxedPoints;
 }    // namespace MPM_NS
 
 namespace LAMMPS_NS {
@@ -44,6 +47,7 @@ struct CreatePointsOptions {
   double diameter = 0.0;    ///< 0: that of the volume
   double share = 1.0;       ///< of the volume of its site that a point has
   bool cut = false;         ///< points have the part of their cell that is in the region
+  int relax = 0;            ///< how many times points move to the centers of their cells
   /** Equal-style variable: into how many points a site is divided along each axis; empty: it is one. And the variables of
    *  style internal that have the place of the site then. */
   std::string split, split_place[3];
@@ -59,12 +63,12 @@ struct CreatePointsMeshOptions {
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
   std::string part;    ///< a physical group of the mesh, empty: all of it
   bool by_type = false,
-       by_group = false;    ///< the group of a point is its type; joins a group of this name
-  std::string data_name, data_to;    ///< as read last
-  std::vector<std::array<std::string, 2>>
-      data;            ///< names in the file, and what they are for points
-  MPMThinBody thin;    ///< surfaces or lines, for nodes
-  int halve = 0;       ///< how many times elements are divided
+       by_group = false;      ///< the group of a point is its type; joins a group of this name
+  MPMMeshFields::Data one;    ///< as read last
+  std::vector<MPMMeshFields::Data> data;       ///< what points get of the file
+  std::vector<MPMMeshFields::Data> factors;    ///< on data by their names
+  MPMThinBody thin;                            ///< surfaces or lines, for nodes
+  int halve = 0;                               ///< how many times elements are divided
   double diameter = 0.0;
   std::string group_id;
 
@@ -157,6 +161,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void check_outside();
   bool same_body(int i) const;
   void check_overlap();
+  bigint ranges_in_box(Range *) const;
   bigint make_points();
   bigint make_mesh_points();
   bigint make_table_points();
@@ -178,11 +183,14 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void find_split(const MPM_NS::Options &);
   void make_parts(const bigint *s, std::vector<Site> &) const;
   int divisions(const bigint *s) const;
-  template <class F> int for_parts(const bigint *s, F &&visit) const;
+  int for_parts(const bigint *s, const std::function<void(const double *x)> &visit) const;
+  bigint make_relaxed_points();
+  void add_relaxed_site(const bigint *s, const bigint *first, MPM_NS::RelaxedPoints &) const;
   bool in_region(const bigint *s) const { return share_of(s) > 0.0; }
   bool cut_site(const bigint *s, Site &) const;
   void point_position(const bigint *s, double *x) const;
-  template <class F> void for_sites(const Range *range, bigint first, bigint last, F &&visit) const;
+  void for_sites(const Range *range, bigint first, bigint last,
+                 const std::function<void(const bigint *s)> &visit) const;
 };
 
 }    // namespace LAMMPS_NS

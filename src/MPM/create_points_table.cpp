@@ -385,13 +385,16 @@ bigint CreatePoints::make_table_points()
 /** Once fixes know of the points. */
 void CreatePoints::set_columns(int first)
 {
-  if (!table) return;
-  table->columns.set(first, table_rows);
-  const std::string missing = table->columns.has_state() ? table->columns.missing() : "";
+  if (table) table->columns.set(first, table_rows);
+  if (mesh_fields) mesh_fields->set(first);
+  const MPMPointColumns *columns = table ? &table->columns
+      : mesh_fields                      ? &mesh_fields->given()
+                                         : nullptr;
+  const std::string missing = columns && columns->has_state() ? columns->missing() : "";
   if (!missing.empty() && comm->me == 0)
     error->warning(FLERR,
-                   "Create_points table: the points have state, but not all of it: that of new "
+                   "Create_points {}: the points have state, but not all of it: that of new "
                    "points is {}; a "
                    "restart file has all",
-                   missing);
+                   table ? "table" : "data", missing);
 }

@@ -54,6 +54,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "math_extra.h"
 #include "modify.h"
 
 #include <algorithm>
@@ -364,7 +365,25 @@ bool FixMPMDashpot::looks_at_all(const MPMField &field, const Grid::Block &block
 
 void FixMPMDashpot::topology_changed(MPMField &field)
 {
-  body_of(field).canonical = field.grid.canonical();
+  Body &body = body_of(field);
+  body.canonical = field.grid.canonical();
+  body.stressed.clear();
+  if (!supports) return;
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++)
+      if (rows[i][STRESS] != 0.0) body.stressed.push_back({i, run.slot});
+}
+
+void FixMPMDashpot::add_stages(MPMPlan &plan, MPMPlan::Place place)
+{
+  if (place != MPMPlan::AFTER_SOLVE ||
+      std::none_of(plan.fields.begin(), plan.fields.end(), [](const MPMField *field) {
+        return field->options.watches_gain();
+      }))
+    return;
+  plan.together("work of supports", [this] {
+    for (const auto &body : bodies) tell_watch(body);
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -629,8 +648,6 @@ void FixMPMDashpot::apply(Body &body, double dt)
   work += done;
   ledger.boundary += done * force->mvv2e;
   ledger.driven += done * force->mvv2e;
-  if (free_field) tell_watch(body, dt);
-  if (free_field) tell_watch(body, dt);
   if (relax > 0.0)
     for (const auto &mark : body.marks)
       for (int k = mark.first; k < mark.last; k++)
@@ -651,38 +668,45 @@ void FixMPMDashpot::act(double dt, Stage stage)
     push(body, dt);
     apply(body, dt);
   }
-  duration = dt;
-  if (free_field) tell_watch_of_points();
 }
 
 /* ----------------------------------------------------------------------
-   The energy watch takes forces on points times the velocities of these. Those here have a stress besides, whose work it does not know,
-   and with aflip velocities differ from layer to layer: what the watch is to have is the work on the surface. It takes half of
-   the work of forces at the velocities before, and half at those after a step
+   The energy watch knows the work of forces on points. Those of the support have a stress besides, whose work is counted here as
+   the ledger does, at the mean of the velocities of nodes before and after the step
 ------------------------------------------------------------------------- */
 
-void FixMPMDashpot::tell_watch(Body &body, double dt)
+void FixMPMDashpot::tell_watch(const Body &body)
 {
-  Grid &grid = body.field->grid;
+  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+  MPMField &field = *body.field;
+  const MPMStencil stencil(field);
+  const auto &options = field.options;
+  const int dim = field.lattice.dim;
+  const bool mls = is_mls(options.shape, options.transfer) && !options.strains_by_gradient();
+  const double moment = mls ? shape_constants[options.shape].inv_moment / field.lattice.h : 0.0;
   double power = 0.0;
-  for (const auto &mark : body.marks) {
-    const double *const row = rows[mark.point];
-    for (int k = mark.first; k < mark.last; k++) {
-      const double *const record = grid.record(body.nodes[k].number);
-      const double share = 0.5 * row[AREA] * body.nodes[k].weight;
-      for (int d = 0; d < grid.lattice.dim; d++)
-        power += share * row[HELD + d] * (record[d] + record[4 + d]);
+  field.nodes.complete_velocities();
+  for (const auto &[i, slot] : body.stressed) {
+    double L[3][3] = {}, F[3][3], inverse[3][3], tau[6] = {}, rate = 0.0;
+    stencil.visit(field.grid.blocks[slot], i, [&](const MPMStencil::Node &node) {
+      const double *const record = field.grid.record(node.number);
+      for (int d = 0; d < dim; d++)
+        for (int e = 0; e < dim; e++)
+          L[d][e] += 0.5 * (record[d] + record[4 + d]) *
+              (mls ? -moment * node.weight * node.r[e] : node.gradient[e]);
+    });
+    if (field.frame->is_total()) {    // to the present configuration
+      field.frame->lattice_F(i, F);
+      MathExtra::invert3(F, inverse);
+      std::copy_n(L[0], 9, F[0]);
+      MathExtra::times3(F, inverse, L);
     }
+    add_stress(field, i, 1, tau);
+    for (int c = 0; c < 6; c++)
+      rate += 0.5 * (c < 3 ? 1.0 : 2.0) * tau[c] * (L[ROW[c]][COLUMN[c]] + L[COLUMN[c]][ROW[c]]);
+    power -= atom->vfrac[i] * rate;
   }
-  body.field->ledger.driven += dt * power;
-}
-
-void FixMPMDashpot::tell_watch_of_points()
-{
-  double power = 0.0;
-  for (int i = 0; i < atom->nlocal; i++)
-    power += 0.5 * rows[i][SHARE] * dot(rows[i] + HELD, atom->v[i]);
-  bodies[0].field->ledger.driven -= duration * power;
+  field.ledger.driven += field.step_dt() * power / force->nktv2p;
 }
 
 /* ----------------------------------------------------------------------
@@ -699,8 +723,6 @@ void FixMPMDashpot::post_force(int)
   });
   std::fill_n(sums + 3, NSUM - 3, 0.0);
   sums_known = false;
-  if (free_field) tell_watch_of_points();
-  duration = 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
     double *const row = rows[i];
     sums[6] += row[AREA];

@@ -71,7 +71,7 @@ class FixMPMDashpot :
   void act(double dt, Stage) override;
 
   void init_physics(MPMPlan &) override;
-  void add_stages(MPMPlan &, MPMPlan::Place) override {}
+  void add_stages(MPMPlan &, MPMPlan::Place) override;
   bool adds_stress(const MPMField &, int first, int last) const override;
   void add_stress(const MPMField &, int first, int n, double *tau) const override;
 
@@ -112,6 +112,10 @@ class FixMPMDashpot :
     std::vector<int>
         points;    // with marks, until the topology is renewed, which is when points move in memory
     std::vector<uint64_t> blocks;    // that marks reach, by their keys, sorted
+    struct Stressed {
+      int i, slot;
+    };
+    std::vector<Stressed> stressed;    // points with a stress of the support
     std::vector<Mark> marks;
     std::vector<Node> nodes;
   };
@@ -127,7 +131,6 @@ class FixMPMDashpot :
   bool sums_known = true;
   double arriving[3] = {};               // velocity of the waves that come in, in this step
   FixMPMColumn *free_field = nullptr;    // what moves at the far side, or null
-  double duration = 0.0;                 // of the step that points are in
 
   void define();
   void find_column();
@@ -142,8 +145,7 @@ class FixMPMDashpot :
   void complete_supports(double dt);
   void push(Body &, double dt);
   void apply(Body &, double dt);
-  void tell_watch(Body &, double dt);
-  void tell_watch_of_points();
+  void tell_watch(const Body &);
 };
 
 }    // namespace LAMMPS_NS

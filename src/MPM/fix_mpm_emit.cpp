@@ -278,6 +278,7 @@ void FixMPMEmit::init()
 void FixMPMEmit::setup_pre_exchange()
 {
   make_mouth();
+  note_ids();
   if (past.started != 0.0) return;
   past.started = 1.0;
   tagint mine = 0, there;
@@ -479,28 +480,52 @@ void FixMPMEmit::pre_exchange()
   if (next_reneighbor == update->ntimestep) emit();
 }
 
-void FixMPMEmit::emit()
-{
-  const auto first = (bigint) past.layers, last = layers_now();
-  const bigint ncolumn = (bigint) mouth->columns.size(), npoint = ncolumn * (last - first);
-  if (npoint <= 0) return;
+/* ----------------------------------------------------------------------
+   No point has the ID of one that was removed, as files of several steps and what looks for a point by its ID would take the two
+   for one. Where LAMMPS has no other IDs left, those of now count alone
+------------------------------------------------------------------------- */
 
+void FixMPMEmit::note_ids()
+{
+  past.newest = std::max(past.newest, (double) largest_id());
+}
+
+tagint FixMPMEmit::largest_id() const
+{
   tagint mine = 0, largest;
   for (int i = 0; i < atom->nlocal; i++) mine = std::max(mine, atom->tag[i]);
   MPI_Allreduce(&mine, &largest, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  return largest;
+}
+
+tagint FixMPMEmit::last_id(bigint npoint) const
+{
+  const tagint largest = largest_id();
+  bigint last = largest;
+  for (const auto *other : find_fixes<FixMPMEmit>(lmp))
+    last = std::max(last, (bigint) other->past.newest);
+  if (last + npoint < MAXTAGINT) return (tagint) last;
   if ((bigint) largest + npoint >= MAXTAGINT)
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/emit {}: IDs of new points exceed the maximum allowed ID {}: use reset_atoms id "
         "between two runs, or LAMMPS with 64-bit IDs (BIGBIG)",
         id, MAXTAGINT);
+  return largest;
+}
 
+void FixMPMEmit::emit()
+{
+  const auto first = (bigint) past.layers, last = layers_now();
+  const bigint ncolumn = (bigint) mouth->columns.size(), npoint = ncolumn * (last - first);
+  if (npoint <= 0) return;
+
+  tagint tag = last_id(npoint);
   begin_traffic(lmp);
   const int nlocal = atom->nlocal;
   double v[3];
   for (int d = 0; d < 3; d++) v[d] = flow[d] + drift[d];
   if (comm->nprocs > 1) comm->coord2proc_setup();
-  tagint tag = largest;
   for (bigint k = first; k < last; k++)
     for (const auto &column : mouth->columns) {
       const double along = past.travel - ((double) k + 0.5) * layer;
@@ -509,6 +534,7 @@ void FixMPMEmit::emit()
       make_point(x, v, column.area * layer, ++tag);
     }
   past.layers = (double) last;
+  for (auto *other : find_fixes<FixMPMEmit>(lmp)) other->past.newest = (double) tag;
 
   const bool runs = field && field->running;
   if (runs) MPMStages::give_initial_stress(*field, nlocal);
@@ -586,7 +612,7 @@ void FixMPMEmit::give_temperature(int i)
 void FixMPMEmit::write_restart(FILE *fp)
 {
   keep_totals(world, &past.work, 1);
-  std::vector<double> list = {past.travel, past.layers, past.started, past.work};
+  std::vector<double> list = {past.travel, past.layers, past.started, past.work, past.newest};
   list.insert(list.end(), past.shift, past.shift + 3);
   list.insert(list.end(), past.direction, past.direction + 3);
   list.insert(list.end(), past.total.reals(), past.total.reals() + MPMTraffic::NREAL);
@@ -604,9 +630,10 @@ void FixMPMEmit::restart(char *buf)
   past.layers = list[1];
   past.started = list[2];
   past.work = comm->me == 0 ? list[3] : 0.0;
-  std::copy_n(list + 4, 3, past.shift);
-  std::copy_n(list + 7, 3, past.direction);
-  std::copy_n(list + 10, MPMTraffic::NREAL, past.total.reals());
+  past.newest = list[4];
+  std::copy_n(list + 5, 3, past.shift);
+  std::copy_n(list + 8, 3, past.direction);
+  std::copy_n(list + 11, MPMTraffic::NREAL, past.total.reals());
 }
 
 /* ----------------------------------------------------------------------

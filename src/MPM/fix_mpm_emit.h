@@ -100,10 +100,11 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
     double direction[3] = {0.0, 0.0, 0.0};    // of the flow
     double layers = 0.0;                      // that have entered
     double started = 0.0;
-    double work = 0.0;    // of the mouth on the material, this rank's share [energy]
-    MPMTraffic total;     // that has entered, of all ranks
+    double work = 0.0;      // of the mouth on the material, this rank's share [energy]
+    double newest = 0.0;    // largest ID of any point so far, also of those that were removed
+    MPMTraffic total;       // that has entered, of all ranks
   } past;
-  static constexpr int NREAL = 10 + MPMTraffic::NREAL;
+  static constexpr int NREAL = 11 + MPMTraffic::NREAL;
 
   double flow[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};    // velocities of this step
   double speed = 0.0;                                    // along the flow, relative to the mouth
@@ -121,6 +122,9 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   void list_nodes();
   bigint layers_now() const;
   void emit();
+  void note_ids();
+  tagint largest_id() const;
+  tagint last_id(bigint npoint) const;
   void make_point(const double *x, const double *v, double volume, tagint tag);
   void give_temperature(int i);
 };

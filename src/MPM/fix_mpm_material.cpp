@@ -70,7 +70,8 @@ FixMPMMaterial::~FixMPMMaterial() = default;
 void FixMPMMaterial::init()
 {
   material->initialized();
-  if (material->conducts() && modify->get_fix_by_style("^mpm/heat$").empty() && comm->me == 0)
+  if (material->conducts() && modify->get_fix_by_style("^mpm/heat$").empty() &&
+      modify->get_fix_by_style("^mpm/mesh/heat$").empty() && comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/material {} has thermal conducting, but there is no fix mpm/heat, "
                    "which conducts: define one, or use thermal adiabatic",

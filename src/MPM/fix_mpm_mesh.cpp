@@ -10,6 +10,7 @@
 
 #include "fix_mpm_material.h"
 #include "fix_mpm_mesh_contact.h"
+#include "fix_mpm_mesh_heat.h"
 #include "material/batch.h"
 #include "material/material.h"
 #include "math/matrix.h"
@@ -188,6 +189,7 @@ void FixMPMMesh::init()
 
   points = MPMPoints::get(atom);
   find_contact();
+  find_heat();
   find_materials();
   const bool solid = std::any_of(materials.begin(), materials.end(), [](const auto *material) {
     return material->material->is_solid();
@@ -254,6 +256,33 @@ void FixMPMMesh::find_contact()
   after.resize(rows);
   if (musl) mapped.resize(rows);
   if (contact) contact->begin_run(*mesh);
+}
+
+void FixMPMMesh::find_heat()
+{
+  heat = nullptr;
+  for (auto *other : modify->get_fix_by_style("^mpm/mesh/heat$")) {
+    auto *mine = dynamic_cast<FixMPMMeshHeat *>(other);
+    if (mine->of_mesh() != id) continue;
+    if (heat)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/mesh/heat {} and {} are of the same fix mpm/mesh {}: give all conditions "
+                 "in one of them",
+                 heat->id, mine->id, id);
+    heat = mine;
+  }
+  if (!heat) return;
+  if (!total)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh/heat {} cannot be used with frame updated of fix mpm/mesh {}, where "
+               "groups of the mesh are not surfaces of the body: use frame total, or a lattice "
+               "with fix mpm/heat",
+               heat->id, id);
+  try {
+    heat->begin_run(*mesh);
+  } catch (const std::runtime_error &e) {
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh/heat {}: {}: {}", heat->id, file, e.what());
+  }
 }
 
 int FixMPMMesh::count_bodies() const
@@ -475,6 +504,7 @@ void FixMPMMesh::initial_integrate(int)
   forces->evaluate();
   forces->clear_sums();
   if (follows) forces->follow(counts_cell, positions, ranks);
+  if (heat) heat->conduct(bodies(), update->dt);
   points_to_nodes();
   find_velocities();
   nodes_to_points();

@@ -35,6 +35,7 @@ struct BatchKernels;
 namespace LAMMPS_NS {
 class FixMPMMaterial;
 class FixMPMMeshContact;
+class FixMPMMeshHeat;
 struct MPMMeshBodies;
 struct MPMPoints;
 
@@ -100,6 +101,7 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   // of nodes; with contact, of the nodes of each body, one after the other
 
   FixMPMMeshContact *contact = nullptr;
+  FixMPMMeshHeat *heat = nullptr;
   std::vector<char> has_node;    // on this rank
   std::vector<Node> sums;
   std::vector<MPM_NS::MeshVector> before, after, mapped;    // velocities
@@ -138,6 +140,7 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   void check_dt();
   void find_materials();
   void find_contact();
+  void find_heat();
   template <class Visit> void for_batches(const std::vector<int> &of, Visit) const;
   void load_state(const int *list, int n, const FixMPMMaterial *) const;
 };

@@ -55,12 +55,40 @@ static int turn_of(tagint tag, int bits)
 void MPMEnergyWatch::step()
 {
   if (run.steps % CHECK_EVERY == 0) check();
-  add_force_work();
+  seen.clear();
+  const int met = number_met();
+  note_points(parts[0], 0, met);
+  note_points(parts[1], met, atom->nlocal);
 }
+
+/* ----------------------------------------------------------------------
+   Work of forces in this step, at the mean of the velocities of nodes before and after it, to which these forces have led: that is the
+   way that points went, less half of what the step has changed. Points' own velocities would do where forces belong to masses, as gravity
+   does. Those of flip and aflip differ from point to point from what moves them, however, and a load on the last layers of a
+   body does no work on the difference. With the velocities before the step alone, a load of N steps would have 1/N too little work. To
+   take all points in some steps costs the same, but is wrong where a body of a few cells vibrates: its period is a few of these
+   steps. Forces that elements have added are internal
+------------------------------------------------------------------------- */
 
 void MPMEnergyWatch::moved()
 {
-  add_force_work();
+  const double half = 0.5 * fields[0]->step_dt();
+  const int dim = fields[0]->lattice.dim;
+  forces.clear();
+  for (const auto *field : fields) forces.push_back(field->rows().f);
+  const double *const places = seen.empty() ? nullptr : atom->x[0],
+                      *const velocities = seen.empty() ? nullptr : atom->v[0];
+  for (const auto &[field, i, turns, x, v] : seen) {
+    const bigint row = 3 * (bigint) i;
+    const double *const f = forces[field] + row, *const x_now = places + row,
+                        *const v_now = velocities + row;
+    double now[3] = {f[0], f[1], f[2]}, work = 0.0;
+    for (const auto *ifix : fields[field]->elements)
+      for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[row + d];
+    for (int d = 0; d < dim; d++) work += now[d] * (x_now[d] - x[d] - half * (v_now[d] - v[d]));
+    if (dim < 3) work += now[2] * half * (v_now[2] + v[2]);    // around an axis of symmetry
+    run.force_work += turns * work;
+  }
   run.steps++;
 }
 
@@ -68,18 +96,6 @@ void MPMEnergyWatch::finish()
 {
   if (run.steps >= SHORTEST) check();
   for (auto &part : parts) part.list = -1;    // commands may move atoms before the run goes on
-}
-
-/* ----------------------------------------------------------------------
-   half of the work of forces in this step: at the velocities before it, or, when points have moved, at those after it. At those
-   before it alone, a load of N steps would have 1/N too little work. To take all points in some steps costs the same, but is wrong where a body of a
-   few cells vibrates: its period is a few of these steps. Forces that elements have added are internal
-------------------------------------------------------------------------- */
-
-void MPMEnergyWatch::add_force_work()
-{
-  const int met = number_met();
-  run.force_work += 0.5 * (force_work(parts[0], 0, met) + force_work(parts[1], met, atom->nlocal));
 }
 
 /** Pair styles act on atoms in neighbor lists, which may be those of a group that is first in memory; with every, on
@@ -90,7 +106,7 @@ int MPMEnergyWatch::number_met() const
   return !force->pair ? 0 : first_met ? atom->nfirst : atom->nlocal;
 }
 
-double MPMEnergyWatch::force_work(Part &part, int begin, int end)
+void MPMEnergyWatch::note_points(Part &part, int begin, int end)
 {
   const int turns = 1 << part.bits, turn = (int) (run.steps % turns);
   const auto ahead = [&]() {
@@ -106,18 +122,13 @@ double MPMEnergyWatch::force_work(Part &part, int begin, int end)
     find_places(part);
   }
 
-  forces.clear();
-  for (const auto *field : fields) forces.push_back(field->rows().f);
-  const double *const v = end > begin ? atom->v[0] : nullptr;    // without pointers to rows
-  double power = 0.0;
+  const double *const places = end > begin ? atom->x[0] : nullptr,
+                      *const velocities = end > begin ? atom->v[0]
+                                                      : nullptr;    // without pointers to rows
   for (const auto &[field, i] : part.places[ahead()]) {
-    const double *const f = forces[field] + 3 * (bigint) i;
-    double now[3] = {f[0], f[1], f[2]};
-    for (const auto *ifix : fields[field]->elements)
-      for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[3 * (bigint) i + d];
-    power += dot(now, v + 3 * (bigint) i);
+    const double *const x = places + 3 * (bigint) i, *const v = velocities + 3 * (bigint) i;
+    seen.push_back({field, i, turns, {x[0], x[1], x[2]}, {v[0], v[1], v[2]}});
   }
-  return turns * power * fields[0]->step_dt();
 }
 
 void MPMEnergyWatch::find_places(Part &part) const

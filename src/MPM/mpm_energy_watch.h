@@ -40,7 +40,7 @@ class MPMEnergyWatch : protected Pointers {
   void start() { run = {}; }
   /** Start of a step of the cycle, where positions, velocities, and forces belong to one time. */
   void step();
-  /** In the same step: points have their new velocities, and still the forces and the places in memory of its start. */
+  /** In the same step: points have moved and have their new velocities, and still the forces and the places in memory of its start. */
   void moved();
   /** End of a run. */
   void finish();
@@ -73,6 +73,12 @@ class MPMEnergyWatch : protected Pointers {
   const std::vector<MPMField *> &fields;
   Part parts[2];
   std::vector<const double *> forces;    // [field] on points in this step
+  /** A point that this step looks at, each of so many steps, with its place and velocity before. */
+  struct Seen {
+    int field, i, turns;
+    double x[3], v[3];
+  };
+  std::vector<Seen> seen;
   struct {
     bigint steps;
     double force_work;    // of forces on points, this rank's share
@@ -84,9 +90,8 @@ class MPMEnergyWatch : protected Pointers {
     bool told;
   } run = {};
 
-  void add_force_work();
   int number_met() const;
-  double force_work(Part &, int begin, int end);
+  void note_points(Part &, int begin, int end);
   void find_places(Part &) const;
   void choose_turns(const Sums &);
   Sums sums() const;

@@ -518,8 +518,9 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
   bool wall_moves = options.time == MPMImplicitOptions::STATIC && wall_speed > 0.0;
   while (true) {
     now.residuals.push_back(now.unbalanced);
-    const double enough = std::max(
-        {options.tolerance * size, options.absolute * lmp->force->ftm2v, ROUND_OFF * stiffness});
+    const double enough =
+        std::max({options.tolerance * size, options.absolute * lmp->force->ftm2v,
+                  ROUND_OFF * stiffness, joint ? joint->negligible_forces() : 0.0});
     enough_force = enough;
     // sizes of what is left by the larger ones of forces and volumes, in parts of what may be left
     const double left = joint ? joint->excess() * enough : now.unbalanced;

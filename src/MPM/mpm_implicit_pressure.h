@@ -33,6 +33,8 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   /** What is left of forces and volumes, in parts of what may be left, the larger one. */
   double excess() const;
   double enough() const;
+  /** Sum of forces that may be left however small all forces are. */
+  double negligible_forces() const;
   /** Nodes that walls hold move first: the change of forces, and volumes that this takes. */
   void move_walls(const std::vector<double> &u, double *forces);
   /** Corrections of both, that of the motion in motion.change. */
@@ -63,8 +65,9 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   double sum = 0.0, carried = 0.0;        // of what is left, and of all volumes
   double weight = 1.0;                    // of volumes in products of vectors
   std::vector<double> p, kept, left, first, correction;    // [node]
-  std::vector<double> rhs, solution, mass, room, none;
+  std::vector<double> rhs, solution, room, none;
   std::vector<double> of_points, dp, dV;    // [n]
+  std::vector<double> softness;             // [n] of the soil, for the levels
   std::vector<double> of_ranks;
   std::vector<std::vector<double>> free_axes;    // [node][dim] motions of all that nothing resists
 

@@ -12,6 +12,7 @@
 #include "domain.h"
 #include "error.h"
 #include "group.h"
+#include "math/matrix.h"
 #include "mesh/gmsh.h"
 
 #include <cmath>
@@ -20,13 +21,23 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 MPMMeshFields::MPMMeshFields(LAMMPS *lmp, const Mesh &mesh, bool at_nodes, int type, bool by_type,
-                             bool by_group, const Names &data) :
+                             bool by_group, const std::vector<Data> &data) :
     Pointers(lmp),
-    at_nodes(at_nodes), only_type(type)
+    at_nodes(at_nodes), columns(lmp), only_type(type)
 {
   if (by_type) find_types(mesh);
   if (by_group) find_groups(mesh);
-  for (const auto &[name, quantity] : data) find_data(mesh, name, quantity);
+  std::vector<std::vector<double>> values;    // [column][node or element]
+  for (const auto &one : data) find_data(mesh, one, values);
+  for (std::size_t k = 0; !values.empty() && k < values[0].size(); k++)
+    for (const auto &column : values) rows.push_back(column[k]);
+  const int n = columns.size() ? (int) (rows.size() / columns.size()) : 0;
+  for (int k = 0; k < n; k++)
+    if (!(jacobian(k) > 0.0))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Create_points: data F of {} {} have a determinant of {:.8g}, which must be "
+                 "positive",
+                 at_nodes ? "node" : "element", k + 1, jacobian(k));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -93,74 +104,92 @@ void MPMMeshFields::find_groups(const Mesh &mesh)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMMeshFields::find_data(const Mesh &mesh, const std::string &name,
-                              const std::string &quantity)
+static constexpr char possible[] =
+    "velocity, F (9), stress (6: xx yy zz xy xz yz, or 9), mass, radius, diameter, a history "
+    "variable of a fix mpm/material, or d_name, i_name, d2_name, i2_name of fix property/atom, "
+    "which must be defined before";
+
+void MPMMeshFields::find_data(const Mesh &mesh, const Data &wanted,
+                              std::vector<std::vector<double>> &values)
 {
-  Field field = {quantity, -1, false, 0, 0, {}};
+  const MeshData *found = nullptr;
   std::string known;
   bool elsewhere = false;
   for (const auto &data : mesh.data) {
-    elsewhere = elsewhere || (data.name == name && data.at_nodes != at_nodes);
+    elsewhere = elsewhere || (data.name == wanted.name && data.at_nodes != at_nodes);
     if (data.at_nodes != at_nodes) continue;
     known += " " + data.name;
-    if (data.name != name) continue;
-    field.width = data.width;
-    field.values = data.values;
+    if (data.name == wanted.name) found = &data;
   }
-  if (field.width == 0)
+  if (!found)
     error->all(
-        FLERR, Error::NOLASTLINE, "Create_points: the file has no data {} for {}; it has{}{}", name,
-        at_nodes ? "nodes" : "elements", known.empty() ? " none" : ":" + known,
+        FLERR, Error::NOLASTLINE, "Create_points: the file has no data {} for {}; it has{}{}",
+        wanted.name, at_nodes ? "nodes" : "elements", known.empty() ? " none" : ":" + known,
         elsewhere ? fmt::format(", and data of this name for {}", at_nodes ? "elements" : "nodes")
                   : "");
-  int need = domain->dimension;
-  if (quantity != "velocity") {
-    int flag, columns;
-    const bool property =
-        quantity.size() > 2 && quantity[1] == '_' && (quantity[0] == 'd' || quantity[0] == 'i');
-    field.index = property ? atom->find_custom(&quantity[2], flag, columns) : -1;
-    if (field.index < 0 || flag != (quantity[0] == 'd'))
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Create_points: data can be for velocity, or for {} once fix property/atom has "
-                 "defined it",
-                 property ? quantity : "d_name or i_name");
-    field.is_integer = !flag;
-    field.columns = columns;
-    need = std::max(1, columns);
+
+  const int width = found->width;
+  const auto refuse = [&] {
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points: data {} have {} components and cannot be {}: data can be for {}",
+               wanted.name, width, wanted.quantity, possible);
+  };
+  using Columns = MPMPointColumns;
+  for (int c = 0; c < width; c++) {
+    const auto kind = columns.add(Columns::component_name(wanted.quantity, c, width));
+    const bool of_tensor = kind == Columns::FOLLOWS && wanted.quantity == "stress";
+    if (kind != Columns::VELOCITY && kind != Columns::DEFORMATION && kind != Columns::STRESS &&
+        kind != Columns::MASS && kind != Columns::RADIUS && kind != Columns::HISTORY &&
+        kind != Columns::PROPERTY && !of_tensor)
+      refuse();
+    const int column = columns.size() - 1;
+    if (columns.same(column) >= 0)
+      error->all(FLERR, Error::NOLASTLINE, "Create_points: {} is given twice by data",
+                 wanted.quantity);
+    std::vector<double> numbers;
+    for (std::size_t k = c; k < found->values.size(); k += width) {
+      const double value = wanted.factor * found->values[k];
+      const std::string wrong = std::isfinite(value) ? columns.wrong(column, value)
+                                                     : "is not finite";
+      if (!wrong.empty())
+        error->all(FLERR, Error::NOLASTLINE, "Create_points: data {} have {:.8g} for {}, which {}",
+                   wanted.name, value, wanted.quantity, wrong);
+      numbers.push_back(value);
+    }
+    values.push_back(numbers);
   }
-  if (quantity == "velocity" ? field.width < need : field.width != need)
-    error->all(FLERR, Error::NOLASTLINE, "Create_points: data {} have {} components, but {} has {}",
-               name, field.width, quantity, need);
-  for (const double value : field.values)
-    if (!std::isfinite(value) || (field.is_integer && value != std::floor(value)))
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Create_points: data {} have the value {}, which cannot be {}", name, value,
-                 quantity);
-  fields.push_back(field);
+  // nothing may be left over
+  MPMPointColumns more(lmp);
+  const bool all = (wanted.quantity == "velocity" && width == domain->dimension) ||
+      (wanted.quantity == "stress" && width == 6);
+  if (!all &&
+      more.add(Columns::component_name(wanted.quantity, width, width + 1)) != Columns::UNKNOWN)
+    refuse();
 }
 
 /* ---------------------------------------------------------------------- */
 
+double MPMMeshFields::jacobian(int k) const
+{
+  if (columns.find(MPMPointColumns::DEFORMATION) < 0) return 1.0;
+  double F[9];
+  for (int c = 0; c < 9; c++)
+    F[c] = rows[(std::size_t) k * columns.size() + columns.find(MPMPointColumns::DEFORMATION, c)];
+  return determinant(F);
+}
+
 void MPMMeshFields::set(int first)
 {
-  for (std::size_t n = 0; n < mine.size(); n++) {
-    const int i = first + (int) n, k = mine[n];
+  std::vector<double> some;
+  const int n = columns.size();
+  for (std::size_t p = 0; p < mine.size(); p++) {
+    const int i = first + (int) p, k = mine[p];
     if (!type.empty()) atom->type[i] = type[k];
     if (!bits.empty()) atom->mask[i] |= bits[k];
-    for (const auto &field : fields) {
-      const double *from = &field.values[(std::size_t) k * field.width];
-      for (int c = 0; c < field.width; c++) {
-        if (field.index < 0) {
-          if (c < domain->dimension) atom->v[i][c] = from[c];
-        } else if (field.is_integer)
-          (field.columns ? atom->iarray[field.index][i][c] : atom->ivector[field.index][i]) =
-              (int) from[c];
-        else
-          (field.columns ? atom->darray[field.index][i][c] : atom->dvector[field.index][i]) =
-              from[c];
-      }
-    }
+    const auto from = rows.begin() + (std::ptrdiff_t) k * n;
+    some.insert(some.end(), from, from + n);
   }
+  columns.set(first, some);
 }
 
 std::string MPMMeshFields::types() const

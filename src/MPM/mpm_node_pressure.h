@@ -43,10 +43,11 @@ class MPMNodePressure {
   /** y: left minus right side of small changes of the pressure, and, unless null, of volumes, around the values of the last
    *  residual. Collective. */
   virtual void find_changes(const double *p, const double *dV, double *y) = 0;
-  /** For a preconditioner: terms of the matrix of find_changes() without C, as symmetric ones, and masses [node] that stand for C and for
-   *  what the soil, with the moduli [n] (pressure) of its points, takes up. Collective. */
-  virtual void each_term(const Term &) = 0;
-  virtual void find_masses(const std::vector<double> &moduli, std::vector<double> &mass) = 0;
+  /** For a preconditioner: [n] the volume dV that a point of soil with these moduli [n] (pressure) takes up for a unit of the pressure in
+   *  its forces, if it cannot widen; 0 for points without a part. */
+  virtual void find_softness(const std::vector<double> &moduli, std::vector<double> &softness) = 0;
+  /** The same: terms of the matrix of find_changes() without C, as symmetric ones, for volumes that change by as much. */
+  virtual void each_term(const std::vector<double> &softness, const Term &) = 0;
   /** The values of the end of the step. */
   virtual void end_solve(const std::vector<double> &p) = 0;
 

@@ -135,6 +135,13 @@ MPMPointColumns::Kind MPMPointColumns::add(const std::string &name)
   return columns.back().kind;
 }
 
+std::string MPMPointColumns::component_name(const std::string &name, int c, int width)
+{
+  static const char *const stress[6] = {"xx", "yy", "zz", "xy", "xz", "yz"};
+  if (name == "stress" && width == 6) return name + "/" + stress[c];
+  return width == 1 ? name : name + ":" + std::to_string(c);
+}
+
 void MPMPointColumns::leave(Kind kind)
 {
   for (auto &column : columns)

@@ -50,6 +50,10 @@ class MPMPointColumns : protected Pointers {
   /** The next column of the rows. */
   Kind add(const std::string &name);
 
+  /** The name of component c of what has so many numbers for each point, as arrays of VTK have: NAME:c, and NAME for one
+   *  number; six of the stress are xx yy zz xy xz yz. */
+  static std::string component_name(const std::string &name, int c, int width);
+
   /** The column of a component, -1: there is none. */
   int find(Kind, int component = 0) const;
 

@@ -84,8 +84,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   double find_residual(const std::vector<double> &p, const double *dV, double *r) override;
   double response() const override;
   void find_changes(const double *p, const double *dV, double *y) override;
-  void each_term(const Term &) override;
-  void find_masses(const std::vector<double> &moduli, std::vector<double> &mass) override;
+  void find_softness(const std::vector<double> &moduli, std::vector<double> &softness) override;
+  void each_term(const std::vector<double> &softness, const Term &) override;
   void end_solve(const std::vector<double> &p) override { nodes.value = p; }
 
   /** Bounds of the eigenvalues of minus the rates [1/time] on this rank: by flow between points, and

@@ -104,16 +104,18 @@ void MPMPore::to_points(const std::vector<double> &p, double *of_points)
 double MPMPore::find_residual(const std::vector<double> &p, const double *dV, double *r)
 {
   const Solve &s = *solve;
-  std::vector<double> unused(MPMPoreSurface::NPART + 1, 0.0);
+  std::vector<double> inflow(MPMPoreSurface::NPART + 1, 0.0);
   for (int i = 0; i < atom->nlocal; i++) squeezed[i] = -s.biot[i] * dV[i] / s.dt;
   nodes.value = p;
-  find_rates(unused);
+  find_rates(inflow);
   field.nodes.complete(nodes.rate.data(), 1, 1);
   double taken = 0.0;
   for (std::size_t k = 0; k < p.size(); k++) {
     r[k] = s.capacity[k] * (s.start[k] + s.dt * nodes.rate[k] - p[k]);
     if (field.grid.owns((int64_t) k)) taken += s.capacity[k] * fabs(p[k] - s.start[k]);
   }
+  // all that moves may be what comes through the surface, where soil and water were at rest before
+  for (int part = 0; part < MPMPoreSurface::NPART; part++) taken += s.dt * fabs(inflow[part]);
   return taken + s.dt * s.carried;
 }
 
@@ -160,20 +162,37 @@ void MPMPore::find_changes(const double *p, const double *dV, double *y)
     y[k] = s.capacity[k] * (p[k] - s.dt * nodes.rate[k]);
 }
 
-void MPMPore::each_term(const Term &use)
+void MPMPore::find_softness(const std::vector<double> &moduli, std::vector<double> &softness)
+{
+  static constexpr double LEAST = 1.0e-3;    // of the elastic modulus, where soil flows
+  const Solve &s = *solve;
+  const double h = field.lattice.h;
+  softness.assign(atom->nmax, 0.0);
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++) {
+      const double alpha = s.biot[i], V = field.points->jacobian(i) * atom->vfrac[i];
+      if (!(s.smoothing[i] > 0.0)) continue;
+      const double elastic = SMOOTHING * alpha * alpha * h * h * V / s.smoothing[i];
+      softness[i] = V / std::max(moduli[i], LEAST * elastic);
+    }
+}
+
+void MPMPore::each_term(const std::vector<double> &softness, const Term &use)
 {
   const MPMStencil stencil(field);
   const int dim = field.lattice.dim;
   const double dt = solve->dt;
   std::vector<int64_t> list;
-  std::vector<double> gradients;
+  std::vector<double> gradients, weights;
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last && soil(run.material); i++) {
       list.clear();
       gradients.clear();
+      weights.clear();
       stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
         list.push_back(node.number);
         gradients.insert(gradients.end(), node.gradient, node.gradient + dim);
+        weights.push_back(node.weight);
       });
       double stiffness[9];
       for (int column = 0; column < dim; column++) {
@@ -183,28 +202,10 @@ void MPMPore::each_term(const Term &use)
         for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[d];
       }
       use((int) list.size(), list.data(), dim, gradients.data(), stiffness);
+      const double of_soil = solve->biot[i] * solve->biot[i] * softness[i];
+      use((int) list.size(), list.data(), 1, weights.data(), &of_soil);
     }
   if (surface.any()) surface.each_term(dt, use);
-}
-
-void MPMPore::find_masses(const std::vector<double> &moduli, std::vector<double> &mass)
-{
-  static constexpr double LEAST = 1.0e-3;    // of the elastic modulus, where soil flows
-  const Solve &s = *solve;
-  const double h = field.lattice.h;
-  nodes.add_up(
-      [&](const MPMPointMap::Run &, int first, int n, double *values) {
-        for (int p = 0; p < n; p++) {
-          const int i = first + p;
-          const double elastic = s.smoothing[i] / (SMOOTHING * h * h),    // volume over modulus
-              V = field.points->jacobian(i) * atom->vfrac[i] * s.biot[i] * s.biot[i];
-          const double M = elastic > 0.0 ? std::max(moduli[i], LEAST * V / elastic) : 1.0;
-          values[p] = elastic > 0.0 ? V / M : 0.0;
-        }
-      },
-      mass);
-  field.nodes.complete(mass.data(), 1, 1);
-  for (std::size_t k = 0; k < mass.size(); k++) mass[k] += s.capacity[k];
 }
 
 /* ----------------------------------------------------------------------

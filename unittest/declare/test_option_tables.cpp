@@ -32,6 +32,7 @@
 #include "fix_mpm_incompressible.h"
 #include "fix_mpm_mesh.h"
 #include "fix_mpm_mesh_contact.h"
+#include "fix_mpm_mesh_heat.h"
 #include "fix_mpm_mixture.h"
 #include "fix_mpm_pore.h"
 #include "fix_mpm_relax.h"
@@ -75,6 +76,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_incompressible", MPMIncompressibleOptions().declare(3));
   add("fix_mpm_mesh", MPMMeshOptions().declare(3));
   add("fix_mpm_mesh_contact", MPMMeshContactOptions().declare());
+  add("fix_mpm_mesh_heat", MPMMeshHeatOptions().declare());
   add("fix_mpm_mixture", MPMMixtureOptions().declare());
   add("fix_mpm_pore", MPMPoreOptions().declare(3));
   add("fix_mpm_implicit", MPMImplicitOptions().declare());

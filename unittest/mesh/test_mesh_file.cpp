@@ -145,6 +145,58 @@ TEST(MeshFile, DataBecomeFields)
   }
 }
 
+// a cell of a mesh has what a row of a table has, and all ranks know it
+TEST(MeshFile, DataAreThoseOfTables)
+{
+  const std::string cells =
+      "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n"
+      "0 0 0 1 0 0 2 0 0 0 1 0 1 1 0 2 1 0\nCELLS 2 10\n4 0 1 4 3\n4 1 2 5 4\nCELL_TYPES 2\n9\n9\n"
+      "CELL_DATA 2\nFIELD all 7\nJ 9 2 double\n1.25 0.5 0 0 1 0 0 0 1 2 0 0 0 1 0 0 0 1\n"
+      "sigma 6 2 double\n1 2 3 4 0 0 -1 -2 -3 -4 0 0\n"
+      "tensor 9 2 double\n1 4 0 4 2 0 0 0 3 -1 -4 0 -4 -2 0 0 0 -3\n"
+      "ep 1 2 double\n0.125 0.5\nu 2 2 double\n1 2 3 4\nw 3 2 double\n1 2 3 4 5 6\nm 1 2 double\n3 "
+      "5\n";
+  const std::string table =
+      "x,y,volume,F:0,F:1,F:2,F:3,F:4,F:5,F:6,F:7,F:8,stress/xx,stress/yy,stress/zz,stress/xy,"
+      "stress/xz,stress/yz,eplastic,vx,vy,d2_w:0,d2_w:1,d2_w:2,mass\n"
+      "0.5,0.5,1,1.25,0.5,0,0,1,0,0,0,1,1,2,3,4,0,0,0.125,2,4,1,2,3,3\n"
+      "1.5,0.5,1,2,0,0,0,1,0,0,0,1,-1,-2,-3,-4,0,0,0.5,6,8,4,5,6,5\n";
+  const ScratchFile file("cells.vtk", cells), rows("cells.csv", table);
+  const std::string scene = plane("si", "f f", "-1 3 -1 2", 1, 0.1) +
+      "fix grid all mpm 0.5\nfix m all mpm/material density 1 eos linear 1e6 strength j2 4e5 5e3\n"
+      "fix p all property/atom d2_w 3\n";
+  const std::string sums = R"(
+compute w all property/atom d2_w[1] d2_w[2] d2_w[3]
+compute e all mpm/atom eplastic
+variable ew atom c_e*(c_w[1]+10*c_w[2]+100*c_w[3])
+compute s all reduce sum v_ew
+thermo_style custom step c_s
+run 0
+)";
+  Scene from_table(scene + "create_points 1 table " + rows.name + sums);
+  for (const std::string stress : {"sigma", "tensor"}) {
+    Scene from_mesh(scene + "create_points 1 elements " + file.name +
+                    " data J F data ep eplastic data u velocity factor u 2 data w d2_w data m mass"
+                    " data " +
+                    stress + " stress" + sums);
+    EXPECT_TRUE(identical(from_mesh.gather(), from_table.gather())) << stress;
+    EXPECT_EQ(from_mesh.evaluate("c_s"), 0.125 * 321 + 0.5 * 654);
+  }
+  for (const Mistake &m : std::vector<Mistake>{{"data ep strain", "cannot be strain"},
+                                               {"data ep volume", "cannot be volume"},
+                                               {"data ep velocity", "have 1 components"},
+                                               {"data u stress", "cannot be stress"},
+                                               {"data u d2_w", "cannot be d2_w"},
+                                               {"data w d2_w data w d2_w", "given twice"},
+                                               {"data w velocity", "must be 0 in a 2d simulation"},
+                                               {"data ep mass factor ep -1", "must be positive"},
+                                               {"data w d2_w factor ep 2", "no keyword data takes"},
+                                               {"data tensor F factor tensor -1", "determinant"}})
+    expect_error(scene + "create_points 1 elements " + file.name + " " + m.lines, m.message);
+  const ScratchFile nan("nan.vtk", replaced(cells, "0.125 0.5", "nan 0.5"));
+  expect_error(scene + "create_points 1 elements " + nan.name + " data ep eplastic", "finite");
+}
+
 SERIAL_TEST(MeshFile, RefusesMistakes)
 {
   for (const bool old : {true, false}) {

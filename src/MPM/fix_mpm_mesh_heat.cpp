@@ -1,0 +1,400 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The equations are those of fix mpm/heat with the transfer relax (mpm_conduction.cpp), with the functions of the cells in place of those
+   of a lattice. In the total frame points stay in their cells, so that no node has next to no capacity, and flow goes by
+
+     C_i dT_i/dt = - sum_p V_p (F^-1 k F^-T sum_j T_j grad N_jp) . grad N_ip + sides,
+
+   with gradients in the reference configuration and the present volume V_p. Nodes are on the boundary: their temperatures are those that groups
+   prescribe, and the heat for it is what comes through the group. That of sides is lumped at their nodes, as capacities are. A step is
+   made of stages, so many that the rate of no node times their duration is above one: the rows of the matrix bound its eigenvalues.
+------------------------------------------------------------------------- */
+
+#include "fix_mpm_mesh_heat.h"
+
+#include "fix_mpm_material.h"
+#include "fix_mpm_mesh.h"
+#include "fix_mpm_mesh_contact.h"
+#include "math/matrix.h"
+#include "mpm_conduction.h"
+#include "mpm_mesh_ranks.h"
+#include "mpm_options.h"
+#include "mpm_physics.h"
+#include "mpm_points.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int MOST_STAGES = 100;    // of a step
+
+static constexpr int WIDTH =
+    3;    // sums at nodes: capacity, that times temperature, row of the matrix
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/mesh/heat MESH keyword values ...
+------------------------------------------------------------------------- */
+
+Options MPMMeshHeatOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/mesh/heat");
+  const auto condition = [&](const std::string &keyword, MPMMeshHeatCondition::Kind kind,
+                             const std::string &names, const std::string &unit,
+                             const std::string &meaning, int n) {
+    o.add(keyword,
+          {text(next.group, "name", meaning),
+           variables(next.value, n, names, unit, n > 1 ? "can be variables" : "can be a variable")})
+        .then([this, kind] {
+          next.kind = kind;
+          conditions.push_back(next);
+          next = {};
+        })
+        .standard("none");
+  };
+  condition("temperature", MPMMeshHeatCondition::TEMPERATURE, "T", "temperature",
+            "nodes of a physical group or set have this temperature", 1);
+  condition("flux", MPMMeshHeatCondition::FLUX, "q", "energy/(time area)",
+            "heat that flows into the body through these sides", 1);
+  condition("convection", MPMMeshHeatCondition::CONVECTION, "H T",
+            "energy/(time area temperature), temperature",
+            "heat H times the difference to the temperature T outside flows through these sides",
+            2);
+  return o;
+}
+
+FixMPMMeshHeat::FixMPMMeshHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
+{
+  if (igroup != 0)
+    error->all(
+        FLERR, 1,
+        "Fix mpm/mesh/heat acts on all points of a fix mpm/mesh whose material conducts: use "
+        "group all");
+  if (narg < 4) error->all(FLERR, narg - 1, "Fix mpm/mesh/heat needs the ID of a fix mpm/mesh");
+  mesh_id = arg[3];
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 4);
+  heat.assign(conditions.size(), 0.0);
+  power = heat;
+  present.assign(2 * conditions.size(), 0.0);
+  scalar_flag = 1;
+  vector_flag = !conditions.empty();
+  size_vector = 2 * (int) conditions.size();
+  global_freq = 1;
+  extscalar = extvector = 1;
+  restart_global = 1;
+  dynamic_group_allow = 0;
+  state.declare(gradients, "mpm/mesh/heat:gradient", 3);
+  keep_arrays();
+}
+
+void FixMPMMeshHeat::init()
+{
+  const auto *mesh = modify->get_fix_by_id(mesh_id);
+  if (!mesh || !dynamic_cast<const FixMPMMesh *>(mesh))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh/heat {}: {} is not the ID of a fix mpm/mesh; for bodies on lattices "
+               "use fix mpm/heat",
+               id, mesh_id);
+  for (auto &c : conditions)
+    for (auto &value : c.value) find_variable(lmp, value, fmt::format("fix mpm/mesh/heat {}", id));
+}
+
+void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
+{
+  points = MPMPoints::get(atom);
+  thermals.clear();
+  relaxed = std::numeric_limits<double>::max();
+  double least = std::numeric_limits<double>::max(), greatest = 0.0;    // capacity for each volume
+  for (const auto *fix : find_fixes<FixMPMMaterial>(lmp)) {
+    const auto &material = *fix->material;
+    if (!material.conducts()) continue;
+    const Conduction c = material.conduction(nullptr);
+    thermals.push_back({fix, fix->find_history("temperature"), fix->find_history("molten"),
+                        material.conduction_varies(), c});
+    const double volumetric = material.density() * c.capacity;
+    const double slowest = c.orthotropic
+        ? std::min(c.conductivity, std::min(c.across[0], c.across[1]))
+        : c.conductivity;
+    relaxed = std::min(relaxed, slowest / volumetric);
+    least = std::min(least, volumetric);
+    greatest = std::max(greatest, volumetric);
+  }
+  if (thermals.empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh/heat {}: no fix mpm/material has a part thermal conducting", id);
+  relaxed *= least / greatest;    // see the top of mpm_conduction.cpp
+  largest = 0.0;
+  for (const auto &cell : mesh.cells) largest = std::max(largest, cell.height);
+
+  of_nodes.clear();
+  held.assign(mesh.nodes.size(), 0);
+  for (std::size_t c = 0; c < conditions.size(); c++) {
+    const auto &given = conditions[c];
+    const int condition = (int) c;
+    if (given.kind == MPMMeshHeatCondition::TEMPERATURE) {
+      for (const int node : mesh.nodes_of(given.group)) {
+        of_nodes.push_back({node, condition, 0.0});
+        held[node] = 1;
+      }
+      continue;
+    }
+    std::vector<double> area(mesh.nodes.size(), 0.0);
+    for (const auto &face : mesh.faces_of(given.group)) {
+      double normal[3], share[4];
+      mesh.area(face, mesh.nodes, normal, share);
+      const double size = std::sqrt(dot(normal, normal));
+      for (int k = 0; k < face.nnode; k++) area[face.node[k]] += share[k] * size;
+    }
+    for (std::size_t node = 0; node < area.size(); node++)
+      if (area[node] > 0.0) of_nodes.push_back({(int) node, condition, area[node]});
+  }
+  const std::size_t n = mesh.nodes.size();
+  for (auto *values : {&capacity, &value, &before, &rate}) values->assign(n, 0.0);
+  sums.assign(WIDTH * n, 0.0);
+}
+
+const FixMPMMeshHeat::Thermal *FixMPMMeshHeat::thermal(int i) const
+{
+  for (const auto &t : thermals)
+    if (atom->mask[i] & t.fix->groupbit) return &t;
+  return nullptr;
+}
+
+/* ----------------------------------------------------------------------
+   a step
+------------------------------------------------------------------------- */
+
+void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
+{
+  const bool varies = std::any_of(conditions.begin(), conditions.end(), [](const auto &c) {
+    return !c.value[0].variable.empty() || !c.value[1].variable.empty();
+  });
+  evaluate_in_step(lmp, varies, [this] {
+    for (std::size_t c = 0; c < conditions.size(); c++)
+      for (int k = 0; k < 2; k++)
+        if (conditions[c].value[k].given)
+          present[2 * c + k] = LAMMPS_NS::evaluate(lmp, conditions[c].value[k]);
+  });
+  std::fill(power.begin(), power.end(), 0.0);
+  find_points(of);
+  double fastest = fill_nodes(of), mine = fastest;
+  MPI_Allreduce(&mine, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double stages = std::max(1.0, std::ceil(dt * fastest));
+  if (!(stages <= MOST_STAGES))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh/heat {}: heat crosses the smallest cells in {:.3g}, too fast for "
+               "{} stages in the time step {:.3g}: use a smaller time step, or larger cells",
+               id, 1.0 / fastest, MOST_STAGES, dt);
+  hold(of);
+  for (int k = 0; k < (int) stages; k++) advance(of, dt / stages);
+  take(of, dt);
+  for (std::size_t c = 0; c < heat.size(); c++) {
+    heat[c] += power[c];
+    power[c] /= dt;
+  }
+}
+
+/** Points that conduct, with V F^-1 k F^-T. */
+void FixMPMMeshHeat::find_points(const MPMMeshBodies &of)
+{
+  conducting.clear();
+  for (const int i : of.points) {
+    const Thermal *const t = thermal(i);
+    if (!t) continue;
+    const Conduction c = t->varies ? t->fix->material->conduction(t->fix->history[i]) : t->all;
+    const double *const F = points->F[i], cofactors[9] = MPM_COFACTORS(F), J = dot(F, cofactors);
+    double along[3], n[3][3];
+    principal_conductivities(c, F, along, n);
+    Point p = {i, t, atom->rmass[i] * c.capacity, {}};
+    for (int a = 0; a < 3;
+         a++) {    // a principal axis, in the reference configuration: the inverse is cof^T/J
+      double N[3] = {0.0, 0.0, 0.0};
+      for (int d = 0; d < 3; d++)
+        for (int e = 0; e < 3; e++) N[d] += cofactors[3 * e + d] / J * n[a][e];
+      for (int d = 0; d < 3; d++)
+        for (int e = 0; e < 3; e++) p.k[3 * d + e] += atom->vfrac[i] * J * along[a] * N[d] * N[e];
+    }
+    conducting.push_back(p);
+  }
+}
+
+/** Capacities and temperatures of nodes; returns the greatest rate of those of this rank. */
+double FixMPMMeshHeat::fill_nodes(const MPMMeshBodies &of)
+{
+  for (const int node : of.ranks.nodes) std::fill_n(&sums[WIDTH * (std::size_t) node], WIDTH, 0.0);
+  for (const auto &p : conducting) {
+    const auto &place = of.places[p.i];
+    const auto &cell = of.mesh.cells[place.cell];
+    const double *const slope = gradients[p.i],
+                        T = p.thermal->fix->history[p.i][p.thermal->temperature];
+    double x[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < cell.nnode; k++)
+      for (int d = 0; d < 3; d++) x[d] += place.N[k] * of.mesh.nodes[cell.node[k]][d];
+    for (int k = 0; k < cell.nnode; k++) {
+      double here = T, row = 0.0;
+      for (int d = 0; d < 3; d++) here += slope[d] * (of.mesh.nodes[cell.node[k]][d] - x[d]);
+      for (int j = 0; j < cell.nnode; j++) {
+        double product = 0.0;
+        for (int d = 0; d < 3; d++)
+          for (int e = 0; e < 3; e++) product += place.g[k][d] * p.k[3 * d + e] * place.g[j][e];
+        row += std::fabs(product);
+      }
+      double *const to = &sums[WIDTH * (std::size_t) cell.node[k]];
+      to[0] += p.capacity * place.N[k];
+      to[1] += p.capacity * place.N[k] * here;
+      to[2] += row;
+    }
+  }
+  of.ranks.sum(sums.data(), WIDTH);
+  for (const auto &mine : of_nodes)
+    if (conditions[mine.condition].kind == MPMMeshHeatCondition::CONVECTION)
+      sums[WIDTH * (std::size_t) mine.node + 2] += mine.area * present[2 * mine.condition];
+  double fastest = 0.0;
+  for (const int node : of.ranks.nodes) {
+    const double *const sum = &sums[WIDTH * (std::size_t) node];
+    capacity[node] = sum[0];
+    value[node] = before[node] = sum[0] > 0.0 ? sum[1] / sum[0] : 0.0;
+    if (sum[0] > 0.0 && !held[node]) fastest = std::max(fastest, sum[2] / sum[0]);
+  }
+  return fastest;
+}
+
+/** Nodes take the temperatures that are prescribed, the last one in the input where groups meet. */
+void FixMPMMeshHeat::hold(const MPMMeshBodies &of)
+{
+  for (const auto &mine : of_nodes) {
+    if (conditions[mine.condition].kind != MPMMeshHeatCondition::TEMPERATURE) continue;
+    if (!(capacity[mine.node] > 0.0)) continue;
+    const double T = present[2 * mine.condition];
+    if (of.ranks.first[mine.node])
+      power[mine.condition] += capacity[mine.node] * (T - value[mine.node]);
+    value[mine.node] = T;
+  }
+}
+
+/** A stage. Heat that a node would get whose temperature is prescribed leaves through the group that does so. */
+void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
+{
+  for (const int node : of.ranks.nodes) rate[node] = 0.0;
+  for (const auto &p : conducting) {
+    const auto &place = of.places[p.i];
+    const auto &cell = of.mesh.cells[place.cell];
+    double slope[3] = {0.0, 0.0, 0.0}, flow[3];
+    for (int k = 0; k < cell.nnode; k++)
+      for (int d = 0; d < 3; d++) slope[d] += value[cell.node[k]] * place.g[k][d];
+    for (int d = 0; d < 3; d++) flow[d] = dot(p.k + 3 * d, slope);
+    for (int k = 0; k < cell.nnode; k++) rate[cell.node[k]] -= dot(place.g[k], flow);
+  }
+  of.ranks.sum(rate.data(), 1);
+  for (const auto &mine : of_nodes) {
+    const auto kind = conditions[mine.condition].kind;
+    if (kind == MPMMeshHeatCondition::TEMPERATURE || !(capacity[mine.node] > 0.0)) continue;
+    const double *const given = &present[2 * mine.condition];
+    const double flow = mine.area *
+        (kind == MPMMeshHeatCondition::FLUX ? given[0] : given[0] * (given[1] - value[mine.node]));
+    rate[mine.node] += flow;
+    if (of.ranks.first[mine.node]) power[mine.condition] += dt * flow;
+  }
+  for (auto mine = of_nodes.rbegin(); mine != of_nodes.rend(); ++mine) {
+    if (conditions[mine->condition].kind != MPMMeshHeatCondition::TEMPERATURE) continue;
+    if (!(capacity[mine->node] > 0.0)) continue;
+    if (of.ranks.first[mine->node]) power[mine->condition] -= dt * rate[mine->node];
+    rate[mine->node] = 0.0;
+  }
+  for (const int node : of.ranks.nodes)
+    if (capacity[node] > 0.0) value[node] += dt * rate[node] / capacity[node];
+}
+
+/** Temperatures of points. */
+void FixMPMMeshHeat::take(const MPMMeshBodies &of, double dt)
+{
+  const double keep = std::exp(-dt * relaxed / (largest * largest));
+  for (const auto &p : conducting) {
+    const auto &place = of.places[p.i];
+    const auto &cell = of.mesh.cells[place.cell];
+    double *const history = p.thermal->fix->history[p.i], &T = history[p.thermal->temperature];
+    double *const slope = gradients[p.i], now = keep * T;
+    std::fill_n(slope, 3, 0.0);
+    for (int k = 0; k < cell.nnode; k++) {
+      const int node = cell.node[k];
+      now += place.N[k] * (value[node] - keep * before[node]);
+      for (int d = 0; d < 3; d++) slope[d] += value[node] * place.g[k][d];
+    }
+    const double more = p.capacity * (now - T);
+    got += more;
+    const Conduction c = p.thermal->varies ? p.thermal->fix->material->conduction(history)
+                                           : p.thermal->all;
+    if (c.by_enthalpy) {
+      p.thermal->fix->material->warm(history, more / atom->rmass[p.i]);
+    } else {
+      T = now;
+      if (p.thermal->molten >= 0) c.melting.settle(T, history[p.thermal->molten]);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   scalar: heat that points have taken so far; vector: for each condition its power in the last step, and heat so far
+------------------------------------------------------------------------- */
+
+double FixMPMMeshHeat::compute_scalar()
+{
+  double all;
+  MPI_Allreduce(&got, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMPMMeshHeat::compute_vector(int k)
+{
+  double all;
+  MPI_Allreduce(k % 2 ? &heat[k / 2] : &power[k / 2], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMPMMeshHeat::memory_usage()
+{
+  return FixMPMState::memory_usage() + (double) conducting.capacity() * sizeof(Point) +
+      (double) (of_nodes.capacity() * sizeof(OfNode) +
+                (capacity.capacity() + value.capacity() + before.capacity() + rate.capacity() +
+                 sums.capacity()) *
+                    sizeof(double));
+}
+
+void FixMPMMeshHeat::write_restart(FILE *fp)
+{
+  std::vector<double> totals = {comm->me == 0 ? (double) heat.size() : 0.0, got};
+  totals.insert(totals.end(), heat.begin(), heat.end());
+  write_totals(fp, world, totals);
+  got = totals[1];
+  std::copy(totals.begin() + 2, totals.end(), heat.begin());
+}
+
+void FixMPMMeshHeat::restart(char *buf)
+{
+  const auto *const list = (const double *) buf;
+  if ((std::size_t) list[0] != heat.size())
+    error->all(FLERR, Error::NOPOINTER,
+               "Fix mpm/mesh/heat {} had another number of conditions when the restart file was "
+               "written: give as many, or give the fix another ID to begin anew",
+               id);
+  if (comm->me) return;
+  got = list[1];
+  std::copy_n(list + 2, heat.size(), heat.begin());
+}

@@ -1,0 +1,116 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/mesh/heat,FixMPMMeshHeat);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_MESH_HEAT_H
+#define LMP_FIX_MPM_MESH_HEAT_H
+
+#include "declare/option.h"
+#include "material/material.h"
+#include "mesh/background_mesh.h"
+#include "mpm_state.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPMMaterial;
+struct MPMMeshBodies;
+struct MPMPoints;
+
+/** What a physical group of a mesh does to the heat of its nodes. */
+struct MPMMeshHeatCondition {
+  enum Kind {
+    TEMPERATURE,    ///< its nodes have this temperature
+    FLUX,           ///< power per area of its sides, into the body
+    CONVECTION      ///< coefficient, and temperature of what is outside
+  } kind = TEMPERATURE;
+  std::string group;
+  MPM_NS::NumberOrVariable value[2];
+};
+
+struct MPMMeshHeatOptions {
+  std::vector<MPMMeshHeatCondition> conditions;
+
+  MPM_NS::Options declare();
+
+ private:
+  MPMMeshHeatCondition next;
+};
+
+/** Conduction of heat between points on a mesh (fix mpm/mesh, frame total), with temperatures and heat at its physical groups. */
+class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
+ public:
+  FixMPMMeshHeat(class LAMMPS *, int, char **);
+  int setmask() override { return 0; }    // called by fix mpm/mesh
+  void init() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  /** ID of its fix mpm/mesh. */
+  const std::string &of_mesh() const { return mesh_id; }
+  /** Start of a run. Throws std::runtime_error when there is no such group in the mesh. */
+  void begin_run(const MPM_NS::BackgroundMesh &);
+  /** Conduct heat for a time step. Collective. */
+  void conduct(const MPMMeshBodies &, double dt);
+
+ private:
+  /** A material that conducts, and where its points have their temperature. */
+  struct Thermal {
+    const FixMPMMaterial *fix;
+    int temperature, molten;    // columns of history
+    bool varies;
+    MPM_NS::Conduction all;    // or the mean
+  };
+  struct Point {
+    int i;
+    const Thermal *thermal;
+    double capacity;
+    double k
+        [9];    // conductivity for gradients in the reference configuration, times the volume, row-major
+  };
+  /** Of a condition at a node. */
+  struct OfNode {
+    int node, condition;
+    double area;
+  };
+
+  std::string mesh_id;
+  MPMRows gradients;    // [n][3] of the temperature at points, in the reference configuration
+  MPMPoints *points = nullptr;
+  std::vector<Thermal> thermals;
+  std::vector<OfNode> of_nodes;
+  double largest = 0.0;    // height of a cell
+  double relaxed = 0.0;    // diffusivity at which points take the temperature of the nodes
+  std::vector<Point> conducting;
+  std::vector<double> capacity, value, before, rate, sums;    // of nodes
+  std::vector<char> held;         // [node] has it a temperature that is prescribed?
+  std::vector<double> present;    // [condition][2] values of this step
+  double got = 0.0;               // heat that points have taken so far, this rank's share
+  std::vector<double> heat;       // [condition] that came through it so far, this rank's share
+  std::vector<double> power;      // [condition] in the last step
+
+  const Thermal *thermal(int i) const;
+  void find_points(const MPMMeshBodies &);
+  double fill_nodes(const MPMMeshBodies &);
+  void hold(const MPMMeshBodies &);
+  void advance(const MPMMeshBodies &, double dt);
+  void take(const MPMMeshBodies &, double dt);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif
