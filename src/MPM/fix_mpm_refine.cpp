@@ -115,7 +115,6 @@ void FixMPMRefine::check(MPMField &coarse, MPMField &fine) const
           "its lattices would part: use frame total without, or frame updated"},
          {o.modified_edges, "edges modified", "use edges plain"},
          {o.smooths_volumes(), "smooth", "leave it out"},
-         {o.axisymmetric, "axisymmetric", "use a plane or 3d"},
          {o.has_light_nodes(), "light", "leave it out"}});
   }
   const auto &of = fine.options;
