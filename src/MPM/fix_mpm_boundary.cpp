@@ -58,6 +58,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_elements.h"
 #include "force.h"
 #include "math_extra.h"
 #include "math_special.h"
@@ -237,9 +238,29 @@ bool FixMPMBoundary::region_moves() const
   return region && region->dynamic_check();
 }
 
-bool FixMPMBoundary::acts_across() const
+/* ----------------------------------------------------------------------
+   Nodes inside hold points of a body that lies in front of the surface by the tails of their functions, and
+   by its other points. A node of an element can be in the surface itself, and alone in its cells: then nodes outside, which
+   see an eighth of it, let it creep into the wall until its elements have no stress. Lines hold it where it is
+------------------------------------------------------------------------- */
+
+bool FixMPMBoundary::acts_across(const MPMField &field) const
 {
-  return !region->varshape && decides();
+  if (region->varshape) return false;
+  return decides() ||
+      (kind == SLIP && !region_moves() &&
+       std::count(of_elements.begin(), of_elements.end(), &field));
+}
+
+/** Collective. */
+void FixMPMBoundary::find_fields_of_elements()
+{
+  of_elements.clear();
+  for (const auto *fix : modify->get_fix_by_style("^mpm/elements$")) {
+    const char *const name = dynamic_cast<const FixMPMElements *>(fix)->field_of_nodes();
+    for (const auto &list : nodes)
+      if (name && strcmp(list.field->id(), name) == 0) of_elements.push_back(list.field);
+  }
 }
 
 bool FixMPMBoundary::acts_on(const MPMField &field) const
@@ -299,6 +320,7 @@ void FixMPMBoundary::init()
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
                field_id);
 
+  find_fields_of_elements();
   for (auto &v : velocity) find_variable(lmp, v, "fix mpm/boundary velocity");
   find_variable(lmp, rate, "fix mpm/boundary rotate");
 
@@ -469,7 +491,7 @@ bool FixMPMBoundary::looks_at_all(const MPMField &field, const Grid::Block &bloc
 
 void FixMPMBoundary::extend_across(MPMField &field) const
 {
-  const bool known = !region_moves() && region->nregion == 1, across = acts_across();
+  const bool known = !region_moves() && region->nregion == 1, across = acts_across(field);
   if (comm->nprocs == 1 || !(across || known)) return;
   Grid &grid = field.grid;
   const int dim = field.lattice.dim;
@@ -683,7 +705,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
-  const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
+  const bool moves = region_moves(), hands_over = moves && kind != SEPARATE,
+             across = acts_across(field);
   const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
   const bool looks = across ||
       (!too_thin.told() && !region->varshape && (!moves || looks_at_width()));
@@ -1196,8 +1219,9 @@ void FixMPMBoundary::update_motion(double dt)
           s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
         }
     for (int k = 0; k < 4; k++) old[k] = *motion[k];
-    if (kind == SLIP && acts_across())
-      for (auto &list : nodes) take_off_lines(list);
+    if (kind == SLIP)
+      for (auto &list : nodes)
+        if (acts_across(*list.field)) take_off_lines(list);
   }
   if (!past.acted) MathExtra::copy3(wall.shift, wall.before);
   MathExtra::copy3(wall.shift, past.shift);

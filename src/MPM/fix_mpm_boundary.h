@@ -253,8 +253,9 @@ class FixMPMBoundary :
   Region *region = nullptr;
   std::unique_ptr<MPMRegionSurface> surface;    // its surface
 
-  std::vector<FieldNodes> nodes;    // of the fields to act on
-  Wall wall = {};                   // in this step
+  std::vector<FieldNodes> nodes;                // of the fields to act on
+  std::vector<const MPMField *> of_elements;    // of these, which have nodes of fix mpm/elements
+  Wall wall = {};                               // in this step
   Past past = {};
   bigint motion_step = -1;    // step for which the motion of the wall is known
   double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
@@ -327,9 +328,10 @@ class FixMPMBoundary :
 
   bool region_moves() const;
   /** Does a region act on lines of nodes through its surface? Else on nodes inside, one by one. */
-  bool acts_across() const;
+  bool acts_across(const MPMField &) const;
+  void find_fields_of_elements();
   bool is_foreseen() const;
-  bool holds(const Single &, int d) const;
+  bool holds(const double *normal, int d) const;
   bool acts_on(const MPMField &) const;
   Faces faces_on_lattice(const MPMField &) const;
   static bool faces_are_near(const Faces &, int axis);

@@ -23,9 +23,9 @@ bool FixMPMBoundary::is_foreseen() const
   return !decides() && !region_moves();
 }
 
-bool FixMPMBoundary::holds(const Single &single, int d) const
+bool FixMPMBoundary::holds(const double *normal, int d) const
 {
-  return kind == STICK ? velocity[d].given : std::fabs(single.normal[d]) == 1.0;
+  return kind == STICK ? velocity[d].given : std::fabs(normal[d]) == 1.0;
 }
 
 /* ----------------------------------------------------------------------
@@ -54,7 +54,11 @@ void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) c
       }
     for (const auto &single : list.singles)
       for (int d = 0; d < dim; d++)
-        if (holds(single, d)) held[single.node] |= 1 << d;
+        if (holds(single.normal, d)) held[single.node] |= 1 << d;
+    for (const auto &c : list.crossings)
+      for (int k = 0; k < c.inside; k++)
+        for (int d = 0; d < dim && c.node[k] >= 0; d++)
+          if (holds(c.normal, d)) held[c.node[k]] |= 1 << d;
   }
 }
 
@@ -113,6 +117,10 @@ void FixMPMBoundary::foresee(MPMField &field, const std::vector<char> &near, For
     }
     for (const auto &single : list.singles)
       for (int d = 0; d < dim; d++)
-        if (holds(single, d)) hold(single.node, d);
+        if (holds(single.normal, d)) hold(single.node, d);
+    for (const auto &c : list.crossings)
+      for (int k = 0; k < c.inside; k++)
+        for (int d = 0; d < dim && c.node[k] >= 0; d++)
+          if (holds(c.normal, d)) hold(c.node[k], d);
   }
 }

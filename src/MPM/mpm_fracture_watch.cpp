@@ -16,6 +16,7 @@
 #include "force.h"
 #include "material/material.h"
 #include "math/matrix.h"
+#include "modify.h"
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_point_batches.h"
@@ -59,6 +60,9 @@ void MPMFractureWatch::look()
     int rank;
   } mine = {0.0, comm->me}, widest;
   double point[4] = {0.0};    // ID, position
+  int of_elements =
+      0;    // their nodes hold together by elements, wherever nodes of the lattice are
+  for (const auto *fix : modify->get_fix_by_style("^mpm/elements$")) of_elements |= fix->groupbit;
   visit_point_batches(
       lmp, field.fix.groupbit,
       [&](const Batch &b, const int *list, const FixMPMMaterial &material) {
@@ -66,6 +70,7 @@ void MPMFractureWatch::look()
         double c[BATCH];
         bool known = false;
         for (int p = 0; p < b.n; p++) {
+          if (atom->mask[list[p]] & of_elements) continue;
           const double edge = 2.0 * half_size(field, list[p]);
           for (int k = 0; k < field.lattice.dim; k++) {
             const double a[3] = {b.F[k][p], b.F[3 + k][p], b.F[6 + k][p]}, square = dot(a, a);

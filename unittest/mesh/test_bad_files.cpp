@@ -2,7 +2,7 @@
 // version 2; see the file LICENSE.
 
 // labels: unit input
-// timeout: 240
+// timeout: 300
 
 // Files of bodies that are cut, changed, or nonsense, in all formats: each is read, or is an error that begins with the
 // name of the file; nothing crashes or takes long. Builds with MPM_SANITIZE see each access beyond the end.
@@ -17,6 +17,7 @@
 #include "mesh/surface_mesh.h"
 #include "table/table.h"
 
+#include <limits>
 #include <new>
 
 using namespace MPM_TEST;
@@ -188,6 +189,186 @@ TEST_P(BadFiles, Changed)
     said(GetParam(), bad);
   }
   allow_seconds(0);
+}
+
+// ---------------------------------------------------------------- errors of LAMMPS
+
+/** A file with one defect, the command that reads it (FILE is its name), and what LAMMPS says. */
+struct Defect {
+  std::string name, file, text, command, error;
+  friend void PrintTo(const Defect &defect, std::ostream *out) { *out << defect.name; }
+};
+
+const std::string surface = "region r mpm/mesh FILE 1.0 0 0 0", leaky = surface + " surface leaky",
+                  elements = "create_points 1 elements FILE",
+                  rows = "create_points 1 table FILE volume 1",
+                  pixels = "create_points 1 image FILE pixel 0.1 threshold 100";
+
+std::string with(std::string text, const std::string &from, const std::string &to)
+{
+  const auto at = text.find(from);
+  return at == std::string::npos ? "no '" + from + "'" : text.replace(at, from.size(), to);
+}
+
+/** Bytes of this number are those of another one. */
+std::string with_bytes(const std::string &text, double from, double to, bool big = false)
+{
+  return with(text, bytes_of(from, big), bytes_of(to, big));
+}
+
+std::vector<Defect> defects()
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto cube = box({0, 0, 0}, {1, 1, 1});
+  const Soup wing = {{{{0, 0, 0}, {0, 0, 1}, {0.5, -1, 0.5}}}};
+  Soup open = cube;
+  open.pop_back();
+  const std::string stl = text_of(cube), bytes = binary_of(cube),
+                    two = gmsh(true, MeshOutput::TEXT), four = gmsh(false, MeshOutput::TEXT),
+                    old = vtk(true, MeshOutput::TEXT), inp = abaqus();
+  const std::string two_binary = gmsh(true, MeshOutput::LITTLE),
+                    four_binary = gmsh(false, MeshOutput::LITTLE),
+                    vtk_binary = vtk(true, MeshOutput::BIG);
+  const Pixels flat(5, 4, 1, [](int i, int j, int) {
+    return 40 * i + 10 * j;
+  });
+  const Pixels empty(0, 0, 1, [](int, int, int) {
+    return 0;
+  });
+  std::string many = bytes, bytes_nan = bytes;
+  many.replace(80, 4, bytes_of(4294967295u));
+  bytes_nan.replace(84 + 12, 4, bytes_of((float) nan));
+  const std::string nrrd = nrrd_header(flat, "float", "endian: little\nencoding: raw\n\n");
+  std::string half(20 * sizeof(float), '\0');
+  half.replace(8, 4, bytes_of((float) nan));
+  const std::string png_head = "\x89PNG\r\n\x1a\n",
+                    png_size = bytes_of(2000000000u, true) + bytes_of(2000000000u, true) + "\x08";
+  return {
+      // empty
+      {"StlEmpty", "a.stl", "", surface, "is empty"},
+      {"StlNoTriangles", "a.stl", text_of({}), surface, "no triangles"},
+      {"StlBinaryNoTriangles", "a.stl", binary_of({}), surface, "no triangles"},
+      {"ObjEmpty", "a.obj", "", surface, "is empty"},
+      {"ObjNoFaces", "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", surface, "no triangles"},
+      {"GmshEmpty", "a.msh", "", elements, "not a mesh file of Gmsh"},
+      {"GmshNothing", "a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", elements,
+       "no nodes or no elements"},
+      {"VtkNoCells", "a.vtk", old.substr(0, old.find("CELLS")), elements, "no points or no cells"},
+      {"AbaqusNoElements", "a.inp", inp.substr(0, inp.find("*ELSET")), elements,
+       "no nodes or no elements"},
+      {"CsvEmpty", "a.csv", "", rows, "is empty"},
+      {"CsvNoRows", "a.csv", "x,y,z\n", rows, "but no points"},
+      {"XyzNoRows", "a.xyz", "0\nProperties=pos:R:3\n", rows, "has no points"},
+      {"PgmEmpty", "a.pgm", "", pixels, "is empty"},
+      {"PgmNoPixels", "a.pgm", pgm(empty), pixels, "must be positive"},
+      {"NrrdEmpty", "a.nrrd", "NRRD0004\n", pixels, "has no field .type."},
+      // cut
+      {"StlCut", "a.stl", stl.substr(0, stl.size() - 15), surface, "endsolid"},
+      {"StlBinaryCut", "a.stl", bytes.substr(0, bytes.size() - 7), surface,
+       "for the 12 triangles|no STL file"},
+      {"ObjCut", "a.obj", obj().substr(0, obj().size() - 8), surface, "not closed"},
+      {"Gmsh2Cut", "a.msh", two.substr(0, two.size() - 40), elements, "ends too early"},
+      {"Gmsh4Cut", "a.msh", four.substr(0, four.size() - 40), elements, "ends too early"},
+      {"Gmsh2BinaryCut", "a.msh", two_binary.substr(0, two_binary.size() - 40), elements,
+       "ends too early"},
+      {"Gmsh4BinaryCut", "a.msh", four_binary.substr(0, four_binary.size() - 40), elements,
+       "ends too early"},
+      {"VtkCut", "a.vtk", old.substr(0, old.find("CELL_TYPES") - 4), elements,
+       "ends too early|many"},
+      {"VtkBinaryCut", "a.vtk", vtk_binary.substr(0, vtk_binary.find("CELL_TYPES") - 9), elements,
+       "ends too early"},
+      {"AbaqusCut", "a.inp", inp.substr(0, inp.find(" 5, 6, 7, 8")), elements, "too few nodes"},
+      {"CsvCut", "a.csv", "x,y,z\n1,1,1\n0.5,", rows, "2 values, but there are 3 columns"},
+      {"XyzCut", "a.xyz", "3\nProperties=pos:R:3\n0 0 0\n1 1 1\n", rows, "it was cut"},
+      {"VtpCut", "a.vtp", vtp().substr(0, vtp().find("</AppendedData>") - 9), rows, "a.vtp"},
+      {"PgmCut", "a.pgm", pgm(flat).substr(0, pgm(flat).size() - 1), pixels,
+       "but only 19 are there"},
+      {"PngCut", "a.png", png(flat).substr(0, 60), pixels, "libpng"},
+      {"NrrdCut", "a.nrrd", nrrd + half.substr(0, 20), pixels, "but only 20 are there"},
+      // huge
+      {"StlBinaryHuge", "a.stl", many, surface, "for the 4294967295 triangles"},
+      {"ObjHuge", "a.obj", with(obj(), "f 1 2 4", "f 1 2 99999999999999"), surface,
+       "there is no vertex 99999999999999"},
+      {"StlFar", "a.stl", with(stl, "vertex 1 ", "vertex 1e300 "), surface, "slivers"},
+      {"Gmsh2Huge", "a.msh", with(two, "$Nodes\n9", "$Nodes\n999999999999999"), elements,
+       "out of range"},
+      {"Gmsh2More", "a.msh", with(two, "$Elements\n2", "$Elements\n2000000000"), elements,
+       "not an integer|ends too early"},
+      {"Gmsh4Huge", "a.msh", with(four, "$Nodes\n1 9 ", "$Nodes\n1 9000000000000000000 "), elements,
+       "out of range|ends too early"},
+      {"VtkHuge", "a.vtk", with(old, "POINTS 9", "POINTS 2000000000"), elements,
+       "is not a number|ends too early"},
+      {"VtkManyCells", "a.vtk", with(old, "CELLS 2 14", "CELLS 99999999999 14"), elements,
+       "not a count"},
+      {"AbaqusFar", "a.inp", with(inp, "1.5", "1e999"), elements, "is not a coordinate"},
+      {"XyzHuge", "a.xyz", "999999999999999999\nProperties=pos:R:3\n0 0 0\n", rows, "it was cut"},
+      {"VtpHuge", "a.vtp",
+       with(vtp(), "NumberOfPoints=\"2\"", "NumberOfPoints=\"999999999999999999\""), rows, "a.vtp"},
+      {"PgmHuge", "a.pgm", "P5\n2000000000 2000000000\n255\nabc", pixels, "bytes at least"},
+      {"PngHuge", "a.png",
+       png_head + png_chunk("IHDR", png_size + std::string(4, '\0')) +
+           png_chunk("IDAT", zlib_stored("abc")) + png_chunk("IEND", ""),
+       pixels, "bytes at least|libpng"},
+      {"NrrdHuge", "a.nrrd", with(nrrd, "sizes: 5 4", "sizes: 3000000000 3000000000"), pixels,
+       "bytes|too large"},
+      // numbers that are none
+      {"StlNan", "a.stl", with(stl, "vertex 1 ", "vertex nan "), surface, "no three coordinates"},
+      {"StlBinaryNan", "a.stl", bytes_nan, surface, "not finite"},
+      {"StlLeakyNan", "a.stl", bytes_nan, leaky, "not finite"},
+      {"ObjNan", "a.obj", with(obj(), "v 1 0 0", "v nan 0 0"), surface, "three finite coordinates"},
+      {"Gmsh2Nan", "a.msh", with(two, "1.5", "nan"), elements, "'nan' is not a number"},
+      {"Gmsh4Inf", "a.msh", with(four, "1.3", "inf"), elements, "'inf' is not a number"},
+      {"Gmsh2BinaryNan", "a.msh", with_bytes(two_binary, 1.5, nan), elements, "is not finite"},
+      {"VtkNan", "a.vtk", with(old, "1.5", "nan"), elements, "is not finite"},
+      {"VtkBinaryNan", "a.vtk", with_bytes(vtk_binary, 1.5, nan, true), elements, "is not finite"},
+      {"AbaqusNan", "a.inp", with(inp, "1.5", "nan"), elements, "is not a coordinate"},
+      {"CsvNan", "a.csv", "x,y,z\n1,1,1\n0.5,nan,0\n", rows, "line 3: column y is nan"},
+      {"XyzNan", "a.xyz", "2\nProperties=pos:R:3\n0 0 0\n1 inf 1\n", rows,
+       "line 4: column .* is inf"},
+      {"VtpNan", "a.vtp", with_bytes(vtp(), 2.0, nan), "create_points 1 table FILE", "nan|finite"},
+      {"PgmNan", "a.pgm", "P2\n2 1\n255\n1 nan\n", pixels, "'n' where a number should be"},
+      {"NrrdNan", "a.nrrd", nrrd + half, pixels, "column 2, row 0, slice 0 is -?nan"},
+      // bodies that are none: open, with a fin, inside out, without volume, twice at one place
+      {"StlOpen", "a.stl", text_of(open), surface, "not closed"},
+      {"StlFin", "a.stl", text_of(both(cube, wing)), surface, "not closed"},
+      {"StlFlat", "a.stl", text_of({cube[0], cube[1]}), leaky, "no volume"},
+      {"StlInsideOut", "a.stl", text_of(both(cube, inverted(box({2, 0, 0}, {2.5, 1, 1})))), surface,
+       "looks inward"},
+      {"ObjOpen", "a.obj", with(obj(), "f 1 2 4\n", ""), surface, "not closed"},
+      {"ObjTwice", "a.obj", obj() + "f 1 2 4\n", surface, "not closed"},
+      {"GmshTwice", "a.msh",
+       with(with(two, "$Elements\n2", "$Elements\n3"), "$EndElements",
+            "3 4 2 2 2 1 4 5 9\n$EndElements"),
+       elements, "elements 2 and 3"},
+      {"GmshFlat", "a.msh", with(two, "-1 0 0", "0 0.5 0.5"), elements,
+       "element 2 .*volume|flat|inverted"},
+      {"VtkTwice", "a.vtk",
+       with(with(with(old, "CELLS 2 14", "CELLS 3 19"), "4 0 3 4 8", "4 0 3 4 8 4 0 3 4 8"),
+            "CELL_TYPES 2\n12 10", "CELL_TYPES 3\n12 10 10"),
+       elements, "elements 2 and 3|not for all|cells"},
+      {"AbaqusTwice", "a.inp", with(inp, "2, 1, 4, 5, 9\n", "2, 1, 4, 5, 9\n3, 1, 4, 5, 9\n"),
+       elements, "elements 2 and 3"},
+      {"CsvTwice", "a.csv", "x,y,z\n1,1,1\n1,1,1\n", rows, "at the same place"},
+  };
+}
+
+class BadFilesInLammps : public ::testing::TestWithParam<Defect> {};
+INSTANTIATE_TEST_SUITE_P(All, BadFilesInLammps, ::testing::ValuesIn(defects()),
+                         [](const auto &info) {
+                           return info.param.name;
+                         });
+
+// the error has the name of the file, and what is wrong with it
+TEST_P(BadFilesInLammps, AreExplained)
+{
+  const auto &defect = GetParam();
+  const ScratchFile file(defect.file, defect.text);
+  const std::string scene = defect.command == pixels ? plane("lj", "f f", "-3 3 -3 3")
+                                                     : space("lj", "f f f", "-3 3 -3 3 -3 3");
+  const std::string text =
+      answer(scene + "fix grid all mpm 0.5\n" + with(defect.command, "FILE", file.name) + "\n");
+  EXPECT_TRUE(contains(text, defect.error)) << "expected: " << defect.error << "\nfound: " << text;
+  EXPECT_TRUE(contains(text, file.name)) << "which file: " << text;
 }
 
 }    // namespace

@@ -226,6 +226,65 @@ TEST(Elements, Patch)
   }
 }
 
+// A square between two planes of symmetry, pulled at its other sides, on lattices with cells as large as its elements, half of that, and less. Regions hold
+// the nodes of elements in their surfaces as faces of the box do. Nodes of the lattice inside, one by one, let them creep: stresses were
+// twice as large with coarse cells, and none with fine ones
+SERIAL_TEST(Elements, RegionsHoldThemAsFacesDo)
+{
+  const double pull = 0.01, E = 1000.0, nu = 0.3;
+  const int n[3] = {4, 4, 0};
+  const double l[3] = {1.0, 1.0, 0.0};
+  const ScratchFile mesh("square.msh", box_mesh(2, n, l, false, 0.15));
+  for (const std::string grid :
+       {"0.25 transfer flip 1.0", "0.125 transfer flip 1.0", "0.1 transfer flip 1.0 scheme musl",
+        "0.1 transfer apic", "0.1 transfer flip 1.0 frame total"})
+    for (const bool faces : {true, false}) {
+      SCOPED_TRACE(grid + (faces ? " faces" : " regions"));
+      Scene run(
+          plane("lj", "f f", faces ? "0 2 0 2" : "-1 2 -1 2", 1, 0.2) + "fix grid all mpm " + grid +
+          "\ncreate_points 1 mesh " + mesh.name +
+          strprintf("\nfix m all mpm/material density 1 linear %g %g\n", E, nu) +
+          "fix e all mpm/elements " + mesh.name + "\n" +
+          (faces ? "fix left all mpm/boundary xlo slip\nfix low all mpm/boundary ylo slip\n"
+                 : "region left block -9 0 -9 9 INF INF\nregion low block -9 9 -9 0 INF INF\n"
+                   "fix left all mpm/boundary region left slip\nfix low all mpm/boundary region "
+                   "low slip\n") +
+          "region right block 0.99 2 -9 9 INF INF\ngroup right region right\n" +
+          strprintf("variable fx atom %g*gmask(right)*(1-0.5*((y<0.1)||(y>0.9)))-60*mass*vx\n",
+                    pull * l[1] / n[1]) +
+          "variable fy atom -60*mass*vy\nfix pull all addforce v_fx v_fy 0\n"
+          "fix dt all mpm/dt 0.5\nrun 800\n");
+      double bent = 0.0, off = 0.0;
+      for (const auto &s : run.gather()) {
+        bent = std::max(bent, std::fabs(s.stress[0] - pull));
+        // nodes are numbered row by row
+        const int node = (int) s.tag - 1, i = node % 5, j = node / 5;
+        if (i == 0) off = std::max(off, std::fabs(s.x[0]));
+        if (j == 0) off = std::max(off, std::fabs(s.x[1]));
+        if (i == 4) EXPECT_NEAR(s.x[0] - 1.0, pull * (1.0 - nu * nu) / E, 1e-3 * pull / E);
+      }
+      EXPECT_LT(measured("error of the stress, of the pull", bent / pull), 1e-3);
+      EXPECT_LT(off, 1e-12);
+      EXPECT_NEAR(run.evaluate("f_left[1]"), pull, 1e-3 * pull);
+    }
+}
+
+// Nodes of elements are farther apart than nodes of the lattice: nothing comes apart, as it does without the elements
+SERIAL_TEST(Elements, DoNotComeApart)
+{
+  const int n[3] = {4, 4, 0};
+  const double l[3] = {1.0, 1.0, 0.0};
+  const ScratchFile mesh("apart.msh", box_mesh(2, n, l, false, 0.0));
+  const std::string points = plane("lj", "f f", "-1 2 -1 2", 1, 0.2) +
+      "fix grid all mpm 0.2\ncreate_points 1 mesh " + mesh.name +
+      "\nfix m all mpm/material density 1 linear 1000 0.3\n",
+                    pulled = "variable v atom 0.5*x\nvelocity all set v_v 0 0\n"
+                             "fix dt all mpm/dt 0.5\nrun 8\n";
+  const std::string elements = "fix e all mpm/elements " + mesh.name + "\n";
+  EXPECT_EQ(lines_that_say(points + pulled, "comes apart").size(), 1u);
+  EXPECT_EQ(lines_that_say(points + elements + pulled, "comes apart").size(), 0u);
+}
+
 // forces are minus the gradient of the stored energy, and do not change with a rotation of the body
 TEST(Elements, ForcesAreTheGradientOfEnergy)
 {

@@ -220,7 +220,8 @@ Table MPM_NS::read_xyz(const std::string &text, const std::string &columns, cons
                       " points of the first line: give one frame in a file");
     rows.add(split(line, ' '));
   }
-  if (n < count || n == 0)
+  if (count == 0 && n == 0) lines.fail("has no points");
+  if (n < count)
     lines.fail("has " + std::to_string(n) + " points of " + std::to_string(count) + ", it was cut");
   return table;
 }
