@@ -110,7 +110,7 @@ FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
   scalar_flag = vector_flag = 1;
-  size_vector = 10;
+  size_vector = 11;
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -274,6 +274,7 @@ void FixMPMImplicit::step()
   total[NEWTON] += now.iterations;
   total[LINEAR] += now.linear;
   total[CUTS] += now.cuts;
+  total[MADE] += now.made;
   last[LAST_NEWTON] = now.iterations;
   last[LAST_LINEAR] = now.linear;
   last[LAST_CUTS] = now.cuts;
@@ -333,14 +334,17 @@ void FixMPMImplicit::post_run()
   const std::string unstable = indefinite > 0.0
       ? fmt::format("; {} tangents were not positive definite", (int64_t) indefinite)
       : "";
+  const double made = total[MADE] - at_start[MADE];
+  const std::string levels = made > 0.0 ? fmt::format("; multigrid made {} times", (int64_t) made)
+                                        : "";
   utils::logmesg(lmp,
                  "Fix mpm/implicit {}: {:.2f} Newton iterations in a step, {:.1f} of the linear "
                  "solver in each; "
-                 "last ratio of forces {:.3g}; {:.3g} ms a step{}\n",
+                 "last ratio of forces {:.3g}; {:.3g} ms a step{}{}\n",
                  id, (total[NEWTON] - at_start[NEWTON]) / steps,
                  (total[LINEAR] - at_start[LINEAR]) /
                      std::max(1.0, total[NEWTON] - at_start[NEWTON]),
-                 last[RATIO], 1000.0 * seconds / steps, unstable);
+                 last[RATIO], 1000.0 * seconds / steps, levels, unstable);
 }
 
 double FixMPMImplicit::compute_scalar()
@@ -351,6 +355,7 @@ double FixMPMImplicit::compute_scalar()
 double FixMPMImplicit::compute_vector(int k)
 {
   static constexpr int SINCE_START[3] = {NEWTON, LINEAR, CUTS};
+  if (k == 10) return total[MADE];
   if (k >= 8) return last[k == 8 ? PARTS : LAST_INDEFINITE];
   return k < 5 ? last[k] : total[SINCE_START[k - 5]];
 }
@@ -364,6 +369,7 @@ double FixMPMImplicit::memory_usage()
 
 void FixMPMImplicit::write_restart(FILE *fp)
 {
+  if (solver) solver->forget();
   keep_totals(world, taken, 2);
   if (comm->me) return;
   double list[NTOTAL + 2 + NLAST + 1];

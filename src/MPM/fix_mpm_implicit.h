@@ -48,7 +48,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   MPMField *field = nullptr;
   std::unique_ptr<MPMImplicit> solver;
   MPMImplicit::Accelerations kept;    // of points, of methods that need those of the step before
-  enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, NTOTAL };
+  enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, MADE, NTOTAL };
   double total[NTOTAL] = {};    // so far
   enum {
     LAST_NEWTON,

@@ -222,15 +222,15 @@ bool MPMImplicit::decide_contact(std::vector<double> &u)
 /** Of the vectors of all nodes. */
 double MPMImplicit::sum_of_sizes(const std::vector<double> &f)
 {
+  double mine = 0.0, sum;
   for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
+    if (!(mass[n] > 0.0) || !grid.owns(n)) continue;
     double square = 0.0;
-    for (int d = 0; d < width; d++) {
-      square += f[width * n + d] * f[width * n + d];
-      room[width * n + d] = 0.0;
-    }
-    room[width * n] = std::sqrt(std::sqrt(square));
+    for (int d = 0; d < width; d++) square += f[width * n + d] * f[width * n + d];
+    mine += std::sqrt(square);
   }
-  return product(room.data(), room.data());
+  sum_in_order(lmp, 1, &mine, of_ranks, &sum);
+  return sum;
 }
 
 /* ----------------------------------------------------------------------
@@ -383,7 +383,18 @@ bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
   return false;
 }
 
-/** Blocks of the diagonal of the present tangents, inverted. */
+/** Blocks of the diagonal of the present tangents. */
+void MPMImplicit::find_blocks()
+{
+  tangent.diagonal(blocks);
+  for (double &entry : blocks) entry *= late * part;
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
+    for (int d = 0; d < width; d++)
+      blocks[width * width * n + (width + 1) * d] += inertia * mass[n];
+  for (auto *contact : contacts) contact->add_friction_blocks(blocks.data());
+}
+
+/** The same, inverted. */
 void MPMImplicit::prepare_blocks()
 {
   for (int64_t n = 0; n < (int64_t) mass.size(); n++) invert(width, &blocks[width * width * n]);
@@ -414,6 +425,8 @@ void MPMImplicit::prepare_levels()
 {
   by_levels = false;
   std::vector<double> projection, unit(nreals());
+  find_blocks();
+  field.nodes.complete(blocks.data(), width * width, width * width);
   for (int column = 0; constrained && column < width; column++) {
     projection.resize(nreals() * width);
     for (int64_t k = 0; k < nreals(); k++)
@@ -423,8 +436,14 @@ void MPMImplicit::prepare_levels()
   }
   for (int64_t n = 0; constrained && n < (int64_t) mass.size(); n++)
     round_projection(width, &projection[width * width * n]);
-  by_levels = true;
   multigrid->begin(constrained ? projection.data() : nullptr, blocks.data());
+  fill_levels();
+}
+
+/** Levels that have begun get what points and masses have. */
+void MPMImplicit::fill_levels()
+{
+  by_levels = true;
   std::vector<double> scaled;
   tangent.each_point(
       [&](int n, const int64_t *nodes, int ngrad, const double *gradient, const double *stiffness) {
@@ -466,20 +485,11 @@ SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal
     return now.asymmetry <= SYMMETRIC && !rubs ? solver.solve(*this, b, x, goal)
                                                : solve_general(b, x, goal);
   };
-  const auto find_blocks = [&]() {
-    tangent.diagonal(blocks);
-    for (double &entry : blocks) entry *= late * part;
-    for (int64_t n = 0; n < (int64_t) mass.size(); n++)
-      for (int d = 0; d < width; d++)
-        blocks[width * width * n + (width + 1) * d] += inertia * mass[n];
-    for (auto *contact : contacts) contact->add_friction_blocks(blocks.data());
-  };
   for (int again = 0; multigrid && again < 2; again++) {
     const bool made = !by_levels;
     if (made) {
-      find_blocks();
-      field.nodes.complete(blocks.data(), width * width, width * width);
       prepare_levels();
+      now.made++;
       if (!multigrid->usable()) break;
     }
     const auto solved = attempt();
@@ -720,7 +730,8 @@ double MPMImplicit::step(double step_dt)
       }
     }
   }
-  approach(u);
+  if (!can_keep() || !go_on_from_before(u)) approach(u);
+  if (can_keep()) remember(u);
   if (joint) joint->end_step();
   if (now.converged) find_loads(u);
   return give_back(u);
@@ -840,15 +851,17 @@ void MPMImplicit::account()
 
 double MPMImplicit::memory_usage() const
 {
-  double bytes = tangent.memory_usage() + solver.memory_usage() + general.memory_usage() +
-      (multigrid ? multigrid->memory_usage() : 0.0) + (joint ? joint->memory_usage() : 0.0);
+  double bytes = tangent.memory_usage() + memory.memory_usage() + solver.memory_usage() +
+      general.memory_usage() + (multigrid ? multigrid->memory_usage() : 0.0) +
+      (joint ? joint->memory_usage() : 0.0);
   for (const auto *list : {&mass,     &friction, &before,       &explicit_velocity,
                            &outer,    &inner,    &from,         &wall,
                            &held,     &start,    &acceleration, &push,
                            &velocity, &loads,    &more_loads,   &residual,
                            &partial,  &of_nodes, &of_points,    &early,
                            &next,     &free,     &change,       &trial,
-                           &blocks,   &room,     &allowed})
+                           &blocks,   &room,     &allowed,      &of_heavy})
     bytes += list->capacity() * sizeof(double);
+  bytes += heavy.capacity() * sizeof(int64_t);
   return bytes;
 }

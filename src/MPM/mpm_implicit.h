@@ -10,6 +10,7 @@
 #define LMP_MPM_IMPLICIT_H
 
 #include "declare/option.h"
+#include "mpm_implicit_memory.h"
 #include "mpm_lattice_ranks.h"
 #include "mpm_node_system.h"
 #include "mpm_rows.h"
@@ -79,6 +80,7 @@ class MPMImplicit : private MPMNodeSystem {
   struct Report {
     bool converged = false;
     int iterations = 0, linear = 0, cuts = 0;
+    int made = 0;               ///< levels, or factors, of a tangent
     int indefinite = 0;         ///< iterations in which the energy had no minimum along some way
     int parts = 0;              ///< of the step, that converged
     double reached = 0.0;       ///< share of the step
@@ -111,6 +113,8 @@ class MPMImplicit : private MPMNodeSystem {
    *  have moved with. */
   void end_motion();
   const Report &report() const { return now; }
+  /** Steps to come begin without what those before have told: for those of a restart file, which do not know it. */
+  void forget() { memory.clear(); }
   double memory_usage() const;
 
  private:
@@ -153,6 +157,27 @@ class MPMImplicit : private MPMNodeSystem {
       more_loads;    // that follow points: at the start, and what is new at the end
   std::vector<double> residual, free, change, trial, blocks, room, allowed;
 
+  // from step to step (mpm_implicit_quasi.cpp)
+
+  MPMImplicitMemory memory;
+  bool large = false;            // too many unknowns for factors: there are levels
+  std::vector<int64_t> heavy;    // nodes with a mass, those that this rank owns first
+  std::size_t heavy_owned = 0;
+  std::vector<double> of_heavy, of_ranks;
+  bool can_keep() const;
+  void recall();
+  void foresee(std::vector<double> &u);
+  void remember(const std::vector<double> &u);
+  bool make_factors(const std::vector<double> &u);
+  void find_correction();
+  double product_of_heavy(const std::vector<double> &a, const std::vector<double> &b);
+  void take_heavy(const std::vector<double> &of_all, std::vector<double> &of_heavy) const;
+  void put_heavy(const std::vector<double> &of_heavy, std::vector<double> &of_all) const;
+  void learn(const std::vector<double> &u0, const std::vector<double> &u,
+             const std::vector<double> &f0);
+  bool go_on(std::vector<double> &u);
+  bool go_on_from_before(std::vector<double> &u);
+
   // with a pressure of nodes
 
   class Joint;
@@ -172,8 +197,10 @@ class MPMImplicit : private MPMNodeSystem {
   double sum_of_sizes(const std::vector<double> &);
   bool find_residual(const std::vector<double> &u, double &size);
   bool search(std::vector<double> &u, double slope, double &size);
+  void find_blocks();
   void prepare_blocks();
   void prepare_levels();
+  void fill_levels();
   MPM_NS::SolveReport solve_general(const double *b, double *x, const MPM_NS::SolveGoal &);
   MPM_NS::SolveReport solve(const double *b, double *x, const MPM_NS::SolveGoal &);
   enum Outcome { CONVERGED, FAILED, HOPELESS };    // the latter: parts of the step would fail, too

@@ -52,7 +52,7 @@ void EnvelopeFactors::put_in_order(const Sparse &A)
   for (int k = 0; k < n; k++) number[queue[k]] = n - 1 - k;
 }
 
-/** The places of all blocks, and the entries of the matrix in them; behind the last row, unity. */
+/** The places of all blocks. */
 void EnvelopeFactors::find_envelope(const Sparse &A)
 {
   const int rows = (unknowns + B - 1) / B;
@@ -66,6 +66,12 @@ void EnvelopeFactors::find_envelope(const Sparse &A)
     }
   start[0] = 0;
   for (int i = 0; i < rows; i++) start[i + 1] = start[i] + (int64_t) BB * (i - first[i] + 1);
+}
+
+/** The entries of the matrix in the blocks; behind the last row, unity. */
+void EnvelopeFactors::fill(const Sparse &A)
+{
+  const int rows = (int) first.size();
   values.assign(start[rows], 0.0);
   for (int c = 0; c < unknowns; c++)
     for (Sparse::InnerIterator it(A, c); it; ++it) {
@@ -108,6 +114,18 @@ bool EnvelopeFactors::compute(const Sparse &A)
   unknowns = (int) A.rows();
   put_in_order(A);
   find_envelope(A);
+  fill(A);
+  return factorize();
+}
+
+bool EnvelopeFactors::compute_again(const Sparse &A)
+{
+  fill(A);
+  return factorize();
+}
+
+bool EnvelopeFactors::factorize()
+{
   double S[BB];
   for (int i = 0; i < (int) first.size(); i++) {
     double *const row = values.data() + start[i];

@@ -29,6 +29,8 @@ class EnvelopeFactors {
 
   /** The matrix, both triangles; false: it is not positive definite, or not finite, and factors are of no use. */
   bool compute(const Eigen::SparseMatrix<double> &A);
+  /** The same where entries stand in the same places as in the last matrix, in an order that is known already. */
+  bool compute_again(const Eigen::SparseMatrix<double> &A);
   /** x = A^-1 b, b and x: [unknowns], which may be the same. */
   void solve(const double *b, double *x);
   int size() const { return unknowns; }
@@ -47,6 +49,8 @@ class EnvelopeFactors {
 
   void put_in_order(const Sparse &);
   void find_envelope(const Sparse &);
+  void fill(const Sparse &);
+  bool factorize();
   static bool factorize_block(double *A);
 };
 

@@ -45,18 +45,32 @@ std::unordered_set<uint64_t> MPM_NS::rim_of(const std::vector<LatticeIndex> &nod
   return rim;
 }
 
-bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &factors)
+bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &factors, bool again)
 {
   const int n = A.rows();
   if (n == 0) return true;
   Eigen::VectorXd diagonal(n);
   for (int i = 0; i < n; i++) diagonal[i] = A.coeff(i, i);
+  // an entry that has to be put in is as expensive as all of them
+  std::vector<Eigen::Triplet<double>> missing;
+  for (int i = 0; i < n; i++) {
+    bool there = false;
+    for (Eigen::SparseMatrix<double>::InnerIterator it(A, i); it && !there; ++it)
+      there = it.row() == i;
+    if (!there) missing.emplace_back(i, i, 0.0);
+  }
+  if (!missing.empty()) {
+    Eigen::SparseMatrix<double> zeros(n, n);
+    zeros.setFromTriplets(missing.begin(), missing.end());
+    A = (A + zeros).eval();
+  }
   const double tiny = 1.0e-14 * diagonal.maxCoeff();
   for (double shift = 1.0e-10; shift < 1.0e3; shift *= 100.0) {
     for (int i = 0; i < n; i++)
       A.coeffRef(i, i) = diagonal[i] > tiny ? diagonal[i] * (1.0 + shift)
                                             : std::max(tiny, 1.0e-300) * 1.0e14;
-    if (factors.compute(A)) return true;
+    if (again ? factors.compute_again(A) : factors.compute(A)) return true;
+    again = true;
   }
   return false;
 }

@@ -46,8 +46,8 @@ std::unordered_set<uint64_t> rim_of(const std::vector<LatticeIndex> &nodes, int 
 
 /** Factors of a symmetric matrix with a shift of its diagonal: functions that points cannot tell apart, and free bodies, make it
  *  singular, and more than that where a tangent is not positive definite.  Factors are.  False: no shift makes it so, or it is
- *  not finite; the factors are of no use then. */
-bool factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &);
+ *  not finite; the factors are of no use then.  again: entries stand where those of the last matrix were. */
+bool factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &, bool again = false);
 
 /** An approximate inverse for nodes at the surface of a body.
  *

@@ -89,6 +89,11 @@ struct Blocks {
     list.push_back({row, column, {}});
     return list.back();
   }
+  /** The same blocks, without values. */
+  void zero()
+  {
+    for (auto &block : list) std::fill_n(block.value, 9, 0.0);
+  }
   double memory_usage() const
   {
     double bytes = list.capacity() * sizeof(Block) + rows.capacity() * sizeof(rows[0]);
@@ -197,6 +202,13 @@ struct SplineMultigrid::Levels {
   bool held = false;
   Blocks blocks;
 
+  // of a system that is factorized as a whole, once it has been
+  bool again = false;                // its structure is known
+  std::vector<Block> held_blocks;    // what stands for what is held
+  std::vector<Block> sent, of_all_blocks;
+  std::vector<int>
+      slots;    // places of entries in the values of the matrix: of one triangle, and of the other
+
   struct Level {
     Sparse A, to_next;    // the latter: [unknown][unknown of the next level]
     Eigen::VectorXd x, b;
@@ -254,6 +266,9 @@ struct SplineMultigrid::Levels {
   void flush();
   void add_masses(const double *mass);
   void merge_ranks(LatticeNodes &all);
+  void send_blocks();
+  void assemble(int n);
+  bool refill();
   void coarsen(LatticeNodes level);
   void invert_blocks(const double *given);
   void estimate_largest();
@@ -289,6 +304,18 @@ void SplineMultigrid::begin(const double *projection, const double *blocks)
   on->find_rim(blocks);
   on->find_parents();
   on->invert_blocks(blocks);
+}
+
+bool SplineMultigrid::begin_again()
+{
+  auto &o = *on;
+  if (!o.again) return false;
+  o.blocks.zero();
+  for (const auto &held : o.held_blocks) {
+    auto &to = o.blocks.at(held.row, held.column);
+    for (int ab = 0; ab < o.width * o.width; ab++) to.value[ab] += held.value[ab];
+  }
+  return true;
 }
 
 /** Which nodes of this rank are in the rim: all ranks know all nodes that have a stiffness. A system that is factorized as a whole
@@ -522,7 +549,18 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
     }
   of_ranks = ranks.gather(list);
 
-  for (auto &b : blocks.list) {
+  coarse.emplace_back();
+  send_blocks();
+  assemble((int) all.index.size() * w);
+}
+
+/** Blocks of all ranks, lower ones, by the numbers of all nodes. */
+void SplineMultigrid::Levels::send_blocks()
+{
+  const int w = width;
+  sent = blocks.list;
+  if (!whole) blocks = {};
+  for (auto &b : sent) {
     b.row = number[b.row];
     b.column = number[b.column];
     if (b.row >= b.column) continue;
@@ -532,23 +570,66 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
       for (int j = 0; j < w; j++) turned[i * w + j] = b.value[j * w + i];
     std::copy_n(turned, w * w, b.value);
   }
-  const auto of_all = ranks.gather(blocks.list);
-  blocks = {};
+  ranks.gather(sent, of_all_blocks);
+}
 
+void SplineMultigrid::Levels::assemble(int n)
+{
+  const int w = width;
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(of_all.size() * w * w * 2);
-  for (const auto &b : of_all)
+  entries.reserve(of_all_blocks.size() * w * w * 2);
+  for (const auto &b : of_all_blocks)
     for (int i = 0; i < w; i++)
       for (int j = 0; j < w; j++) {
         const double value = b.value[i * w + j];
-        if (value == 0.0) continue;
+        // other stiffnesses may have something there
+        if (value == 0.0 && !whole) continue;
         entries.emplace_back(b.row * w + i, b.column * w + j, value);
         if (b.row != b.column) entries.emplace_back(b.column * w + j, b.row * w + i, value);
       }
-  const int n = all.index.size() * w;
-  coarse.emplace_back();
   coarse[0].A.resize(n, n);
   coarse[0].A.setFromTriplets(entries.begin(), entries.end());
+  slots.clear();
+  if (!whole) {
+    sent = {};
+    of_all_blocks = {};
+    return;
+  }
+  const auto slot = [&](int row, int column) {
+    const int *const inner = coarse[0].A.innerIndexPtr(),
+                     *const outer = coarse[0].A.outerIndexPtr();
+    return (int) (std::lower_bound(inner + outer[row], inner + outer[row + 1], column) - inner);
+  };
+  slots.reserve(2 * entries.size());
+  for (const auto &b : of_all_blocks)
+    for (int i = 0; i < w; i++)
+      for (int j = 0; j < w; j++) {
+        slots.push_back(slot(b.row * w + i, b.column * w + j));
+        slots.push_back(b.row != b.column ? slot(b.column * w + j, b.row * w + i) : -1);
+      }
+}
+
+/** The matrix by other values of blocks; false, on all ranks: these are not those that there were. */
+bool SplineMultigrid::Levels::refill()
+{
+  const int w = width;
+  const auto before = of_all_blocks;
+  send_blocks();
+  const bool same = before.size() == of_all_blocks.size() &&
+      std::equal(before.begin(), before.end(), of_all_blocks.begin(),
+                 [](const Block &a, const Block &b) {
+                   return a.row == b.row && a.column == b.column;
+                 });
+  if (!same) return false;
+  double *const values = coarse[0].A.valuePtr();
+  std::fill_n(values, coarse[0].A.nonZeros(), 0.0);
+  const int *to = slots.data();
+  for (const auto &b : of_all_blocks)
+    for (int ij = 0; ij < w * w; ij++, to += 2) {
+      values[to[0]] += b.value[ij];
+      if (to[1] >= 0) values[to[1]] += b.value[ij];
+    }
+  return true;
 }
 
 void SplineMultigrid::Levels::coarsen(LatticeNodes level)
@@ -684,7 +765,10 @@ void SplineMultigrid::Levels::invert_blocks(const double *given)
     if (whole) {
       const int k = parts[first[node]].node;
       auto &to = blocks.at(k, k);
-      for (int ab = 0; grid.owns(node) && ab < w * w; ab++) to.value[ab] += held(ab / w, ab % w);
+      if (!grid.owns(node)) continue;
+      held_blocks.push_back({k, k, {}});
+      for (int ab = 0; ab < w * w; ab++)
+        to.value[ab] += held_blocks.back().value[ab] = held(ab / w, ab % w);
       continue;
     }
     if (rim_number[node] >= 0) {
@@ -767,7 +851,15 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
   if (mass) o.add_masses(mass);
   if (!o.whole) o.factorize_rim(mass);
   LatticeNodes all;
-  o.merge_ranks(all);
+  bool again = o.again;
+  if (again)
+    o.usable = true;
+  else
+    o.merge_ranks(all);
+  if (again && !o.refill()) {
+    o.assemble((int) o.coarse[0].A.rows());
+    again = false;
+  }
   if (o.whole)
     o.coarse.back().x = o.coarse.back().b = Eigen::VectorXd::Zero(o.coarse.back().A.rows());
   else
@@ -777,7 +869,8 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
   const Eigen::Map<const Eigen::SparseMatrix<double>> columns(
       last.rows(), last.cols(), last.nonZeros(), last.outerIndexPtr(), last.innerIndexPtr(),
       last.valuePtr());
-  o.usable = o.usable && factorize(columns, o.factors);
+  o.usable = o.usable && factorize(columns, o.factors, again);
+  o.again = o.whole && o.usable;
   if (o.usable && !o.whole) o.estimate_largest();
 }
 
@@ -879,6 +972,11 @@ bool SplineMultigrid::usable() const
   return on->usable;
 }
 
+bool SplineMultigrid::is_whole() const
+{
+  return on->whole;
+}
+
 int SplineMultigrid::levels() const
 {
   return on->coarse.size() + (on->whole ? 0 : 1);
@@ -897,6 +995,8 @@ double SplineMultigrid::memory_usage() const
   double bytes = o.parts.capacity() * sizeof(Part) + o.factors.memory_usage() +
       o.rim_factors.memory_usage() + o.plain.capacity() + o.in_system.capacity() +
       o.blocks.memory_usage() + o.rim_blocks.memory_usage() +
+      (o.held_blocks.capacity() + o.sent.capacity() + o.of_all_blocks.capacity()) * sizeof(Block) +
+      o.slots.capacity() * sizeof(int) +
       (o.rim_owned.capacity() + o.nodes.capacity()) * sizeof(int64_t);
   for (const auto *list : {&o.rim, &o.mine})
     bytes += list->index.capacity() * sizeof(LatticeIndex) + list->number.size() * HASHED;

@@ -42,6 +42,9 @@ class SplineMultigrid {
    *  a node; null where there are no constraints.  blocks: [node][width][width] of K + m at the diagonal, of all ranks,
    *  before constraints.  Both are copied.  Collective. */
   void begin(const double *projection, const double *blocks);
+  /** The same operator with other stiffnesses and masses: the same nodes, points that reach the same ones of them, and the same projection.
+   *  False, on all ranks, where begin() is needed as the system has levels, or none has been finished. */
+  bool begin_again();
   /** A point of this rank, which reaches n nodes.  gradient: [n][ngrad] of their functions at the point.  stiffness: [width
    *  ngrad][width ngrad], volume times the change of stress (entry l*width + a) for a change of the gradient of value a along
    *  l, which around an axis may be one more.  Points of the same nodes are best given one after the other. */
@@ -56,6 +59,8 @@ class SplineMultigrid {
   /** Could all be factorized? Not where stiffnesses are not finite, or far from positive definite: take another
    *  preconditioner.  The same on all ranks. */
   bool usable() const;
+  /** Is all factorized as a whole? The cycle then is the inverse of the operator that it was made of, and needs no product. */
+  bool is_whole() const;
   int levels() const;
   double largest_eigenvalue() const;    ///< of A relative to the blocks
   double memory_usage() const;

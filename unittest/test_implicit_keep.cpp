@@ -1,0 +1,132 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart
+// mpi: 1 4
+
+// Fix mpm/implicit: what steps with inertia keep for the next ones.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** A beam of 10 by 1 that falls from rest at its clamp and swings by nearly half of its length, 4 cells in its depth. */
+std::string swing(const std::string &options, const std::string &implicit, double cfl)
+{
+  const double h = 0.025, c = std::sqrt(0.7e6 / 0.52 / 1000.0);
+  return plane("si", "f f", "0 1.2 -0.9 0.4", 1, 0.3 * h) +
+      body("block 0 1 0 0.1 INF INF", "density 1000 neohookean 1e6 0.3", "0.025 " + options) +
+      "fix clamp all mpm/boundary xlo stick\nfix g all gravity 1.9 vector 0 -1 0\n" +
+      "fix solve all mpm/implicit " + implicit + strprintf("\ntimestep %.17g\n", cfl * h / c);
+}
+
+std::vector<double> places(Scene &run)
+{
+  std::vector<double> x;
+  for (int i = 0; i < run.n(); i++) x.insert(x.end(), run.x()[i], run.x()[i] + 2);
+  return x;
+}
+
+double largest_difference(const std::vector<double> &a, const std::vector<double> &b)
+{
+  double most = 0.0;
+  for (std::size_t k = 0; k < a.size(); k++) most = std::max(most, std::fabs(a[k] - b[k]));
+  return most;
+}
+
+}    // namespace
+
+// factors of a tangent serve several steps, and lead to where Newton's method goes with conjugate gradients
+SERIAL_TEST(Keep, FactorsServeSeveralSteps)
+{
+  struct Case {
+    const char *options, *method;
+    double cfl;
+    int steps;
+    double made, iterations;    // at most: factors, iterations in a step
+  };
+  for (const auto &c :
+       {Case{"frame total transfer flip 1.0", "newmark", 20.0, 60, 12.0, 10.0},
+        Case{"frame total transfer flip 1.0", "newmark", 100.0, 16, 7.0, 14.5},
+        Case{"frame total transfer flip 1.0", "alpha rho 0.5", 50.0, 30, 10.0, 11.5},
+        Case{"frame total", "euler", 50.0, 30, 10.0, 10.0}}) {
+    std::vector<double> x[2];
+    for (const bool keeps : {false, true}) {
+      Scene run(swing(c.options,
+                      std::string(c.method) + " tolerance 1e-10 solver " +
+                          (keeps ? "multigrid" : "blocks"),
+                      c.cfl) +
+                strprintf("run %d\n", c.steps));
+      x[keeps] = places(run);
+      const double made = run.fix("solve")->compute_vector(10),
+                   iterations = run.fix("solve")->compute_vector(5) / c.steps;
+      if (!keeps) {
+        EXPECT_EQ(made, 0.0);
+        continue;
+      }
+      const auto name = strprintf("%s, CFL %g: ", c.method, c.cfl);
+      EXPECT_LE(measured(name + "factors", made), c.made);
+      EXPECT_LE(measured(name + "iterations in a step", iterations), c.iterations);
+      EXPECT_GE(made, 1.0);
+    }
+    EXPECT_LT(measured("difference", largest_difference(x[0], x[1])), 1e-6);
+  }
+}
+
+// where points come to other cells, nodes are others, and nothing of what was kept for those before is of use
+SERIAL_TEST(Keep, OnlyWhileNodesAreTheSame)
+{
+  for (const char *method : {"midpoint", "euler"}) {
+    std::vector<double> x[2];
+    for (const bool keeps : {false, true}) {
+      Scene run(replaced(swing("",
+                               std::string(method) + " tolerance 1e-10 solver " +
+                                   (keeps ? "multigrid" : "blocks"),
+                               10.0),
+                         "gravity 1.9", "gravity 1.0") +
+                "run 30\n");
+      x[keeps] = places(run);
+      if (keeps) EXPECT_GE(measured("factors", run.fix("solve")->compute_vector(10)), 15.0);
+    }
+    EXPECT_LT(measured("difference", largest_difference(x[0], x[1])), 1e-6) << method;
+  }
+}
+
+// of a wall that moves, and begins to in the run
+SERIAL_TEST(Keep, WallsMayMove)
+{
+  std::vector<double> x[2];
+  for (const bool keeps : {false, true}) {
+    Scene run(replaced(swing("frame total transfer flip 1.0",
+                             std::string("newmark tolerance 1e-10 solver ") +
+                                 (keeps ? "multigrid" : "blocks"),
+                             20.0),
+                       "fix clamp all mpm/boundary xlo stick\n",
+                       "variable shake equal 0.3*sin(5*time)\nfix clamp all mpm/boundary xlo stick "
+                       "velocity 0 v_shake 0\n") +
+              "run 20\n");
+    x[keeps] = places(run);
+    if (keeps) EXPECT_LE(measured("factors", run.fix("solve")->compute_vector(10)), 6.0);
+  }
+  EXPECT_LT(measured("difference", largest_difference(x[0], x[1])), 1e-6);
+}
+
+// four ranks do what one does; a run goes on from a restart file to the last bit, as writing one makes steps begin without what was kept
+TEST(Keep, RanksAndRestart)
+{
+  for (const std::string method : {"newmark", "alpha rho 0.5"}) {
+    const auto scene =
+        swing("frame total transfer flip 1.0", method + " tolerance 1e-11 solver multigrid", 50.0);
+    const auto next = "neighbor 0.0075 bin\n" + scene.substr(scene.find("fix grid"));
+    const auto fixes = replaced(replaced(next, "region body block 0 1 0 0.1 INF INF\n", ""),
+                                "create_points 1 region body ppc 2\n", "");
+    Twins(scene, 6, fixes, 6, 1e-9);
+
+    const ScratchFile file("keep.restart");
+    Scene whole(scene + "restart 6 " + file.name + " " + file.name + "\nrun 10\n");
+    Scene again("read_restart " + file.name + "\n" + fixes + "run 4\n");
+    EXPECT_TRUE(identical(whole.gather(), again.gather())) << method;
+  }
+}
