@@ -200,6 +200,70 @@ timestep $(0.4*v_h/1.16)
   EXPECT_LT(error[1].force[2], 0.01);
 }
 
+// The same with a block of twenty radii of the contact (benchmark U3), on four lattices (fix mpm/refine), of which the finest has the
+// contact
+TEST(Hertz, OnSeveralLattices)
+{
+  const Block block = {0.3, 10.0, 20.0, 20.0};
+  const double ends[4] = {3.0, 6.0, 11.0, 20.0};    // of the lattices, from the finest
+  Errors error[2];
+  for (int k = 0; k < 2; k++) {
+    const double h = 0.25 / (1 << k), coarse = 8.0 * h;
+    std::string lattices, points, all;
+    for (int level = 0; level < 4; level++) {    // from the coarsest
+      const int type = level == 0 ? 1 : level + 2;
+      const double spacing = coarse / (1 << level), origin = 0.5 * (coarse - spacing),
+                   end = ends[3 - level], inner = level < 3 ? ends[2 - level] : 0.0;
+      const std::string options =
+          strprintf("mpm %.17g origin %.17g %.17g axisymmetric yes scheme musl stress gradient",
+                    spacing, origin, origin);
+      lattices += strprintf("group g%d type %d\nfix F%d g%d %s\n", level, type, level, level,
+                            options.c_str());
+      all += strprintf(" F%d", level);
+      points +=
+          strprintf("region o%d block 0 %g %g 20 INF INF\nregion i%d block 0 %g %g 20 INF INF "
+                    "side out\nregion r%d intersect 2 o%d i%d\n",
+                    level, end, 20.0 - end, level, inner, 20.0 - inner, level, level, level) +
+          strprintf("create_points %d region %c%d ppc 2 fix F%d\ngroup g%d type %d\n", type,
+                    level < 3 ? 'r' : 'o', level, level, level, type);
+      if (level < 3) continue;
+      lattices += "group two type 2\nfix T two " + options + "\n";
+      points +=
+          strprintf("region two block 0 2.5 20 %.17g INF INF\ncreate_points 2 region two ppc 2 "
+                    "fix T\ngroup two type 2\n",
+                    20.0 + 3.0 * h);
+    }
+    Scene run(strprintf("variable h equal %g\n", h) + R"(
+units lj
+dimension 2
+boundary f f p
+atom_style mpm
+atom_modify map array
+neighbor $(0.3*v_h) bin
+region box block 0 20 0 23 -0.5 0.5
+create_box 5 box
+)" + lattices +
+              "fix block all mpm/refine" + all + "\n" + points + R"(
+group one subtract all two
+fix m1 one mpm/material density 1.0 linear 1.0 0.3
+fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
+fix axis all mpm/boundary xlo xhi ylo slip
+fix c all mpm/contact T F3
+timestep $(0.4*v_h/1.16)
+)");
+    const auto force = [](Scene &r) {
+      return r.evaluate("-f_c[1][2]");
+    };
+    const auto none = [](Scene &) {
+      return 0.0;
+    };
+    const Probe probe = {1, 1.0, force, none};
+    error[k] = press(run, block, &Block::indentation_round, probe, h, 8.0);
+  }
+  for (int n = 0; n < 3; n++) EXPECT_LT(error[1].force[n], 0.5 * error[0].force[n]);
+  EXPECT_LT(error[1].force[2], 0.03);    // eight cells in the radius
+}
+
 // in three dimensions, on two lattices: a quarter. Spheres of points touch late where they face gaps of
 // the other lattice, and the layer of contact yields: the force is too small by what both are of the
 // indentation, which is of first order in the spacing of points

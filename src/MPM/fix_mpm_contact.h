@@ -36,6 +36,7 @@ class Grid;
 }
 
 namespace LAMMPS_NS {
+class FixMPMRefine;
 class MPMField;
 
 struct MPMContactOptions {
@@ -77,6 +78,10 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
 
   /** Is contact between these two fields (IDs) left to this fix? */
   bool couples(const std::string &a, const std::string &b) const;
+  /** Is this field (ID) one of the bodies? */
+  bool touches(const std::string &name) const;
+  /** Has this fix what decides about contact in common with another one? */
+  bool has_law_of(const FixMPMContact &) const;
 
   static constexpr int MAX_FIELDS = 8;
 
@@ -143,12 +148,14 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   struct Body {
     MPMField *field;
     MPMReach reach;
-    std::vector<int> images;         // blocks with periodic images
-    std::vector<char> near;          // [slot] a block where bodies share nodes
-    std::vector<double> gradient;    // of the volume (or mass) at the nodes
-    std::vector<double> share;       // volume at the nodes / node volume
-    std::vector<double> water;       // [node][3] of MPMPhysics::surface_force(); empty: none
-    std::vector<char> held;          // bits, FixMPMBoundary::mark_held()
+    std::vector<int> images;          // blocks with periodic images
+    FixMPMRefine *refined;            // the body that this field is a part of, or null
+    std::vector<MPMField *> finer;    // its parts on finer lattices
+    std::vector<char> near;           // [slot] a block where bodies share nodes
+    std::vector<double> gradient;     // of the volume (or mass) at the nodes
+    std::vector<double> share;        // volume at the nodes / node volume
+    std::vector<double> water;        // [node][3] of MPMPhysics::surface_force(); empty: none
+    std::vector<char> held;           // bits, FixMPMBoundary::mark_held()
     FixMPMBoundary::Foreseen foreseen;
 
     Pair::Walls find_walls(const double *record) const;
@@ -164,6 +171,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
 
   std::vector<std::string> names;
   Room room;
+  bool on_several_lattices = false;    // is a body?
 
   std::vector<Body> bodies;
   std::vector<Common> common;
@@ -196,6 +204,8 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   double array[MAX_PAIRS][5] = {};
   bigint array_step = -1;
 
+  void check_refined(Body &);
+  void map_content(Body &);
   bool stale() const;
   double filled(const Common &, int n) const;
   void list_common_blocks();

@@ -150,22 +150,7 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
   for (auto *action : plan.actions) {
     auto *ifix = dynamic_cast<Fix *>(action);
     const auto *contact = dynamic_cast<FixMPMContact *>(action);
-    if (contact)
-      for (const auto &a : ids)
-        for (const auto &b : ids)
-          if (a != b && contact->couples(a, b))
-            error->all(FLERR, Error::NOLASTLINE,
-                       "Fix mpm/refine {}: the fields {} and {} are one body, which fix "
-                       "mpm/contact {} takes for two: leave one of them out there",
-                       id, a, b, ifix->id);
-    for (const auto *field : fields)
-      if (contact && contact->decides_contact(*field) && comm->me == 0)
-        error->warning(FLERR,
-                       "Fix mpm/refine {}: fix mpm/contact {} acts on nodes of {} alone, and sees "
-                       "nothing of the points of the other fields and at the rim to these: keep "
-                       "bodies that touch away from there, or let them meet through pair_style "
-                       "mpm/penalty",
-                       id, ifix->id, field->id());
+    if (contact) check_contact(plan, *contact);
     if (!contact && !dynamic_cast<FixMPMRefine *>(action) &&
         !dynamic_cast<FixMPMBoundary *>(action) && !dynamic_cast<FixMPMRigid *>(action) &&
         !dynamic_cast<FixMPMDashpot *>(action))
@@ -185,9 +170,115 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
   }
 }
 
+/* ----------------------------------------------------------------------
+   Contact is at nodes, on each lattice between the fields that have it. It is seen everywhere if another body has a field on each
+   lattice from the coarsest of this one to its own finest: what is finer in this one is tied where the other one is
+------------------------------------------------------------------------- */
+
+void FixMPMRefine::check_contact(const MPMPlan &plan, const FixMPMContact &contact) const
+{
+  for (const auto &a : ids)
+    for (const auto &b : ids)
+      if (contact.couples(a, b))
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/refine {}: the fields {} and {} are one body, which fix mpm/contact {} "
+                   "takes for two: leave one of them out there",
+                   id, a, b, contact.id);
+  for (int mine = 0; mine < (int) ids.size(); mine++)
+    for (const auto *field : plan.fields)
+      if (contact.couples(ids[mine], field->id()))
+        check_contact_with(plan, contact, mine, field->id());
+}
+
+void FixMPMRefine::check_contact_with(const MPMPlan &plan, const FixMPMContact &contact, int mine,
+                                      const std::string &theirs) const
+{
+  std::vector<std::string> body = {theirs};
+  for (const auto *other : find_fixes<FixMPMRefine>(lmp))
+    if (other->has(theirs)) body = other->ids;
+  const auto touching = [&](const std::string &a, const std::string &b) {
+    const FixMPMContact *found = nullptr;
+    for (auto *action : plan.actions) {
+      const auto *one = dynamic_cast<FixMPMContact *>(action);
+      if (one && one->couples(a, b)) found = one;
+    }
+    return found;
+  };
+  double most = 0.0;    // node spacing of the body
+  for (const auto &name : body) {
+    const double h = MPMField::find(lmp, name)->lattice.h;
+    most = std::max(most, h);
+    for (const auto *field : fields) {
+      if (std::fabs(field->lattice.h - h) > 1.0e-10 * h) continue;
+      const auto *other = touching(field->id(), name);
+      if (!other)
+        error->all(
+            FLERR, Error::NOLASTLINE,
+            "Fix mpm/refine {}: {} and {} touch by fix mpm/contact {}, but {} and {}, which "
+            "are of the same bodies, do not: add fix mpm/contact {} {} with the same options",
+            id, ids[mine], theirs, contact.id, field->id(), name, field->id(), name);
+      if (!other->has_law_of(contact))
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/refine {}: fix mpm/contact {} and {} are between the same two bodies: "
+                   "give both the same law, normal, and gap",
+                   id, contact.id, other->id);
+    }
+  }
+  // told once, for the coarsest lattice that both have
+  if (fields[0]->lattice.h > (1.0 + 1.0e-10) * most && comm->me == 0 &&
+      fields[mine]->lattice.h >= (1.0 - 1.0e-10) * most)
+    error->warning(FLERR,
+                   "Fix mpm/refine {}: no field of the body of {} is on the lattice of {}, so that "
+                   "fix mpm/contact {} does not see it where it meets points of {}, or the rim to "
+                   "these: keep it away from there, or make a fix mpm on this lattice, without "
+                   "points if need be, part of that body by fix mpm/refine",
+                   id, theirs, ids[0], contact.id, ids[0]);
+}
+
+/** All that touch this body, or what touches it: where several bodies meet, all must have the same functions. */
+void FixMPMRefine::find_neighbors(const MPMPlan &plan)
+{
+  neighbors.clear();
+  for (int k = 0; k + 1 < (int) fields.size(); k++) {
+    std::vector<MPMField *> found = {fields[k]};
+    for (std::size_t n = 0; n < found.size(); n++)
+      for (auto *action : plan.actions) {
+        const auto *contact = dynamic_cast<FixMPMContact *>(action);
+        for (auto *field : plan.fields)
+          if (contact && contact->couples(found[n]->id(), field->id()) &&
+              !std::count(found.begin(), found.end(), field))
+            found.push_back(field);
+      }
+    for (std::size_t n = 1; n < found.size(); n++) {
+      neighbors.push_back({found[n], k, {}});
+      pairs[k]->add_neighbor(*found[n]);
+    }
+  }
+  reaches.resize(fields.size());
+}
+
+bool FixMPMRefine::decides_contact(const MPMField &field) const
+{
+  const auto contacts = find_fixes<FixMPMContact>(lmp);
+  return has(field.id()) && std::any_of(contacts.begin(), contacts.end(), [this](const auto *c) {
+           return std::any_of(ids.begin(), ids.end(), [c](const auto &name) {
+             return c->touches(name);
+           });
+         });
+}
+
+bool FixMPMRefine::serves_contact(const MPMField &field)
+{
+  const auto bodies = find_fixes<FixMPMRefine>(field.lmp);
+  return std::any_of(bodies.begin(), bodies.end(), [&](const auto *body) {
+    return body->decides_contact(field);
+  });
+}
+
 void FixMPMRefine::init_physics(MPMPlan &plan)
 {
   check_others(plan);
+  find_neighbors(plan);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -216,9 +307,12 @@ void FixMPMRefine::find_tied()
   if (warned) return;
   warned = true;
   for (auto &pair : pairs) {
-    bigint all[2], mine[2] = {pair->count.tied, pair->count.free};
-    MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-    if (comm->me || (all[0] && all[1])) continue;
+    // a field without points is there for contact with others
+    bigint all[4],
+        mine[4] = {pair->count.tied, pair->count.free, (bigint) pair->coarse.map->runs.size(),
+                   (bigint) pair->fine.map->runs.size()};
+    MPI_Allreduce(mine, all, 4, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (comm->me || !all[2] || !all[3] || (all[0] && all[1])) continue;
     if (all[0])
       error->warning(FLERR,
                      "Fix mpm/refine {}: no node of fix mpm {} is free, as points of {} are in all "
@@ -237,16 +331,33 @@ void FixMPMRefine::find_tied()
    each field has nodes for the sake of the finer ones: all are renewed together
 ------------------------------------------------------------------------- */
 
+bool FixMPMRefine::is_stale() const
+{
+  return std::any_of(fields.begin(), fields.end(),
+                     [](const auto *field) {
+                       return !field->map->valid;
+                     }) ||
+      std::any_of(neighbors.begin(), neighbors.end(), [](const auto &neighbor) {
+           return !neighbor.field->map->valid;
+         });
+}
+
 void FixMPMRefine::couple_topology()
 {
-  if (std::any_of(fields.begin(), fields.end(), [](const auto *field) {
-        return !field->map->valid;
-      }))
-    for (auto *field : fields) field->map->valid = false;
+  if (!is_stale()) return;
+  for (auto *field : fields) field->map->valid = false;
+  for (auto &neighbor : neighbors) neighbor.field->map->valid = false;
 }
 
 void FixMPMRefine::blocks_found()
 {
+  if (!neighbors.empty() && is_stale()) {
+    for (int k = 0; k + 1 < (int) fields.size(); k++) {
+      extend_for_finer(*fields[k]);
+      reaches[k].find(fields[k]->grid, world);
+    }
+    for (auto &neighbor : neighbors) neighbor.reach.find(neighbor.field->grid, world);
+  }
   const bool keep = std::any_of(fields.begin(), fields.end(), [](const auto *field) {
     return field->keep_old_now;
   });
@@ -257,16 +368,37 @@ void FixMPMRefine::blocks_found()
   }
 }
 
+int FixMPMRefine::level(const std::string &name) const
+{
+  return (int) (std::find(ids.begin(), ids.end(), name) - ids.begin());
+}
+
 int FixMPMRefine::level(const MPMField &field) const
 {
   return (int) (std::find(fields.begin(), fields.end(), &field) - fields.begin());
 }
 
-void FixMPMRefine::extend_topology(MPMField &field)
+std::vector<MPMField *> FixMPMRefine::finer_than(const std::string &name) const
+{
+  std::vector<MPMField *> list;
+  for (int k = level(name) + 1; k < (int) ids.size(); k++)
+    list.push_back(MPMField::find(lmp, ids[k]));
+  return list;
+}
+
+void FixMPMRefine::extend_for_finer(const MPMField &field) const
 {
   const int mine = level(field);
   for (int finer = mine + 1; finer < (int) fields.size(); finer++)
     pairs[mine]->extend_coarse(*fields[finer], finer - mine);
+}
+
+void FixMPMRefine::extend_topology(MPMField &field)
+{
+  extend_for_finer(field);
+  for (const auto &neighbor : neighbors)    // where cells with its points are looked up
+    if (neighbor.field == &field)
+      neighbor.reach.activate_those_of(reaches[neighbor.level], field.grid);
 }
 
 void FixMPMRefine::topology_changed(MPMField &field)

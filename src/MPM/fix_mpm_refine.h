@@ -18,12 +18,14 @@ FixStyle(mpm/refine,FixMPMRefine);
 #include "fix.h"
 #include "mpm_node_action.h"
 #include "mpm_physics.h"
+#include "mpm_reach.h"
 
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
+class FixMPMContact;
 class MPMTwoScale;
 
 /** Makes one body of the points of several fields (fix mpm), each on a lattice of half the node spacing of the one before:
@@ -33,6 +35,14 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   FixMPMRefine(class LAMMPS *, int, char **);
   ~FixMPMRefine() override;
   int setmask() override { return 0; }    // called by fix mpm
+
+  /** The fields of this body that are finer than this one, of which it has the name; none if it is none of the body. */
+  std::vector<MPMField *> finer_than(const std::string &name) const;
+  /** Activate what the finer fields of the body need of this one: also before others look at its blocks. */
+  void extend_for_finer(const MPMField &) const;
+  /** Is this a field of such a body that has contact with others? It may have no points then. */
+  static bool serves_contact(const MPMField &);
+  bool has(const std::string &name) const { return level(name) < (int) ids.size(); }
   void init() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -47,6 +57,7 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   void init_action() override;
   void couple_topology() override;
   void blocks_found() override;
+  bool decides_contact(const MPMField &) const override;
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override { return false; }
   void act(double dt, Stage) override;
 
@@ -57,12 +68,26 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   std::vector<std::string> ids;    // of the fix mpm, from the coarsest on
   std::vector<MPMField *> fields;
   std::vector<std::unique_ptr<MPMTwoScale>> pairs;    // of each of them and the next one
+  struct
+      Neighbor {    // a field of another body that may touch this one, on the lattice of a field that is not the finest
+    MPMField *field;
+    int level;
+    MPMReach reach;
+  };
+  std::vector<Neighbor> neighbors;
+  std::vector<MPMReach> reaches;    // of the fields
   bool warned = false;
 
   void check(MPMField &coarse, MPMField &fine) const;
   void check_others(const MPMPlan &) const;
+  void check_contact(const MPMPlan &, const FixMPMContact &) const;
+  void check_contact_with(const MPMPlan &, const FixMPMContact &, int mine,
+                          const std::string &theirs) const;
+  void find_neighbors(const MPMPlan &);
   void find_tied();
+  int level(const std::string &name) const;
   int level(const MPMField &) const;
+  bool is_stale() const;
 };
 
 }    // namespace LAMMPS_NS

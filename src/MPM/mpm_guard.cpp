@@ -13,6 +13,7 @@
 #include "error.h"
 #include "fix.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_refine.h"
 #include "force.h"
 #include "group.h"
 #include "material/material.h"
@@ -176,7 +177,7 @@ void MPMGuard::check_points() const
   MPI_Allreduce(count, all, NKINDS, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(example, example_all, NKINDS, MPI_LMP_TAGINT, MPI_MAX, world);
 
-  if (all[POINT] == 0 && !emits_points(field))
+  if (all[POINT] == 0 && !emits_points(field) && !FixMPMRefine::serves_contact(field))
     error->all(FLERR,
                "Fix mpm {} has no material points: its group {} has no atoms with a volume; "
                "make points with create_points, or give atoms a volume with set ... volume",

@@ -88,9 +88,61 @@ void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<
 }
 
 void LAMMPS_NS::map_surface(MPMField &field, const std::vector<char> &near,
-                            std::vector<double> &gradient)
+                            std::vector<double> &gradient, Weight content)
 {
-  map_gradient_with(field.pic, field, Weight::VOLUME, near, gradient);
+  map_gradient_with(field.pic, field, content, near, gradient);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::add_points_of(MPMField &field, const std::vector<MPMField *> &others,
+                              Weight content, const std::vector<char> &near,
+                              std::vector<double> &gradient, std::vector<double> &share)
+{
+  constexpr int NREAL = 4;    // gradient, volume
+  const Grid &grid = field.grid;
+  const MPMFrame &frame = *field.frame;
+  const MPMStencil stencil(field);
+  const int dim = field.lattice.dim;
+  auto &sums = field.work.nodes;
+  sums.assign(NREAL * grid.nnodes(), 0.0);
+  for (const auto *other : others)
+    for (const auto &run : other->map->runs)
+      for (int i = run.first; i < run.last; i++) {
+        const double *const x = other->frame->places()[i];
+        int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
+        double w[3][4] = {{0.0}, {0.0}, {1.0}}, dw[3][4] = {{0.0}};
+        for (int d = 0; d < dim; d++)
+          count[d] = stencil.weights((x[d] - grid.lattice.origin[d]) / grid.lattice.h, base[d],
+                                     w[d], dw[d]);
+        const int b[3] = {base[0] >> grid.shift_bits, base[1] >> grid.shift_bits,
+                          base[2] >> grid.shift_bits};
+        const int slot = grid.find(b);
+        if (slot < 0 || !reaches(grid.blocks[slot], near)) continue;
+        const double V = field.atom->vfrac[i] * other->frame->lattice_jacobian(i),
+                     circle = other->frame->circle(x[0]), volume = V / circle,
+                     weight = content == Weight::MASS ? field.atom->rmass[i] / circle : V / circle;
+        for (k[0] = 0; k[0] < count[0]; k[0]++)
+          for (k[1] = 0; k[1] < count[1]; k[1]++)
+            for (k[2] = 0; k[2] < count[2]; k[2]++) {
+              const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
+              const int64_t node = grid.locate_near(grid.blocks[slot], index);
+              if (node < 0) continue;
+              double *const to = &sums[NREAL * node];
+              for (int d = 0; d < dim; d++)
+                to[d] += weight / grid.lattice.h * dw[d][k[d]] * w[(d + 1) % 3][k[(d + 1) % 3]] *
+                    w[(d + 2) % 3][k[(d + 2) % 3]];
+              to[3] += volume * w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+            }
+      }
+  field.nodes.sum(sums.data(), NREAL, 0, NREAL);
+  const double inverse = 1.0 / field.lattice.cell_volume();
+  for (int64_t n = 0; n < grid.nnodes(); n++) {
+    const double length =
+        frame.node_circle((int) (n / NODES_PER_BLOCK), (int) (n % NODES_PER_BLOCK));
+    for (int d = 0; d < dim; d++) gradient[3 * n + d] += length * sums[NREAL * n + d];
+    if (!share.empty()) share[n] += inverse * sums[NREAL * n + 3];
+  }
 }
 
 /* ---------------------------------------------------------------------- */

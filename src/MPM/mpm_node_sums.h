@@ -23,7 +23,8 @@ enum class Weight { MASS, VOLUME };
 void map_gradient(MPMField &, Weight, const std::vector<char> &near, std::vector<double> &gradient);
 /** The same of volumes with the gradients of the functions, also where stress is an affine term of the transfer
  *  and so takes other ones. */
-void map_surface(MPMField &, const std::vector<char> &near, std::vector<double> &gradient);
+void map_surface(MPMField &, const std::vector<char> &near, std::vector<double> &gradient,
+                 Weight = Weight::VOLUME);
 /** At the same nodes: forces [node][3] of points whose stress and external force are those that give(i, tau, f) sets;
  *  tau: [6] J times the stress, f: [3], both in the units of a force over nktv2p. */
 void map_forces(MPMField &, const std::vector<char> &near,
@@ -31,6 +32,11 @@ void map_forces(MPMField &, const std::vector<char> &near,
                 std::vector<double> &force);
 /** At the same nodes: sum_p V_p N(x_p) as share of the volume of a cell, [node]. */
 void map_volume(MPMField &, const std::vector<char> &near, std::vector<double> &share);
+/** Add to map_surface() and map_volume() of a field what points of others would give with the functions of its lattice, if all
+ *  nodes that they reach are active; share may be empty. Updated frame, points without size. */
+void add_points_of(MPMField &, const std::vector<MPMField *> &others, Weight,
+                   const std::vector<char> &near, std::vector<double> &gradient,
+                   std::vector<double> &share);
 /** At the points, [n]: that share, which is 1 inside of a body and falls to 0 across its surface. Points
  *  that have failed do not count as volume. A body on a fixed face of the box has no surface there
  *  (updated frame, faces in planes of nodes). Finds the blocks if need be. */

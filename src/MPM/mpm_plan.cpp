@@ -118,7 +118,16 @@ void MPMPlan::find_blocks()
 {
   for (auto *field : fields)
     if (field->domains) field->domains->update();
-  for (auto *action : actions) action->couple_topology();
+  const auto valid = [this]() {
+    return std::count_if(fields.begin(), fields.end(), [](const auto *field) {
+      return field->map->valid;
+    });
+  };
+  for (auto before = valid(), now = before - 1; now != before;) {    // chains of them
+    before = valid();
+    for (auto *action : actions) action->couple_topology();
+    now = valid();
+  }
   for (auto *field : fields) field->map->find_blocks();
   for (auto *action : actions) action->blocks_found();
   for (auto *field : fields) {
@@ -249,6 +258,11 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
   const std::string state = point_extremes(lmp, field);
   if (comm->me) return;
 
+  if (sum[0] == 0.0) {    // of a field that is there for contact, or has not got any yet
+    utils::logmesg(lmp, "MPM {}: no points\n", field.id());
+    if (&field == fields[0]) utils::logmesg(lmp, watch.report());
+    return;
+  }
   double total = 0.0;
   for (const auto &cost : list) total += cost.time;
   std::string text =

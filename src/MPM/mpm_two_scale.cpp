@@ -95,11 +95,16 @@ double MPMTwoScale::fine_origin(const MPMField &coarse, int axis)
 }
 
 MPMTwoScale::MPMTwoScale(LAMMPS *lmp, MPMField &coarse, MPMField &fine, const MPMTwoScale *before) :
-    Pointers(lmp), coarse(coarse), fine(fine), before(before),
-    marks(coarse.nodes.add_field("mpm/refine", 1))
+    Pointers(lmp), coarse(coarse), fine(fine), before(before)
 {
+  add_neighbor(coarse);
   for (int d = 0; d < 3; d++)
     offset[d] = d < coarse.lattice.dim ? (int) std::lround(offset_of(coarse, fine, d)) : 0;
+}
+
+void MPMTwoScale::add_neighbor(MPMField &field)
+{
+  marks.push_back({field, field.nodes.add_field("mpm/refine", 1)});
 }
 
 double MPMTwoScale::memory_usage() const
@@ -142,51 +147,66 @@ void MPMTwoScale::extend_coarse(const MPMField &finer, int levels) const
 }
 
 /** -1: not known to this rank, which no point of it has to do with then. */
-int64_t MPMTwoScale::canonical_node(const Grid &grid, const int index[3]) const
+int64_t MPMTwoScale::canonical_node(const Grid &grid, const int index[3])
 {
   int wrapped[3] = {0, 0, 0};
   for (int d = 0; d < grid.lattice.dim; d++) wrapped[d] = grid.lattice.wrap(d, index[d]);
   return grid.locate(wrapped);
 }
 
-/* ----------------------------------------------------------------------
-   Cells with points of the coarse field. Where there is a field that is coarser still, its cells count, too: what the fine
-   nodes of this pair reach of them has no free node of the field between
-------------------------------------------------------------------------- */
-
-void MPMTwoScale::mark_cells()
+bool MPMTwoScale::is_marked(const int cell[3]) const
 {
-  const Grid &grid = coarse.grid;
-  const int dim = grid.lattice.dim, order = stencil_order(coarse.options.shape);
-  const double middle = order == 2 ? 0.5 : 0.0;
-  marks.zero();
+  return std::any_of(marks.begin(), marks.end(), [cell](const Marks &m) {
+    const int64_t node = canonical_node(m.field.grid, cell);
+    return node >= 0 && *m.cells.at(node) > 0.0;
+  });
+}
+
+/** Cells with points of a field. */
+void MPMTwoScale::mark_points(const Marks &of)
+{
+  const MPMField &field = of.field;
+  const Grid &grid = field.grid;
+  const int dim = grid.lattice.dim;
+  const double middle = stencil_order(field.options.shape) == 2 ? 0.5 : 0.0;
+  of.cells.zero();
   int last[3] = {0, 0, 0}, index[3] = {0, 0, 0}, last_slot = -1;
-  for (const auto &run : coarse.map->runs)
+  for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++) {
-      const double *const x = coarse.frame->places()[i];
+      const double *const x = field.frame->places()[i];
       for (int d = 0; d < dim; d++)
         index[d] = (int) std::floor((x[d] - grid.lattice.origin[d]) / grid.lattice.h + middle);
       if (run.slot == last_slot && std::equal(index, index + 3, last)) continue;
       std::copy_n(index, 3, last);
       last_slot = run.slot;
       const int64_t node = grid.locate_near(grid.blocks[run.slot], index);
-      if (node >= 0) *marks.at(node) = 1.0;
+      if (node >= 0) *of.cells.at(node) = 1.0;
     }
-  coarse.nodes.sum(marks);
+  field.nodes.sum(of.cells);
+}
+
+/* ----------------------------------------------------------------------
+   Cells with points of the coarse field, and of other bodies on its lattice. Where there is a field that is coarser still, its cells
+   count, too: what the fine nodes of this pair reach of them has no free node of the field between
+------------------------------------------------------------------------- */
+
+void MPMTwoScale::mark_cells()
+{
+  for (const auto &m : marks) mark_points(m);
   if (!before) return;
 
-  const Grid &above = before->coarse.grid;
+  const Grid &grid = coarse.grid;
+  const int dim = grid.lattice.dim, order = stencil_order(coarse.options.shape);
   for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
     const auto &block = grid.blocks[slot];
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (!(block.reached >> n & 1)) continue;
+      int index[3];
       grid.node_index(block, n, index);
       for (int d = 0; d < dim;
            d++)    // the cell of the coarser lattice around the middle of this one
         index[d] = quarter(before->offset[d] + 2 * index[d] + (order == 2 ? 2 : 1));
-      const int64_t cell = canonical_node(above, index);
-      if (cell >= 0 && *before->marks.at(cell) > 0.0)
-        *marks.at((int64_t) slot * NODES_PER_BLOCK + n) = 1.0;
+      if (before->is_marked(index)) *marks[0].cells.at((int64_t) slot * NODES_PER_BLOCK + n) = 1.0;
     }
   }
 }
@@ -207,10 +227,6 @@ void MPMTwoScale::find_tied()
   parents.clear();
   count = {};
 
-  const auto is_marked = [&](const int cell[3]) {
-    const int64_t node = canonical_node(above, cell);
-    return node >= 0 && *marks.at(node) > 0.0;
-  };
   for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
     const auto &block = grid.blocks[slot];
     if (!block.reached) continue;

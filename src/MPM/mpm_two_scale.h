@@ -38,6 +38,10 @@ class MPMTwoScale : protected Pointers {
   /** Where the fine lattice of a coarse one can have its origin, on one axis. */
   static double fine_origin(const MPMField &coarse, int axis);
 
+  /** Another body on the lattice of the coarse field that may touch this one: where it has points, fine nodes are tied, too, so that
+   *  both have the same functions. */
+  void add_neighbor(MPMField &);
+
   /** Activate blocks of the coarse grid with all that nodes of a finer one (this pair's, or of the next ones) have to do with. */
   void extend_coarse(const MPMField &finer, int levels) const;
   void topology_changed() { lists_valid = false; }
@@ -67,10 +71,15 @@ class MPMTwoScale : protected Pointers {
     double r[3];    // from the fine node to it [distance]
   };
 
+  struct
+      Marks {    // of coarse cells with points of a field, at their lower node or in the middle of them
+    MPMField &field;
+    MPM_NS::NodeField &cells;
+  };
+
   const MPMTwoScale *const before;
-  MPM_NS::NodeField
-      &marks;       // of coarse cells with points, at their lower node or in the middle of them
-  int offset[3];    // of fine nodes from coarse ones, in quarters of the coarse spacing
+  std::vector<Marks> marks;    // of the coarse field, and of its neighbors
+  int offset[3];               // of fine nodes from coarse ones, in quarters of the coarse spacing
   bool lists_valid = false;
   std::vector<Tied> tied;
   std::vector<Parent> parents;
@@ -83,9 +92,11 @@ class MPMTwoScale : protected Pointers {
   std::vector<Share> shares;
   std::vector<double> affine;    // [tied][dim*dim] sums of N m C over points
 
+  bool is_marked(const int cell[3]) const;
+  static void mark_points(const Marks &);
   void mark_cells();
   void find_shares();
-  int64_t canonical_node(const MPM_NS::Grid &, const int index[3]) const;
+  static int64_t canonical_node(const MPM_NS::Grid &, const int index[3]);
   void sum_affine(const MPMTwoScale *after);
 };
 
