@@ -54,7 +54,13 @@ static int turn_of(tagint tag, int bits)
 
 void MPMEnergyWatch::step()
 {
+  const bool centers = strain_follows();
+  if (run.steps == 1 && centers) center_start();
   if (run.steps % CHECK_EVERY == 0) check();
+  if (centers && ((run.steps + 1) % CHECK_EVERY == 0 || is_last_step())) {
+    run.stored = sums().stored;
+    run.noted = run.steps + 1;
+  }
   seen.clear();
   const int met = number_met();
   note_points(parts[0], 0, met);
@@ -194,6 +200,37 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
 
 /* ---------------------------------------------------------------------- */
 
+/* ----------------------------------------------------------------------
+   Velocities that steps have led to belong to the middle of the last step, as their work does, see moved(). With usl and musl
+   stored energy belongs to its end, where points are, and their sum would vary with each vibration by omega dt of its energy: by 4 % for a
+   block of 4 by 6 cells. The mean of stored energies before and after the step belongs to its middle, and with it the sum is
+   that of a leapfrog, which is constant: with forces f and ways s of steps, half of the sum of f_k (s_k + s_k+1) is half of that of
+   (f_k-1 + f_k) s_k, but for its ends. With usf stress is a step behind, with usavg in the middle
+------------------------------------------------------------------------- */
+
+bool MPMEnergyWatch::strain_follows() const
+{
+  return std::none_of(fields.begin(), fields.end(), [](const MPMField *field) {
+    return field->options.stress_before();
+  });
+}
+
+/** Of a run or of its part; with every, of the cycle that has it. */
+bool MPMEnergyWatch::is_last_step() const
+{
+  return update->ntimestep + fields[0]->options.every > update->laststep;
+}
+
+/** A run may begin in the middle of a vibration: the step before it had about as much as the first one. */
+void MPMEnergyWatch::center_start()
+{
+  const double change = 0.5 * (sums().stored - run.start.stored);
+  run.start.stored -= change;
+  run.lowest -= change;
+}
+
+/* ---------------------------------------------------------------------- */
+
 void MPMEnergyWatch::begin(const Sums &now)
 {
   run.start = now;
@@ -211,7 +248,9 @@ void MPMEnergyWatch::check()
   const Sums now = sums();
   if (run.steps == 0 || now.points != run.start.points) begin(now);
   if (run.steps % CHECK_EVERY == 0) choose_turns(now);
-  const double spent = now.spent - run.start.spent, unexplained = now.unexplained();
+  const double ahead = run.noted > 0 && run.noted == run.steps ? 0.5 * (now.stored - run.stored)
+                                                               : 0.0,
+               spent = now.spent - run.start.spent, unexplained = now.unexplained() - ahead;
   run.last = now;
   run.lowest = std::min(run.lowest, unexplained);
   run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + fabs(spent));

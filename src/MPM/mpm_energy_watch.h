@@ -87,6 +87,8 @@ class MPMEnergyWatch : protected Pointers {
     double in_play;    // largest energy so far
     double gained;     // since it was lowest
     Sums last;         // at the last look
+    double stored;     // at the start of the step that has noted it
+    bigint noted;      // steps done by then, plus 1; 0: none
     bool told;
   } run = {};
 
@@ -95,6 +97,9 @@ class MPMEnergyWatch : protected Pointers {
   void find_places(Part &) const;
   void choose_turns(const Sums &);
   Sums sums() const;
+  bool strain_follows() const;
+  bool is_last_step() const;
+  void center_start();
   void begin(const Sums &);
   void check();
 };
