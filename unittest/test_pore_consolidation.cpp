@@ -242,8 +242,9 @@ void PrintTo(const Large &column, std::ostream *out)
 
 // Consolidation by loads of 0.2, 0.5, and 1 modulus of the soil, with rows of the table of the benchmark, or, where it
 // has none for laws that there are, with finite volumes, which these rows check, too. The load is on the two upper rows
-// of points in such parts that its place is the surface. With the permeability of Kozeny and Carman, which falls to
-// 1/50 where the soil has consolidated, 20 cells have settled 4 and 2 % too much at T = 0.05 and 0.1: 40 cells then
+// of points in such parts that its place is the surface. The permeability of Kozeny and Carman falls to 1/50 where the
+// soil has consolidated, within a cell of the surface at first: 20 cells have settled 2.1 % too much at T = 0.05, and there are 40
+// for that
 PARAMETER_TEST(
     LargeStrain, Consolidates, Large,
     Values(
@@ -271,7 +272,8 @@ PARAMETER_TEST(
                {0.293418, 0.026521}}},
         Large{"logarithmic, k J^2, 1", 1.0, 0.7, SQUARED, 20, ALL, {}},
         Large{"logarithmic, constant k, 0.5", 0.5, 0.5, CONSTANT, 20, ALL, {}},
-        Large{"logarithmic, Kozeny and Carman, 0.5", 0.5, 0.5, KOZENY, 20, {0.2, 0.5, 1.0}, {}},
+        Large{
+            "logarithmic, Kozeny and Carman, 0.5", 0.5, 0.5, KOZENY, 20, {0.1, 0.2, 0.5, 1.0}, {}},
         Large{
             "logarithmic, Kozeny and Carman, 0.5, 40 cells", 0.5, 0.5, KOZENY, 40, {0.05, 0.1}, {}},
         Large{"neo-Hooke, constant k, 0.5",

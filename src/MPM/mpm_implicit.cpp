@@ -592,7 +592,7 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     if (left > 0.0) goal.relative = std::max(accuracy, 0.1 * enough / left);
     goal.relative = std::min(goal.relative, options.least_accuracy);
     goal.most_iterations = (int) options.most_linear;
-    const auto solved = joint ? joint->solve(goal) : solve(free.data(), change.data(), goal);
+    const auto solved = joint ? joint->solve(u, goal) : solve(free.data(), change.data(), goal);
     std::vector<double> &du = change;
     now.linear += solved.iterations;
     now.iterations++;

@@ -25,6 +25,11 @@
    sums a disc of 200 points of nearly incompressible water needed 45 iterations of GMRES for six digits and now needs 8, and
    a sphere did not converge.
 
+   K has to be positive definite in that, and need not be: soil under a pressure that is fixed is pushed aside by it where its surface tilts
+   under a load that does not. In the plane a half-space of soil with the shear modulus G and no Poisson's effect does not stand more than 2 G/3 of pressure
+   so, and with water that has no time to leave 2 G. From the first K on for which that is so, the preconditioner takes what K is without the
+   pressures, for the rest of the step: a load at once of half of the soil's modulus needs that in short steps.
+
    Vectors are compared in the norm in which volumes count as much as forces, both in parts of what may be left of them.
 ------------------------------------------------------------------------- */
 
@@ -94,7 +99,8 @@ void MPMImplicit::Joint::begin_step()
   for (auto *list : {&left, &correction, &room}) list->assign(p.size(), 0.0);
   none.assign(p.size(), 0.0);
   first.clear();
-  prepared = false;
+  prepared = stress_alone = false;
+  motion.tangent.keep_without_pressure(false);
   part_left = 0.0;
   motion.tangent.set_pressure(of_points.data());
   find_free_axes();
@@ -241,6 +247,24 @@ void MPMImplicit::Joint::apply(const double *x, double *y)
   water.find_changes(x + n, dV.data(), y + n);
 }
 
+/** The motion by forces where pressures do not change, see the top of this file. */
+SolveReport MPMImplicit::Joint::move_alone(const double *forces, double *z, const SolveGoal &goal)
+{
+  motion.tangent.leave_out_pressure(stress_alone);
+  auto solved = motion.solve(forces, z, goal);
+  if (solved.outcome == SolveReport::INDEFINITE && !stress_alone) {
+    motion.now.linear += solved.iterations;
+    stress_alone = true;
+    motion.by_levels = false;
+    motion.tangent.keep_without_pressure(true);
+    motion.tangent.linearize(motion.part_of(*at), motion.part * motion.dt);
+    motion.tangent.leave_out_pressure(true);
+    solved = motion.solve(forces, z, goal);
+  }
+  motion.tangent.leave_out_pressure(false);
+  return solved;
+}
+
 void MPMImplicit::Joint::precondition(const double *r, double *z)
 {
   const int64_t n = motion.nreals();
@@ -250,7 +274,7 @@ void MPMImplicit::Joint::precondition(const double *r, double *z)
   goal.most_iterations = (int) std::min<int64_t>(motion.options.most_linear, MOST_INNER);
   std::vector<double> forces(r, r + n);
   take_means(forces.data());
-  const auto solved = motion.solve(forces.data(), z, goal);
+  const auto solved = move_alone(forces.data(), z, goal);
   motion.now.linear += solved.iterations;
   take_means(z);
   std::fill(dp.begin(), dp.end(), 0.0);
@@ -274,9 +298,10 @@ void MPMImplicit::Joint::products(int n, const double *const *a, const double *c
   sum_in_order(motion.lmp, n, forces.data(), of_ranks, value);
 }
 
-SolveReport MPMImplicit::Joint::solve(const SolveGoal &goal)
+SolveReport MPMImplicit::Joint::solve(const std::vector<double> &u, const SolveGoal &goal)
 {
   const int64_t n = motion.nreals();
+  at = &u;
   prepare();
   weight = enough() > 0.0 && motion.enough_force > 0.0 ? motion.enough_force / enough() : 1.0;
   rhs.resize(size());

@@ -37,8 +37,8 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   double negligible_forces() const;
   /** Nodes that walls hold move first: the change of forces, and volumes that this takes. */
   void move_walls(const std::vector<double> &u, double *forces);
-  /** Corrections of both, that of the motion in motion.change. */
-  MPM_NS::SolveReport solve(const MPM_NS::SolveGoal &);
+  /** Corrections of both from the motion u on, that of the motion in motion.change. */
+  MPM_NS::SolveReport solve(const std::vector<double> &u, const MPM_NS::SolveGoal &);
   /** p <- p + s times its correction. */
   void move(double s);
 
@@ -58,12 +58,14 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   MPMNodePressure &water;
   MPM_NS::FlexibleGMRES solver{60};
   MPM_NS::SplineMultigrid levels;
-  bool prepared = false;                  // the levels, in this step
-  double response = 0.0, volume = 0.0;    // of a unit of pressure; of all points
-  double round_off = 0.0;                 // volumes that pressures are not known better than
-  double part_left = 0.0;                 // of what is left at first
-  double sum = 0.0, carried = 0.0;        // of what is left, and of all volumes
-  double weight = 1.0;                    // of volumes in products of vectors
+  bool prepared = false;        // the levels, in this step
+  bool stress_alone = false;    // motion in the preconditioner: in this step without the pressure
+  const std::vector<double> *at = nullptr;    // where it is linearized
+  double response = 0.0, volume = 0.0;        // of a unit of pressure; of all points
+  double round_off = 0.0;                     // volumes that pressures are not known better than
+  double part_left = 0.0;                     // of what is left at first
+  double sum = 0.0, carried = 0.0;            // of what is left, and of all volumes
+  double weight = 1.0;                        // of volumes in products of vectors
   std::vector<double> p, kept, left, first, correction;    // [node]
   std::vector<double> rhs, solution, room, none;
   std::vector<double> of_points, dp, dV;    // [n]
@@ -78,6 +80,7 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   void find_free_axes();
   void take_means(double *x);
   void prepare();
+  MPM_NS::SolveReport move_alone(const double *forces, double *z, const MPM_NS::SolveGoal &);
 };
 
 }    // namespace LAMMPS_NS

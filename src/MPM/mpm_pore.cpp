@@ -120,7 +120,8 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
   }
 }
 
-/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp). In soil that dries
+/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp), and so does soil whose permeability falls
+ *  steeply with its porosity, as flow through a compacted crust is governed by its resistance, which is the sum of those of its parts. In soil that dries
  *  these are of full pores, and what suction leaves of them is that of each point: it changes by orders of magnitude within a front,
  *  and with means across that water would not get into dry soil. The square of the flow has a mean across interfaces, too; along
  *  them points have their own resistance then, as flows with one gradient and different laws have no common one. */
@@ -131,9 +132,9 @@ void MPMPore::init_layers()
   double greatest = 0.0, fastest_soil = 0.0;
   for (const auto &s : soils) {
     const auto &first = soils.front().of;
-    differ = differ || s.of.law == MPMPoreSoil::FORMULA || s.of.law != first.law ||
-        s.of.permeability != first.permeability || s.of.quadratic != first.quadratic ||
-        s.of.diameter != first.diameter;
+    differ = differ || s.of.law == MPMPoreSoil::FORMULA || s.of.law == MPMPoreSoil::KOZENY ||
+        s.of.law != first.law || s.of.permeability != first.permeability ||
+        s.of.quadratic != first.quadratic || s.of.diameter != first.diameter;
     greatest = std::max(greatest, s.of.permeability);
     fastest_soil = std::max(fastest_soil, s.of.permeability / s.of.storage_at(1.0, water));
   }

@@ -447,6 +447,7 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
 double MPMTangent::linearize(const double *u, double dt)
 {
   tangents.resize((std::size_t) atom->nmax * nH * nH);
+  if (keeps_stress) stress_tangents.resize(tangents.size());
   if (averages()) mean_tangents.resize((std::size_t) atom->nmax * nH);
   if (adds()) volume_gradients.resize((std::size_t) atom->nmax * nH);
   double sum = 0.0, all;
@@ -460,6 +461,10 @@ double MPMTangent::linearize(const double *u, double dt)
       double most = 0.0;
       for (int k = 0; k < nH * nH; k++) most = std::max(most, std::fabs(K[k]));
       sum += atom->vfrac[first + p] * most;
+    }
+    if (keeps_stress) {
+      const std::size_t begin = (std::size_t) first * nH * nH;
+      std::copy_n(&tangents[begin], (std::size_t) n * nH * nH, &stress_tangents[begin]);
     }
     if (adds()) differentiate_added(first, n, H);
     if (follows(first, n)) differentiate_loads(first, n, H);
@@ -483,7 +488,7 @@ template <int N> static void multiply(int n, const double *K, const double *H, d
 void MPMTangent::change_of_forces(const double *du, double *dforce, const double *dp, double *dV)
 {
   gather(du, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
-    const double *const K = &tangents[(bigint) first * nH * nH];
+    const double *const K = &present()[(bigint) first * nH * nH];
     double *const stress = &P[(bigint) nL * first];
     if (nH == 4)
       multiply<4>(n, K, H, stress);
@@ -559,7 +564,7 @@ void MPMTangent::each_point(const UsePoint &use) const
   std::vector<double> gradients, stiffness((std::size_t) size * size, 0.0);
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
-      const double *const K = &tangents[i * nH * nH], V = scale * atom->vfrac[i];
+      const double *const K = &present()[i * nH * nH], V = scale * atom->vfrac[i];
       const double around =
           nH > nL ? 1.0 / field.frame->radius((int) i, field.frame->places()[i][0]) : 0.0;
       nodes.clear();
@@ -607,7 +612,7 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
   const auto add = nH > nL ? add_block<2, 5> : dim == 2 ? add_block<2, 4> : add_block<3, 9>;
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
-      const double *const K = &tangents[i * nH * nH], V = scale * atom->vfrac[i];
+      const double *const K = &present()[i * nH * nH], V = scale * atom->vfrac[i];
       const double around = nH > nL ? 1.0 / field.frame->radius((int) i, place[3 * i]) : 0.0;
       stencil.visit(grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
         double g[3];
@@ -639,9 +644,9 @@ double MPMTangent::asymmetry() const
 double MPMTangent::memory_usage() const
 {
   double bytes = sizeof(Batch);
-  for (const auto *list :
-       {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points, &load_forces,
-        &load_tangents, &mean_stress, &mean_tangents, &added, &added_changes, &volume_gradients})
+  for (const auto *list : {&nodes, &history, &P, &hoop_stress, &tangents, &no_force,
+                           &forces_on_points, &load_forces, &load_tangents, &stress_tangents,
+                           &mean_stress, &mean_tangents, &added, &added_changes, &volume_gradients})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

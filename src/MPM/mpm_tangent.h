@@ -61,6 +61,10 @@ class MPMTangent : protected Pointers {
   /** A pressure that points have in their forces besides their stress, [n], compression positive; null: none. As a Cauchy stress, it
    *  acts on the points as they are after the motion. To be set before forces() and linearize(). */
   void set_pressure(const double *of_points) { pressure = of_points; }
+  /** linearize() keeps the tangents of the stress without this pressure, too. */
+  void keep_without_pressure(bool keeps) { keeps_stress = keeps; }
+  /** Products, blocks, and points are from now on those of the stress without this pressure, which must have been kept; or of all. */
+  void leave_out_pressure(bool leaves) { of_stress = leaves; }
   /** Changes of the volumes of points by the motion u, [n]. As what has such a pressure, in the plane and in space. Collective. */
   void volume_changes(const double *u, double *dV);
   /** [n] Moduli of points that cannot widen, by their tangents, the mean of all axes [pressure]. */
@@ -108,6 +112,9 @@ class MPMTangent : protected Pointers {
   // pressure besides the stress, add to the mean stress; J G [point][nH] with G = F^-T of the places
   std::vector<double> mean_stress, mean_tangents, added, added_changes, volume_gradients;
   const double *pressure = nullptr;
+  bool keeps_stress = false, of_stress = false;
+  std::vector<double> stress_tangents;    // without the pressure
+  const std::vector<double> &present() const { return of_stress ? stress_tangents : tangents; }
   bool averages() const;
   bool adds() const { return averages() || pressure; }
   void find_volume_gradient(const double *F, double *g) const;
