@@ -114,7 +114,11 @@ class MPMImplicit : private MPMNodeSystem {
   void end_motion();
   const Report &report() const { return now; }
   /** Steps to come begin without what those before have told: for those of a restart file, which do not know it. */
-  void forget() { memory.clear(); }
+  void forget()
+  {
+    memory.clear();
+    large = false;
+  }
   double memory_usage() const;
 
  private:
@@ -164,11 +168,15 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<int64_t> heavy;    // nodes with a mass, those that this rank owns first
   std::size_t heavy_owned = 0;
   std::vector<double> of_heavy, of_ranks;
+  std::vector<double> turns;    // [heavy][dim][dim] of the body since the factors; empty: none
   bool can_keep() const;
   void recall();
   void foresee(std::vector<double> &u);
   void remember(const std::vector<double> &u);
   bool make_factors(const std::vector<double> &u);
+  void find_turns(const std::vector<double> &u, std::vector<double> &turns);
+  void turn_from_factors(const std::vector<double> &u);
+  void turn(bool back, std::vector<double> &of_heavy) const;
   void find_correction();
   double product_of_heavy(const std::vector<double> &a, const std::vector<double> &b);
   void take_heavy(const std::vector<double> &of_all, std::vector<double> &of_heavy) const;

@@ -32,10 +32,11 @@ struct MPMImplicitMemory {
   std::deque<std::vector<double>> motions;    // the last one first
   bool structured = false;    // factors were there, whose structure is of use for those to come
   bool factorized = false;
-  bool levels = false;       // there are some in their place
-  double stiffness = 0.0;    // that goes with the factors, see MPMTangent::linearize()
-  double asymmetry = 0.0;    // of the same
-  std::deque<Pair> pairs;    // the oldest one first
+  bool levels = false;           // there are some in their place
+  double stiffness = 0.0;        // that goes with the factors, see MPMTangent::linearize()
+  double asymmetry = 0.0;        // of the same
+  std::vector<double> turned;    // rotations of the body around nodes with a mass, at the factors
+  std::deque<Pair> pairs;        // the oldest one first
   int64_t steps = 0, iterations = 0, last = 0;    // with these factors; those of the last step
 
   void drop_factors()
@@ -47,7 +48,7 @@ struct MPMImplicitMemory {
   void clear() { *this = {}; }
   double memory_usage() const
   {
-    double reals = nodes.capacity() + walls.capacity();
+    double reals = nodes.capacity() + walls.capacity() + turned.capacity();
     for (const auto &motion : motions) reals += motion.capacity();
     for (const auto &pair : pairs) reals += pair.s.capacity() + pair.y.capacity();
     return reals * sizeof(double);

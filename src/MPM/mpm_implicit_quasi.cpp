@@ -11,6 +11,10 @@
    corrected by what each iteration tells of them, which is the difference of the forces that its correction of the motion made (H. Matthies,
    G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613; in the form of J. Nocedal, Math. Comput. 35 (1980) 773). An iteration then costs the
    forces of the points and a solution with factors. What it converges to is what Newton's method does.
+
+   What changes most is where the body points to: the stiffness of a beam along its axis is a thousand times that across, and some degrees of
+   rotation bring much of one into the other. Factors turn with the body: a rotation of all of it turns the stiffness by just that, and where
+   rotations R of the parts are not the same, R K^-1 R^T is near to the inverse of the stiffness as long as they change by little in a cell.
 ------------------------------------------------------------------------- */
 
 #include "mpm_implicit.h"
@@ -18,6 +22,8 @@
 #include "force.h"
 #include "mpm_field.h"
 #include "mpm_plan.h"
+
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +109,68 @@ void MPMImplicit::remember(const std::vector<double> &u)
   memory.motions.push_front(std::move(motion));
 }
 
+/** The rotation in the deformation F, of dim times dim, in its place: unity where there is none. */
+static void take_rotation(int dim, double *F)
+{
+  if (dim == 2) {
+    const double c = F[0] + F[3], s = F[2] - F[1], size = std::hypot(c, s);
+    const bool good = size > 0.0 && std::isfinite(size);
+    F[0] = F[3] = good ? c / size : 1.0;
+    F[2] = good ? s / size : 0.0;
+    F[1] = -F[2];
+    return;
+  }
+  using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  Eigen::Map<Matrix> of(F);
+  const Eigen::JacobiSVD<Matrix> parts(of, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix R = parts.matrixU() * parts.matrixV().transpose();
+  if (!(of.determinant() > 0.0) || !R.allFinite()) R.setIdentity();
+  of = R;
+}
+
+/** Rotations of the body around nodes with a mass, after the motion u. */
+void MPMImplicit::find_turns(const std::vector<double> &u, std::vector<double> &rotations)
+{
+  const int square = width * width;
+  std::vector<double> mean;
+  tangent.mean_deformations(part_of(u), mean);
+  rotations.resize(heavy.size() * square);
+  for (std::size_t k = 0; k < heavy.size(); k++) {
+    std::copy_n(&mean[heavy[k] * square], square, &rotations[k * square]);
+    take_rotation(width, &rotations[k * square]);
+  }
+}
+
+/** Those since the factors, R R0^T. */
+void MPMImplicit::turn_from_factors(const std::vector<double> &u)
+{
+  const int w = width, square = w * w;
+  std::vector<double> rotations;
+  find_turns(u, rotations);
+  turns.assign(rotations.size(), 0.0);
+  for (std::size_t k = 0; k < rotations.size(); k += square)
+    for (int a = 0; a < w; a++)
+      for (int b = 0; b < w; b++)
+        for (int c = 0; c < w; c++)
+          turns[k + w * a + b] += rotations[k + w * a + c] * memory.turned[k + w * b + c];
+}
+
+/** Vectors of nodes with a mass turn with the body, or back. */
+void MPMImplicit::turn(bool back, std::vector<double> &x) const
+{
+  const int w = width;
+  for (std::size_t k = 0; k < turns.size() / (w * w); k++) {
+    const double *const R = &turns[k * w * w];
+    double *const v = &x[k * w];
+    double from[3];
+    std::copy_n(v, w, from);
+    for (int a = 0; a < w; a++) {
+      v[a] = 0.0;
+      for (int b = 0; b < w; b++) v[a] += (back ? R[w * b + a] : R[w * a + b]) * from[b];
+    }
+  }
+}
+
 /** Factors of the tangents at the motion u; false: there are none that are of use. Collective. */
 bool MPMImplicit::make_factors(const std::vector<double> &u)
 {
@@ -118,6 +186,8 @@ bool MPMImplicit::make_factors(const std::vector<double> &u)
   memory.structured = true;
   now.made++;
   large = !multigrid->is_whole();
+  turns.clear();
+  if (!large) find_turns(u, memory.turned);
   return memory.factorized = multigrid->usable() && !large;
 }
 
@@ -160,8 +230,14 @@ void MPMImplicit::find_correction()
     add(-along[k], pair.y, of_heavy);
   }
   trial = free;
+  turn(true, of_heavy);
   put_heavy(of_heavy, trial);
   multigrid->precondition(trial.data(), change.data());
+  if (!turns.empty()) {
+    take_heavy(change, of_heavy);
+    turn(false, of_heavy);
+    put_heavy(of_heavy, change);
+  }
   project(change.data());
   take_heavy(change, of_heavy);
   for (int k = 0; k < n; k++) {
@@ -207,6 +283,8 @@ bool MPMImplicit::go_on(std::vector<double> &u)
       memory.last * memory.steps > memory.iterations + COST)
     memory.drop_factors();
   memory.pairs.clear();
+  turns.clear();
+  if (memory.factorized) turn_from_factors(u);
   if (!find_residual(u, size)) return false;
   while (true) {
     now.residuals.push_back(now.unbalanced);

@@ -537,6 +537,31 @@ void MPMTangent::volume_changes(const double *u, double *dV)
   });
 }
 
+/** As forces on points, one row of each deformation after the other. */
+void MPMTangent::mean_deformations(const double *u, std::vector<double> &of_nodes)
+{
+  const std::size_t nmax = atom->nmax, nnodes = field.grid.nnodes();
+  deformations.assign(3 * nmax * dim, 0.0);
+  gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
+    double F[9 * BATCH];
+    lattice_F(first, n, H, F);
+    for (int p = 0; p < n; p++)
+      for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++)
+          deformations[3 * (nmax * r + first + p) + c] =
+              atom->vfrac[first + p] * F[9 * p + 3 * r + c];
+  });
+  std::fill(P.begin(), P.end(), 0.0);
+  std::fill(hoop_stress.begin(), hoop_stress.end(), 0.0);
+  of_nodes.resize(nnodes * nL);
+  std::vector<double> row(nnodes * dim);
+  for (int r = 0; r < dim; r++) {
+    scatter(&deformations[3 * nmax * r], row.data());
+    for (std::size_t n = 0; n < nnodes; n++)
+      std::copy_n(&row[n * dim], dim, &of_nodes[n * nL + dim * r]);
+  }
+}
+
 void MPMTangent::find_moduli(std::vector<double> &moduli) const
 {
   moduli.assign(atom->nmax, 0.0);
@@ -646,6 +671,7 @@ double MPMTangent::memory_usage() const
   double bytes = sizeof(Batch);
   for (const auto *list : {&nodes, &history, &P, &hoop_stress, &tangents, &no_force,
                            &forces_on_points, &load_forces, &load_tangents, &stress_tangents,
+                           &deformations,
                            &mean_stress, &mean_tangents, &added, &added_changes, &volume_gradients})
     bytes += list->capacity() * sizeof(double);
   return bytes;

@@ -69,7 +69,9 @@ class MPMTangent : protected Pointers {
   void volume_changes(const double *u, double *dV);
   /** [n] Moduli of points that cannot widen, by their tangents, the mean of all axes [pressure]. */
   void find_moduli(std::vector<double> &moduli) const;
-  /** Minus the same, of each node by its own motion alone: [node][dim][dim]. Collective. */
+  /** Mean deformation of the places of the lattice after the motion u of the points around each node, [node][dim][dim], times a factor. Collective. */
+  void mean_deformations(const double *u, std::vector<double> &of_nodes);
+  /** Minus the change of forces of each node by its own motion alone: [node][dim][dim]. Collective. */
   void diagonal(std::vector<double> &blocks);
   /** Forces of loads that follow the deformation after the motion u, less those that atom->f has. Collective. */
   void loads(const double *u, double *force);
@@ -96,7 +98,8 @@ class MPMTangent : protected Pointers {
   const int dim, nL;                           // nL: entries of a gradient in the plane or in space
   int nH;                                      // those of H
   bool mls = false;                            // gradients are those of moving least squares
-  std::vector<double> nodes, history, P, hoop_stress, tangents, no_force, forces_on_points;
+  std::vector<double> nodes, history, P, hoop_stress, tangents, no_force, forces_on_points,
+      deformations;
   bool loaded = false;    // some points have loads that follow them
   // [point][3] forces of these loads besides atom->f, and [point][nH][3] derivatives by H, if there are any
   std::vector<double> load_forces, load_tangents;

@@ -923,8 +923,8 @@ void SplineMultigrid::precondition(const double *r, double *z)
     return;
   }
   std::fill_n(z, nnodes * w, 0.0);
-  o.rest.assign(nnodes * w, 0.0);
   if (!o.whole) {
+    o.rest.assign(nnodes * w, 0.0);
     o.smooth(r, z, true);
     o.system->apply(z, o.rest.data());
   }
@@ -936,7 +936,7 @@ void SplineMultigrid::precondition(const double *r, double *z)
   for (int64_t node = 0; node < nnodes; node++) {
     if (!o.grid.owns(node) || !o.in_system[node]) continue;
     double left[3], force[3];
-    for (int a = 0; a < w; a++) left[a] = r[node * w + a] - o.rest[node * w + a];
+    for (int a = 0; a < w; a++) left[a] = r[node * w + a] - (o.whole ? 0.0 : o.rest[node * w + a]);
     o.project(node, left, true, force);
     for (int k = o.first[node]; k < o.first[node + 1]; k++)
       for (int a = 0; a < w; a++) partial[o.parts[k].node * w + a] += o.parts[k].weight * force[a];
