@@ -14,6 +14,7 @@
 #include "mpm_flow_inflow.h"
 #include "mpm_flow_pressure.h"
 #include "mpm_flow_regions.h"
+#include "mpm_flow_solids.h"
 #include "mpm_flow_stick.h"
 #include "mpm_flow_stress.h"
 #include "mpm_flow_tension.h"
@@ -153,6 +154,15 @@ Options MPMIncompressibleOptions::declare(int dim)
         liquids.push_back(liquid);
       })
       .standard("none");
+  o.add(
+       "solid",
+       {text(solid_group, "group-ID",
+             "these points are elastic solids, with the law and density of their fix mpm/material; "
+             "can be given more than once")})
+      .then([this] {
+        solid_groups.push_back(solid_group);
+      })
+      .standard("none");
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
                 "share of an excess of points in a cell that goes elsewhere in a step")});
@@ -180,6 +190,13 @@ Options MPMIncompressibleOptions::declare(int dim)
          "is that of one liquid, and cannot be used with liquid: leave one of them out"},
         {!liquids.empty() && tension > 0.0, "tension",
          "is that of one liquid, and cannot be used with liquid: leave one of them out"},
+        {!solid_groups.empty() && tension > 0.0, "tension",
+         "would act on the surfaces of solids, too, and cannot be used with solid: leave one of "
+         "them out"},
+        {!solid_groups.empty() && implicit, "solid",
+         "cannot be used with implicit yes: use explicit viscosity, or leave solid out"},
+        {!solid_groups.empty() && reflect > 0.0, "reflect",
+         "would count forces of solids twice, and cannot be used with solid: leave it out"},
         {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"}};
   });
   return o;
@@ -265,6 +282,16 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
       error->all(FLERR, "Fix mpm/incompressible liquid: group {} does not exist", one.group);
     liquid_bits.push_back(group->bitmask[igroup_of]);
   }
+  if (!solid_groups.empty()) {
+    int bits = 0;
+    for (const auto &one : solid_groups) {
+      const int igroup_of = group->find(one);
+      if (igroup_of < 0)
+        error->all(FLERR, "Fix mpm/incompressible solid: group {} does not exist", one);
+      bits |= group->bitmask[igroup_of];
+    }
+    solids = std::make_unique<MPMFlowSolids>(lmp, cells, bits);
+  }
   if (transfer == APIC) state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
 
   time_integrate = 1;
@@ -273,6 +300,8 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   size_vector = 14 + 3 * region_ids.size();
   global_freq = 1;
   extscalar = extvector = 0;
+  several = !liquids.empty();
+  least_density = density;
   restart_global = 1;
   keep_arrays();
 }
@@ -305,12 +334,11 @@ void FixMPMIncompressible::init()
     bodies->init();
     if (!bodies->any()) bodies.reset();
     pressure->bodies = bodies.get();
-    if (bodies && !liquids.empty())
+    if (bodies && (!liquids.empty() || solids))
       error->all(
           FLERR, Error::NOLASTLINE,
-          "Fix {} {}: bodies of fix mpm/rigid need a flow of one density: remove the keyword "
-          "liquid",
-          style, id);
+          "Fix {} {}: bodies of fix mpm/rigid need a flow of one density: remove the keyword {}",
+          style, id, solids ? "solid" : "liquid");
     if (bodies && stick)
       error->all(
           FLERR, Error::NOLASTLINE,
@@ -334,10 +362,12 @@ void FixMPMIncompressible::init()
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: {} cannot be used with points of fix mpm/emit: remove it", style, id,
                implicit ? "implicit yes" : "reflect");
-  if ((grains || inflow) && !liquids.empty())
+  if ((grains || inflow) && (!liquids.empty() || solids))
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix {} {}: {} need a flow of one density: remove the keyword liquid", style, id,
-               grains ? "grains of fix mpm/immersed" : "points of fix mpm/emit");
+               "Fix {} {}: {} need a flow of one density: remove the keyword {}", style, id,
+               grains ? "grains of fix mpm/immersed" : "points of fix mpm/emit",
+               solids ? "solid" : "liquid");
+  if (solids) solids->init(fmt::format("Fix {} {}", style, id));
   pressure->sources = inflow ? &inflow->sources() : nullptr;
   force_reneighbor = neighbor->includegroup ? 1 : 0;
   next_reneighbor = -1;
@@ -375,6 +405,7 @@ void FixMPMIncompressible::setup_pre_neighbor()
 void FixMPMIncompressible::check_points()
 {
   bigint mine[2] = {0, 0}, all[2];    // points, and those of another density
+  if (solids) check_solids();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
     const double mass = density_of(i) * atom->vfrac[i];
@@ -396,14 +427,30 @@ void FixMPMIncompressible::check_points()
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix {} {}: {} points have another mass than density {} times their volume; there is one "
-        "density but for points of keyword liquid",
+        "density but for points of keywords liquid and solid",
         style, id, all[1], density);
   refuse_other_integrators(lmp, *this);
   check_others();
 }
 
+/** Solids have laws, and perhaps other densities. */
+void FixMPMIncompressible::check_solids()
+{
+  solids->check_points();
+  double mine[2] = {density, -density}, all[2];    // greatest, and minus the least
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!cells.is_point(i)) continue;
+    mine[0] = std::max(mine[0], density_of(i));
+    mine[1] = std::max(mine[1], -density_of(i));
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  least_density = -all[1];
+  several = all[0] > (1.0 + SAME_DENSITY) * least_density;
+}
+
 double FixMPMIncompressible::density_of(int i) const
 {
+  if (solids && solids->holds(i)) return solids->density_of(i);
   double of = density;
   for (std::size_t k = 0; k < liquids.size(); k++)
     if (atom->mask[i] & liquid_bits[k]) of = liquids[k].density;
@@ -450,6 +497,7 @@ void FixMPMIncompressible::setup(int)
   if (!(update->dt > 0.0))
     error->all(FLERR, Error::NOLASTLINE, "Fix {} requires a positive time step: {}", style,
                update->dt);
+  stiffness_known = false;
   if (grains) grains->list();
   cells.find_cells();
   if (regions) {
@@ -595,7 +643,11 @@ void FixMPMIncompressible::initial_integrate(int)
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
   find_velocities();
   if (flip > 0.0 || reflect > 0.0 || differ) old = star;
-  if (!liquids.empty()) find_lightness(points);
+  if (several) find_lightness(points);
+  if (solids) {
+    if (!stiffness_known) check_stiffness();
+    solids->give_forces(elastic);
+  }
   pressure->find_wet(share);
 
   find_flow(part * (differ ? before : dt));
@@ -622,7 +674,9 @@ void FixMPMIncompressible::initial_integrate(int)
                                        reflect > 0.0 ? more.data() : nullptr,
                                        spread > 0.0 ? shift.data() : nullptr,
                                        regions.get(),
-                                       inflow.get()};
+                                       inflow.get(),
+                                       solids.get()};
+  if (solids) solids->deform(velocity.data(), dt, viscosity);
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
 
@@ -739,14 +793,35 @@ void FixMPMIncompressible::add_forces(double dt)
     for (int c = 0; c < dim; c++)
       if (from[dim + c] > 0.0) star[k * dim + c] += dt * from[2 * dim + c] / from[dim + c];
   }
+  for (int64_t k = 0; k < cells.size() && solids; k++)
+    for (int c = 0; c < dim; c++) {
+      const double mass = sums[k * width + dim + c];
+      if (mass > 0.0) star[k * dim + c] += dt * elastic[k * dim + c] / mass;
+    }
   cells.reflect_velocities(star.data());
+}
+
+/** In the first step of a run, as fix mpm/dt looks at all others. */
+void FixMPMIncompressible::check_stiffness()
+{
+  tagint tag;
+  const double mine = std::sqrt(2.0) * solids->stable_dt(tag);
+  double most;
+  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (update->dt > most * (1.0 + 1.0e-9))
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix {} {}: the time step {:.6g} is too large for the stiffness of its solids, which "
+        "allows {:.6g}; reduce it, or let fix mpm/dt set it",
+        style, id, update->dt, most);
+  stiffness_known = true;
 }
 
 void FixMPMIncompressible::add_viscosity(double dt)
 {
   const int dim = cells.lattice.dim;
   const double nu = viscosity * acceleration_of_stress(),
-               most = 2.0 * MPMFlowViscosity::stable_dt(nu, h, dim);
+               most = 2.0 * MPMFlowViscosity::stable_dt(nu * density / least_density, h, dim);
   if (update->dt > most * (1.0 + 1.0e-9))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: the time step {:.6g} is too large for the viscosity, which allows "
@@ -755,7 +830,8 @@ void FixMPMIncompressible::add_viscosity(double dt)
   shift.assign(star.size(), 0.0);
   viscous->add(dt * nu, star, shift);
   cells.publish(shift.data(), dim);
-  for (std::size_t k = 0; k < star.size(); k++) star[k] += shift[k];
+  for (std::size_t k = 0; k < star.size(); k++)
+    star[k] += several ? lightness[k] * shift[k] : shift[k];
   cells.reflect_velocities(star.data());
 }
 
@@ -894,7 +970,16 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   double dt = std::numeric_limits<double>::max();
   const double nu = viscosity * acceleration_of_stress();
   tag = 0;
-  if (nu > 0.0 && !implicit) dt = MPMFlowViscosity::stable_dt(nu, h, cells.lattice.dim);
+  if (nu > 0.0 && !implicit)
+    dt = MPMFlowViscosity::stable_dt(nu * density / least_density, h, cells.lattice.dim);
+  if (solids) {
+    tagint stiffest = 0;
+    const double shear = solids->stable_dt(stiffest);
+    if (shear < dt) {
+      dt = shear;
+      tag = stiffest;
+    }
+  }
   if (tension > 0.0)
     dt = std::min(dt, MPMFlowTension::stable_dt(tension * acceleration_of_stress(), h));
 
@@ -996,12 +1081,12 @@ double FixMPMIncompressible::memory_usage()
   double bytes = FixMPMState::memory_usage() + cells.memory_usage() + pressure->memory_usage() +
       air->memory_usage() + (regions ? regions->memory_usage() : 0.0) +
       (stick ? stick->memory_usage() : 0.0) + (grains ? grains->memory_usage() : 0.0) +
-      (inflow ? inflow->memory_usage() : 0.0);
+      (inflow ? inflow->memory_usage() : 0.0) + (solids ? solids->memory_usage() : 0.0);
   if (curved) bytes += curved->memory_usage();
   if (stress) bytes += stress->memory_usage();
   for (const auto *list :
-       {&at_surface, &potentials, &viscous_velocity, &before_forces, &mobility, &sums, &share, &old,
-        &star, &more, &velocity, &known, &pressures, &shift})
+       {&elastic, &at_surface, &potentials, &viscous_velocity, &before_forces, &mobility, &sums,
+        &share, &old, &star, &more, &velocity, &known, &pressures, &shift})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -31,6 +31,7 @@ class MPMFlowGrains;
 class MPMFlowInflow;
 class MPMFlowPressure;
 class MPMFlowRegions;
+class MPMFlowSolids;
 class MPMFlowStick;
 class MPMFlowStress;
 class MPMFlowTension;
@@ -59,6 +60,7 @@ struct MPMIncompressibleOptions {
     double density;
   };
   std::vector<Liquid> liquids;    ///< of other densities
+  std::vector<std::string> solid_groups;
 
   MPM_NS::Options declare(int dim);
 
@@ -67,6 +69,7 @@ struct MPMIncompressibleOptions {
   MPMFlowWall wall;
   std::string region_id;
   Liquid liquid;
+  std::string solid_group;
 };
 
 /** Flow of an incompressible fluid, with free surfaces: its points, on a staggered lattice of its own, with a pressure that
@@ -115,10 +118,15 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowBodies> bodies;    // of regions; null: these move by themselves, or not
   std::unique_ptr<MPMFlowGrains> grains;    // of fix mpm/immersed; null: none
   std::unique_ptr<MPMFlowInflow> inflow;    // of fix mpm/emit; null: none
+  std::unique_ptr<MPMFlowSolids> solids;    // null: none
   MPMRows gradient;                         // [n][dim*dim] dv_c/dx_d of points, with apic
   std::vector<int> liquid_bits;
   std::vector<double> lightness,
-      face_volumes;    // of faces, see MPMFlowPressure; with several densities
+      face_volumes;               // of faces, see MPMFlowPressure; with several densities
+  std::vector<double> elastic;    // forces of solids at faces
+  bool several = false;           // densities
+  double least_density = 0.0;
+  bool stiffness_known = false;    // in this run
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
       potentials, viscous_velocity, before_forces, mobility;
 
@@ -144,6 +152,8 @@ class FixMPMIncompressible :
   void find_lightness(const MPMFlowPoints &);
   void check_points();
   void check_others() const;
+  void check_solids();
+  void check_stiffness();
   void check_depths();
   void note_filling();
   void fit_gradients();

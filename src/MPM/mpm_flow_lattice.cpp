@@ -293,7 +293,7 @@ void MPMFlowLattice::list_images()
 
 /* ---------------------------------------------------------------------- */
 
-void MPMFlowLattice::sum(double *values, int width) const
+void MPMFlowLattice::sum(double *values, int width, bool moving) const
 {
   const int dim = lattice.dim;
   for (const auto &image : images) {
@@ -306,13 +306,18 @@ void MPMFlowLattice::sum(double *values, int width) const
       if (k < dim && normal)
         to[k] -= from[k];
       else if (k < dim && wall.sticks)
-        to[k] += 2.0 * wall.v[k] * from[dim + k] - from[k];
+        to[k] += (moving ? 2.0 * wall.v[k] * from[dim + k] : 0.0) - from[k];
       else
         to[k] += from[k];
     }
     for (int k = 0; k < width; k++)
       if (k % dim != image.axis || k >= 3 * dim || image.of_face != image.number) from[k] = 0.0;
   }
+  sum_freely(values, width);
+}
+
+void MPMFlowLattice::sum_freely(double *values, int width) const
+{
   grid.fold_aliases(values, width, 0, width);
   halo.sum(values, width, 0, width);
   grid.copy_aliases(values, width);

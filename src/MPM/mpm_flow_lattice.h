@@ -88,8 +88,10 @@ class MPMFlowLattice : protected Pointers {
   int find_block(const double *x, int base[3]) const;
 
   /** The values that points gave to images beyond walls go to cells within, width reals for each cell: the first dim of
-   *  them are momenta, the next ones masses, and then forces at faces; all others are plain sums. Then sums over periodic images and ranks. */
-  void sum(double *values, int width) const;
+   *  them are momenta, the next ones masses, and then forces at faces; all others are plain sums. Then sums over periodic images and ranks. Not moving: walls are at rest. */
+  void sum(double *values, int width, bool moving = true) const;
+  /** Values that belong to no wall: sums over periodic images and ranks. */
+  void sum_freely(double *values, int width) const;
   /** Values of owners to other ranks and periodic images; the values of all others must be zero. */
   void publish(double *values, int width) const;
   /** Who shares cells, for solves. */

@@ -11,6 +11,7 @@
 #include "mpm_flow_inflow.h"
 #include "mpm_flow_reach.h"
 #include "mpm_flow_regions.h"
+#include "mpm_flow_solids.h"
 
 #include <algorithm>
 #include <cmath>
@@ -190,7 +191,11 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
         p += w.cell<dim>(k) * pressure[number];
       });
-      for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
+      const bool solid = update.solids && update.solids->holds(i);
+      if (solid)
+        update.solids->set_pressure(stress[i], p);
+      else
+        for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
 
       if (update.inflow && update.inflow->carry(x, v, points.dt)) {
         if (points.gradient) std::fill_n(points.gradient[i], dim * dim, 0.0);
@@ -213,8 +218,8 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         for (int e = 0; e < dim * dim; e++) points.gradient[i][e] = inv_h * G[e];
 
       double shift[dim] = {};
-      if (update.shift) interpolate<dim>(reach, w, update.shift, shift, nullptr);
-      if (update.shift && points.gradient)
+      if (update.shift && !solid) interpolate<dim>(reach, w, update.shift, shift, nullptr);
+      if (update.shift && !solid && points.gradient)
         for (int c = 0; c < dim; c++)
           for (int d = 0; d < dim; d++) v[c] += points.gradient[i][dim * c + d] * shift[d];
 

@@ -18,6 +18,7 @@
 namespace LAMMPS_NS {
 class MPMFlowInflow;
 class MPMFlowRegions;
+class MPMFlowSolids;
 
 /** What points and the staggered lattice of a flow tell each other. */
 struct MPMFlowPoints {
@@ -38,6 +39,8 @@ struct MPMFlowUpdate {
   const double *shift = nullptr;
   const MPMFlowRegions *regions = nullptr;    ///< that points stay out of; null: none
   const MPMFlowInflow *inflow = nullptr;      ///< mouths whose points it moves; null: none
+  /** Points that keep the stress of their law, and do not spread; null: none. */
+  const MPMFlowSolids *solids = nullptr;
 };
 
 /** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a

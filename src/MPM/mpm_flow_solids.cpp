@@ -1,0 +1,599 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "mpm_flow_solids.h"
+
+#include "error.h"
+#include "fix_mpm_material.h"
+#include "force.h"
+#include "lattice/staggered.h"
+#include "material/batch.h"
+#include "material/material.h"
+#include "math/matrix.h"
+#include "modify.h"
+#include "mpm_flow_reach.h"
+#include "mpm_physics.h"
+#include "mpm_points.h"
+#include "mpm_time_limit.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// shear by which the stiffness of a law is found
+static constexpr double PROBE = 1.0e-6;
+// stiffness of a solid that is stretched over that at rest, where an interface goes to its balance with the fluid in a step
+static constexpr double STIFFER = 3.0;
+// share of fluid next to a point that counts as none
+static constexpr double LEAST_FLUID = 1.0e-6;
+
+/** Points of one material on their way through its law. */
+struct MPMFlowSolids::Pending {
+  Batch batch = {};
+  int n = 0, point[BATCH];
+  double L[9 * BATCH], F[9 * BATCH], tau[6 * BATCH], volume[BATCH];
+  std::vector<double> rows;    // of history
+  double stiffest = 0.0;       // shear modulus over density
+  tagint tag = 0;
+};
+
+namespace {
+/** Components of a symmetric tensor xx yy zz xy xz yz. */
+constexpr int SYMMETRIC[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+
+/** Kinds of boxes of gradients, by axes that one of them has: cells, and those of the shears xy, xz, yz. */
+constexpr int AXES[4][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 2}};
+constexpr int kinds(int dim)
+{
+  return dim == 2 ? 2 : 4;
+}
+constexpr int kind_of(int c, int d)
+{
+  return c == d ? 0 : c + d;
+}
+
+/** What a point of some width has in boxes of one spacing, those that are cells and those around their corners, edges, and faces:
+ *  weights along each axis, and gradients of the velocity as means of those of boxes. A box has the difference of two faces: a
+ *  normal gradient that of its cell, a shear that of the faces on both sides of a corner (in 3d an edge). */
+template <int dim> struct Boxes {
+  enum Place { CELL, NODE };
+  int first[2][3];    // [place][axis] of two boxes in a row
+  double share[2][3][2];
+
+  void find(const double *t, double width)
+  {
+    for (int place = CELL; place <= NODE; place++)
+      for (int d = 0; d < dim; d++) {
+        const double shift =
+            place == NODE ? 0.5 : 0.0;    // of the lower end of a box from that of its number
+        const double low = t[d] + shift - 0.5 * width, box = std::floor(low);
+        first[place][d] = (int) box;
+        share[place][d][0] = std::min(1.0, (box + 1.0 - low) / width);
+        share[place][d][1] = 1.0 - share[place][d][0];
+      }
+  }
+
+  /** f(number of the cell that has a box as itself or at its lower side, share), boxes being at places along each axis. */
+  template <class F>
+  void visit_boxes(const Grid &grid, const Grid::Block &block, const Place *places,
+                   const F &f) const
+  {
+    MPMFlowReach<dim> reach;
+    int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
+    for (int d = 0; d < dim; d++) base[d] = first[places[d]][d];
+    reach.find(grid, block, base);
+    for (k[0] = 0; k[0] < 2; k[0]++)
+      for (k[1] = 0; k[1] < 2; k[1]++)
+        for (k[2] = 0; k[2] < (dim == 3 ? 2 : 1); k[2]++) {
+          double weight = 1.0;
+          for (int d = 0; d < dim; d++) weight *= share[places[d]][d][k[d]];
+          if (weight > 0.0) f(reach.number(k), weight);
+        }
+  }
+
+  /** Places of the boxes of the gradient along d of velocities along c. */
+  static void places_of(int c, int d, Place *places)
+  {
+    for (int e = 0; e < dim; e++) places[e] = c != d && (e == c || e == d) ? NODE : CELL;
+  }
+
+  /** f(number of the cell, coefficient of the velocity of its face normal to c in the gradient along d, in 1/spacing). */
+  template <class F>
+  void visit_gradients(const Grid &grid, const Grid::Block &block, int c, int d, const F &f) const
+  {
+    Place places[3];
+    places_of(c, d, places);
+    MPMFlowReach<dim> reach;
+    int base[3] = {0, 0, 0}, n[3] = {1, 1, 1}, k[3] = {0, 0, 0};
+    for (int e = 0; e < dim; e++) {
+      base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
+      n[e] = e == d ? 3 : 2;
+    }
+    reach.find(grid, block, base);
+    const double *const along = share[places[d]][d];
+    const double slope[3] = {-along[0], along[0] - along[1], along[1]};
+    for (k[0] = 0; k[0] < n[0]; k[0]++)
+      for (k[1] = 0; k[1] < n[1]; k[1]++)
+        for (k[2] = 0; k[2] < n[2]; k[2]++) {
+          double g = 1.0;
+          for (int e = 0; e < dim; e++) g *= e == d ? slope[k[e]] : share[places[e]][e][k[e]];
+          f(reach.number(k), g);
+        }
+  }
+};
+
+/** Coordinates and widths of points in spacings. */
+template <int dim> struct PlaceOfPoint {
+  const Lattice &lattice;
+  double per_cell, volume = 0.0, width = 0.0;
+
+  explicit PlaceOfPoint(const Lattice &lattice) :
+      lattice(lattice), per_cell(1.0 / lattice.cell_volume())
+  {
+  }
+  void find(const double *x, double of_volume, double *t)
+  {
+    for (int d = 0; d < dim; d++) t[d] = (x[d] - lattice.origin[d]) / lattice.h;
+    if (of_volume == volume) return;
+    volume = of_volume;
+    width = std::min(1.0, std::pow(volume * per_cell, 1.0 / dim));
+  }
+};
+
+template <int dim>
+void interpolate(const MPMFlowLattice &cells, const Grid::Block &block, const double *t,
+                 const double *velocity, double *u)
+{
+  StaggeredWeights w;
+  MPMFlowReach<dim> reach;
+  w.find<dim>(t);
+  reach.find(cells.grid, block, w.base);
+  std::fill_n(u, dim, 0.0);
+  visit<dim>(reach, [&](int64_t number, const int k[3]) {
+    for (int c = 0; c < dim; c++) u[c] += w.face<dim>(c, k) * velocity[number * dim + c];
+  });
+}
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+MPMFlowSolids::MPMFlowSolids(LAMMPS *lmp, const MPMFlowLattice &cells, int bits) :
+    Pointers(lmp), cells(cells), bits(bits), kernels(BatchKernels::select(cells.lattice.dim))
+{
+}
+
+MPMFlowSolids::~MPMFlowSolids() = default;
+
+void MPMFlowSolids::init(const std::string &fix)
+{
+  who = fix;
+  materials.clear();
+  pending.clear();
+  int nhistory = 1;
+  for (auto *material : find_fixes<FixMPMMaterial>(lmp)) {
+    materials.push_back(material);
+    pending.push_back(std::make_unique<Pending>());
+    pending.back()->batch.h = cells.lattice.h;
+    pending.back()->rows.resize((std::size_t) material->nhistory * BATCH);
+    nhistory = std::max(nhistory, material->nhistory);
+  }
+  history.resize((std::size_t) nhistory * BATCH);
+  for (auto &one : pending) one->batch.history = reinterpret_cast<double(*)[BATCH]>(history.data());
+}
+
+void MPMFlowSolids::check_points() const
+{
+  bigint mine[2] = {0, 0}, all[2];
+  int wrong = -1, any;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!cells.is_point(i) || !holds(i)) continue;
+    const int m = material_of(i);
+    mine[0]++;
+    if (m < 0) {
+      mine[1]++;
+      continue;
+    }
+    const auto &law = *materials[m]->material;
+    if (!law.uses_F() || !law.is_solid() || law.is_of_surfaces() || law.conducts() ||
+        law.is_thermoelastic())
+      wrong = m;
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&wrong, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!all[0])
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: the group of keyword solid has no points of this fix: put some into it", who);
+  if (all[1])
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: {} points of keyword solid have no law: give them a fix mpm/material", who,
+               all[1]);
+  if (any >= 0)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "{}: fix mpm/material {} is no hyperelastic law without heat, which solids in a flow "
+        "need: use one such as neohookean",
+        who, materials[any]->id);
+}
+
+int MPMFlowSolids::material_of(int i) const
+{
+  for (std::size_t m = 0; m < materials.size(); m++)
+    if (atom->mask[i] & materials[m]->groupbit) return (int) m;
+  return -1;
+}
+
+double MPMFlowSolids::density_of(int i) const
+{
+  const int m = material_of(i);
+  return m < 0 ? 1.0 : materials[m]->density(i);
+}
+
+/* ----------------------------------------------------------------------
+   Minus the stress times the gradient of functions of faces. Beyond walls forces are those on velocities that images have,
+   so that they do the work of the stress. What is the same along all axes of the lattice is left to the pressure
+------------------------------------------------------------------------- */
+
+template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
+{
+  const double factor = 1.0 / (force->nktv2p * cells.lattice.h);
+  const auto tau = MPMPoints::get(atom)->tau;
+  PlaceOfPoint<dim> place(cells.lattice);
+  Boxes<dim> boxes;
+  double t[3];
+  for (const auto &run : cells.runs)
+    for (int i = run.first; i < run.last; i++) {
+      if (!holds(i)) continue;
+      place.find(atom->x[i], atom->vfrac[i], t);
+      const auto &block = cells.grid.blocks[run.slot];
+      boxes.find(t, place.width);
+      double mean = 0.0;
+      for (int d = 0; d < dim; d++) mean += tau[i][d] / dim;
+      for (int c = 0; c < dim; c++)
+        for (int d = 0; d < dim; d++) {
+          const double push =
+              -factor * atom->vfrac[i] * (tau[i][SYMMETRIC[c][d]] - (c == d ? mean : 0.0));
+          boxes.visit_gradients(cells.grid, block, c, d, [&](int64_t number, double slope) {
+            forces[number * dim + c] += push * slope;
+          });
+        }
+    }
+}
+
+void MPMFlowSolids::give_forces(std::vector<double> &forces)
+{
+  const int dim = cells.lattice.dim;
+  forces.assign(cells.size() * dim, 0.0);
+  dim == 2 ? give<2>(forces) : give<3>(forces);
+  cells.sum(forces.data(), dim, false);
+}
+
+/* ----------------------------------------------------------------------
+   The gradient is that at the middle of the way of a point, where it has the velocity with which it moves: the map of the
+   step is then of second order. It keeps volume, as the flow does
+------------------------------------------------------------------------- */
+
+template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt, double viscosity)
+{
+  find_shares<dim>();
+  std::vector<double> per_stress;
+  for (std::size_t m = 0; m < materials.size(); m++)
+    per_stress.push_back(dt / (viscosity + STIFFER * dt * stiffness_at_rest((int) m, dt)));
+  PlaceOfPoint<dim> place(cells.lattice);
+  Boxes<dim> boxes;
+  const double inv_h = 1.0 / cells.lattice.h;
+  for (const auto &run : cells.runs)
+    for (int i = run.first; i < run.last; i++) {
+      if (!holds(i)) continue;
+      const auto &block = cells.grid.blocks[run.slot];
+      double t[3], u[3];
+      place.find(atom->x[i], atom->vfrac[i], t);
+      interpolate<dim>(cells, block, t, velocity, u);
+      const double start[3] = {t[0], t[1], t[2]};
+      for (int d = 0; d < dim; d++) {
+        t[d] += 0.5 * dt * inv_h * u[d];
+        if (!cells.lattice.periodic[d])
+          t[d] = std::max(0.0, std::min(t[d], (double) cells.lattice.ncell[d]));
+      }
+      boxes.find(t, place.width);
+      double A[3][3] = {}, M[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+      for (int c = 0; c < dim; c++)
+        for (int d = 0; d < dim; d++) {
+          double sum = 0.0;
+          boxes.visit_gradients(cells.grid, block, c, d, [&](int64_t number, double slope) {
+            sum += slope * velocity[number * dim + c];
+          });
+          A[c][d] = dt * inv_h * sum;
+        }
+      const int m = material_of(i);
+      leave_to_fluid<dim>(i, block, start, place.width, per_stress[m], A);
+      for (int c = 0; c < dim; c++)
+        for (int d = 0; d < dim; d++) {
+          M[3 * c + d] += A[c][d];
+          for (int e = 0; e < dim; e++) M[3 * c + d] += 0.5 * A[c][e] * A[e][d];
+        }
+      const double det = determinant(M);
+      if (!(det > 0.0))
+        error->one(FLERR, Error::NOLASTLINE,
+                   "{}: point {} of a solid is turned inside out at step {}: take smaller time "
+                   "steps",
+                   who, atom->tag[i], update->ntimestep);
+      const double scale = std::pow(det, -1.0 / dim);
+      auto &to = *pending[m];
+      for (int c = 0; c < dim; c++)
+        for (int d = 0; d < dim; d++)
+          to.L[dim * dim * to.n + dim * d + c] = (scale * M[3 * c + d] - (c == d ? 1.0 : 0.0)) / dt;
+      to.point[to.n++] = i;
+      if (to.n == BATCH) update_points(m, dt);
+    }
+  for (std::size_t m = 0; m < pending.size(); m++) update_points((int) m, dt);
+}
+
+void MPMFlowSolids::deform(const double *velocity, double dt, double viscosity)
+{
+  cells.lattice.dim == 2 ? strain<2>(velocity, dt, viscosity) : strain<3>(velocity, dt, viscosity);
+}
+
+/* ----------------------------------------------------------------------
+   Shares of solid in what points fill of boxes of one spacing around corners of cells, over which the lattice has means of shears
+------------------------------------------------------------------------- */
+
+template <int dim> void MPMFlowSolids::find_shares()
+{
+  constexpr int KINDS = kinds(dim), width = 2 * KINDS;
+  PlaceOfPoint<dim> place(cells.lattice);
+  Boxes<dim> boxes;
+  double t[3];
+  shares.assign(cells.size() * width, 0.0);
+  for (const auto &run : cells.runs)
+    for (int i = run.first; i < run.last; i++) {
+      place.find(atom->x[i], atom->vfrac[i], t);
+      boxes.find(t, place.width);
+      const double all = atom->vfrac[i], solid = holds(i) ? all : 0.0;
+      for (int kind = 0; kind < KINDS; kind++) {
+        typename Boxes<dim>::Place places[3];
+        Boxes<dim>::places_of(AXES[kind][0], AXES[kind][1], places);
+        boxes.visit_boxes(cells.grid, cells.grid.blocks[run.slot], places,
+                          [&](int64_t number, double share) {
+                            shares[width * number + 2 * kind] += solid * share;
+                            shares[width * number + 2 * kind + 1] += all * share;
+                          });
+      }
+    }
+  cells.sum_freely(shares.data(), width);
+  solid_share.resize(cells.size());
+  for (int64_t k = 0; k < cells.size(); k++) {
+    const double *const of_cell = shares.data() + width * k;
+    solid_share[k] = of_cell[1] > 0.0 ? of_cell[0] / of_cell[1] : 0.0;
+  }
+  cells.reflect_cells(solid_share.data());
+}
+
+/* ----------------------------------------------------------------------
+   Next to a fluid, the gradient of the velocity in a box is a mean of those of both. The fluid has that of the solid and, as the stress
+   along the interface is the same on both sides, what the stress of the law does to its viscosity more; the rest is that of the solid.
+   Without this both would have the same, and solids would hold a layer of the fluid of up to a half of a spacing. per_stress: time
+   over viscosity
+------------------------------------------------------------------------- */
+
+template <int dim>
+void MPMFlowSolids::leave_to_fluid(int i, const Grid::Block &block, const double *t, double width,
+                                   double per_stress, double A[3][3]) const
+{
+  constexpr int KINDS = kinds(dim);
+  Boxes<dim> boxes;
+  boxes.find(t, width);
+  double fluid[KINDS] = {}, most = 0.0, n[3] = {}, length = 0.0;
+  for (int kind = 0; kind < KINDS; kind++) {
+    typename Boxes<dim>::Place places[3];
+    Boxes<dim>::places_of(AXES[kind][0], AXES[kind][1], places);
+    boxes.visit_boxes(cells.grid, block, places, [&](int64_t number, double share) {
+      const double *const s = shares.data() + 2 * KINDS * number + 2 * kind;
+      if (s[1] > 0.0) fluid[kind] += share * (1.0 - s[0] / s[1]);
+    });
+    most = std::max(most, fluid[kind]);
+  }
+  if (most < LEAST_FLUID) return;
+
+  // the normal, by splines of cells, which reach all of these boxes: next to no fluid gives a direction, too
+
+  MPMFlowReach<dim> reach;
+  int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
+  double spline[3][3], slope[3][3];
+  for (int d = 0; d < dim; d++) {
+    base[d] = (int) std::floor(t[d]) - 1;
+    const double x = t[d] - base[d] - 1.5;
+    spline[d][0] = 0.5 * (0.5 - x) * (0.5 - x);
+    spline[d][1] = 0.75 - x * x;
+    spline[d][2] = 0.5 * (0.5 + x) * (0.5 + x);
+    slope[d][0] = x - 0.5;
+    slope[d][1] = -2.0 * x;
+    slope[d][2] = x + 0.5;
+  }
+  reach.find(cells.grid, block, base);
+  for (k[0] = 0; k[0] < 3; k[0]++)
+    for (k[1] = 0; k[1] < 3; k[1]++)
+      for (k[2] = 0; k[2] < (dim == 3 ? 3 : 1); k[2]++) {
+        const double share = solid_share[reach.number(k)];
+        for (int d = 0; d < dim; d++) {
+          double weight = share;
+          for (int e = 0; e < dim; e++) weight *= e == d ? slope[e][k[e]] : spline[e][k[e]];
+          n[d] += weight;
+        }
+      }
+  for (int d = 0; d < dim; d++) length += n[d] * n[d];
+  if (!(length > 0.0)) return;
+  length = std::sqrt(length);
+  const double *const tau = MPMPoints::get(atom)->tau[i];
+  double traction[3] = {}, normal = 0.0;
+  for (int d = 0; d < dim; d++) n[d] /= length;
+  for (int c = 0; c < dim; c++) {
+    for (int d = 0; d < dim; d++) traction[c] += tau[SYMMETRIC[c][d]] * n[d];
+    normal += n[c] * traction[c];
+  }
+  for (int kind = 0; kind < KINDS; kind++)
+    for (int c = 0; c < dim; c++)
+      for (int d = 0; d < dim; d++)
+        if (kind_of(c, d) == kind)
+          A[c][d] -= fluid[kind] * per_stress * (traction[c] - normal * n[c]) * n[d];
+}
+
+/** Present state of the points that wait for their law. */
+void MPMFlowSolids::load(int m, double dt)
+{
+  auto &p = *pending[m];
+  const auto &points = *MPMPoints::get(atom);
+  const int width = materials[m]->nhistory;
+  for (int k = 0; k < p.n; k++) {
+    const int i = p.point[k];
+    std::copy_n(points.F[i], 9, p.F + 9 * k);
+    std::copy_n(points.tau[i], 6, p.tau + 6 * k);
+    p.volume[k] = atom->vfrac[i];
+    if (width)
+      std::copy_n(materials[m]->history[i], width, p.rows.data() + (std::size_t) width * k);
+  }
+  kernels->load(p.batch, p.n, dt, p.L, p.F, p.tau, p.volume, nullptr);
+  if (width) kernels->load_history(p.batch, width, p.rows.data());
+  p.batch.time = elapsed_time(*update);
+}
+
+void MPMFlowSolids::update_points(int m, double dt)
+{
+  auto &p = *pending[m];
+  if (!p.n) return;
+  load(m, dt);
+  auto &material = *materials[m];
+  material.update_batch(p.batch, *kernels);
+  kernels->store(p.batch, p.F, p.tau);
+  const int width = material.nhistory;
+  if (width) kernels->store_history(p.batch, width, p.rows.data());
+  const auto &points = *MPMPoints::get(atom);
+  for (int k = 0; k < p.n; k++) {
+    const int i = p.point[k];
+    std::copy_n(p.F + 9 * k, 9, points.F[i]);
+    std::copy_n(p.tau + 6 * k, 6, points.tau[i]);
+    if (width) std::copy_n(p.rows.data() + (std::size_t) width * k, width, material.history[i]);
+  }
+  p.n = 0;
+}
+
+/* ----------------------------------------------------------------------
+   The stiffness of a law against waves of shear: a small shear along a of planes with the normal n changes the stress that acts along
+   a on them. Directions are those along axes and diagonals. In steps of this duration a viscosity of the law is as good as a stiffness
+------------------------------------------------------------------------- */
+
+void MPMFlowSolids::probe(int m)
+{
+  auto &p = *pending[m];
+  if (!p.n) return;
+  const int dim = cells.lattice.dim;
+  const double r = std::sqrt(0.5);
+  struct Shear {
+    double n[3], a[3];
+  };
+  static const Shear plane[] = {{{1, 0, 0}, {0, 1, 0}},
+                                {{0, 1, 0}, {1, 0, 0}},
+                                {{r, r, 0}, {r, -r, 0}},
+                                {{r, -r, 0}, {r, r, 0}}};
+  static const Shear space[] = {
+      {{1, 0, 0}, {0, 0, 1}},  {{0, 1, 0}, {0, 0, 1}},  {{0, 0, 1}, {1, 0, 0}},
+      {{0, 0, 1}, {0, 1, 0}},  {{r, 0, r}, {r, 0, -r}}, {{r, 0, -r}, {r, 0, r}},
+      {{0, r, r}, {0, r, -r}}, {{0, r, -r}, {0, r, r}}, {{r, r, 0}, {0, 0, 1}},
+      {{r, -r, 0}, {0, 0, 1}}, {{r, 0, r}, {0, 1, 0}},  {{r, 0, -r}, {0, 1, 0}},
+      {{0, r, r}, {1, 0, 0}},  {{0, r, -r}, {1, 0, 0}}};
+  std::vector<Shear> shears(std::begin(plane), std::end(plane));
+  if (dim == 3) shears.insert(shears.end(), std::begin(space), std::end(space));
+
+  const double dt = update->dt;
+  double rest[6][BATCH];
+  std::fill_n(p.L, dim * dim * p.n, 0.0);
+  std::fill_n(p.batch.heat, BATCH, 0.0);
+  load(m, dt);
+  materials[m]->material->update(p.batch);
+  for (int c = 0; c < 6; c++) std::copy_n(p.batch.stress[c], p.n, rest[c]);
+  for (const auto &shear : shears) {
+    for (int k = 0; k < p.n; k++)
+      for (int c = 0; c < dim; c++)
+        for (int d = 0; d < dim; d++)
+          p.L[dim * dim * k + dim * d + c] = PROBE / dt * shear.a[c] * shear.n[d];
+    std::fill_n(p.batch.heat, BATCH, 0.0);
+    load(m, dt);
+    materials[m]->material->update(p.batch);
+    for (int k = 0; k < p.n; k++) {
+      double change = 0.0;
+      for (int c = 0; c < dim; c++)
+        for (int d = 0; d < dim; d++) {
+          const int e = SYMMETRIC[c][d];
+          change += shear.a[c] * shear.n[d] * (p.batch.stress[e][k] - rest[e][k]);
+        }
+      const double stiffness =
+          change / PROBE * p.volume[k] / atom->rmass[p.point[k]];    // NaN: of a state that is none
+      if (stiffness > p.stiffest || std::isnan(stiffness)) {
+        p.stiffest = std::isnan(stiffness) ? std::numeric_limits<double>::infinity() : stiffness;
+        p.tag = atom->tag[p.point[k]];
+      }
+    }
+  }
+  p.n = 0;
+}
+
+/** Shear modulus of a material before any deformation, with what its viscosity adds in a step. */
+double MPMFlowSolids::stiffness_at_rest(int m, double dt)
+{
+  auto &p = *pending[m];
+  const int dim = cells.lattice.dim, width = materials[m]->nhistory;
+  const double none[3] = {0.0, 0.0, 0.0};
+  for (int c = 0; c < 9; c++) p.F[c] = c % 4 == 0 ? 1.0 : 0.0;
+  std::fill_n(p.tau, 6, 0.0);
+  std::fill_n(p.L, dim * dim, 0.0);
+  p.L[dim] = PROBE / dt;
+  p.volume[0] = 1.0;
+  if (width) {
+    materials[m]->material->initialize(none, p.rows.data());
+    kernels->load_history(p.batch, width, p.rows.data());
+  }
+  kernels->load(p.batch, 1, dt, p.L, p.F, p.tau, p.volume, nullptr);
+  p.batch.heat[0] = 0.0;
+  p.batch.time = elapsed_time(*update);
+  materials[m]->material->update(p.batch);
+  return p.batch.stress[3][0] / PROBE;
+}
+
+double MPMFlowSolids::stable_dt(tagint &tag)
+{
+  for (auto &one : pending) one->stiffest = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!cells.is_point(i) || !holds(i)) continue;
+    const int m = material_of(i);
+    auto &p = *pending[m];
+    p.point[p.n++] = i;
+    if (p.n == BATCH) probe(m);
+  }
+  double most = 0.0;
+  for (std::size_t m = 0; m < pending.size(); m++) {
+    probe((int) m);
+    if (pending[m]->stiffest <= most) continue;
+    most = pending[m]->stiffest;
+    tag = pending[m]->tag;
+  }
+  const double speed = std::sqrt(most * force->ftm2v / force->nktv2p);
+  return speed > 0.0 ? cells.lattice.h / (std::sqrt(2.0 * cells.lattice.dim) * speed)
+                     : std::numeric_limits<double>::max();
+}
+
+double MPMFlowSolids::memory_usage() const
+{
+  double bytes =
+      (history.capacity() + shares.capacity() + solid_share.capacity()) * sizeof(double) +
+      pending.size() * (double) sizeof(Pending);
+  for (const auto &one : pending) bytes += one->rows.capacity() * sizeof(double);
+  return bytes;
+}

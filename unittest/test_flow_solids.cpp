@@ -1,0 +1,313 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 240
+
+// Elastic solids in fix mpm/incompressible: waves of shear, a layer under a flow, disks that are carried along and that sink.
+
+#include "mpm_lammps.h"
+
+#include "group.h"
+
+#include <complex>
+
+using namespace MPM_TEST;
+
+namespace {
+
+using Complex = std::complex<double>;
+
+enum { FILLED = 3, FASTEST = 6 };
+
+/** Young's modulus for a shear modulus and Poisson's ratio 0.499. */
+std::string neohookean(double density, double G)
+{
+  return strprintf("mpm/material density %.17g neohookean %.17g 0.499\n", density, 2.998 * G);
+}
+
+/** A layer of solid of thickness a on a floor, fluid of the density 1 above it up to a lid at 1, and a force g cos(w t) along
+ *  both: the amplitude of the velocity at y, and of its slope. */
+struct Layer {
+  double a, density, viscosity, G, w;
+
+  Complex velocity(double y, Complex *slope = nullptr) const
+  {
+    const Complex i(0.0, 1.0), solid = viscosity + G / (i * w);
+    const Complex ks = std::sqrt(i * w * density / solid), kf = std::sqrt(i * w / viscosity);
+    const Complex free = 1.0 / (i * w), top = kf * (1.0 - a), bottom = ks * a;
+    // free (1 - cosh) + B sinh(ks y) below, and free (1 - cosh) + D sinh(kf (1 - y)) above
+    const Complex velocities = free * (std::cosh(bottom) - std::cosh(top)),
+                  stresses =
+                      free * (solid * ks * std::sinh(bottom) + viscosity * kf * std::sinh(top));
+    const Complex det = std::sinh(bottom) * viscosity * kf * std::cosh(top) +
+        std::sinh(top) * solid * ks * std::cosh(bottom);
+    const Complex B = (velocities * viscosity * kf * std::cosh(top) + stresses * std::sinh(top)) /
+        det,
+                  D = (stresses * std::sinh(bottom) - velocities * solid * ks * std::cosh(bottom)) /
+        det;
+    if (slope)
+      *slope = y < a ? ks * (B * std::cosh(ks * y) - free * std::sinh(ks * y))
+                     : kf * (free * std::sinh(kf * (1.0 - y)) - D * std::cosh(kf * (1.0 - y)));
+    if (y < a) return free * (1.0 - std::cosh(ks * y)) + B * std::sinh(ks * y);
+    return free * (1.0 - std::cosh(kf * (1.0 - y))) + D * std::sinh(kf * (1.0 - y));
+  }
+};
+
+/** Root mean square error of the velocities of points in the second period, over that of what they should be. */
+double error_of_layer(int n, const Layer &layer)
+{
+  const double h = 1.0 / n, T = 2.0 * PI / layer.w,
+               limit = std::min(0.5 * h * h / (8.0 * layer.viscosity),
+                                0.5 * h / (2.0 * std::sqrt(layer.G / layer.density)));
+  const int steps = (int) std::ceil(T / limit);
+  Scene run(
+      plane("lj", "p f", strprintf("0 %.17g 0 1", 4 * h), 1, 0.5 * h) +
+      strprintf("create_points 1 box spacing %.17g\nregion low block INF INF INF %.17g INF "
+                "INF\ngroup low region low\nfix m low ",
+                0.5 * h, layer.a) +
+      neohookean(layer.density, layer.G) +
+      strprintf("fix w all mpm/incompressible %.17g 1 viscosity %.17g solid low wall ylo stick "
+                "wall yhi stick\nvariable g equal cos(%.17g*time)\nfix g all gravity v_g "
+                "vector 1 0 0\ntimestep %.17g\n",
+                h, layer.viscosity, layer.w, T / steps));
+
+  // what it is at the start; the shear of the solid is the slope of its displacement
+
+  const Complex i(0.0, 1.0);
+  for (int k = 0; k < run.n(); k++) {
+    Complex slope;
+    const double y = run.x()[k][1];
+    run.v()[k][0] = layer.velocity(y, &slope).real();
+    if (y > layer.a) continue;
+    const double shear = (slope / (i * layer.w)).real();
+    run.points().F[k][1] = shear;
+    run.points().tau[k][0] = layer.G * shear * shear;
+    run.points().tau[k][3] = layer.G * shear;
+  }
+  double wrong = 0.0, all = 0.0;
+  run.each_step([&](double **) {
+    if (run.lmp->update->ntimestep < steps) return;
+    const Complex phase = std::exp(Complex(0.0, layer.w * run.time()));
+    for (int k = 0; k < run.n(); k++) {
+      const double v = (layer.velocity(run.x()[k][1]) * phase).real();
+      wrong += std::pow(run.v()[k][0] - v, 2);
+      all += v * v;
+    }
+  });
+  run.commands(strprintf("run %d\n", 2 * steps - 1));
+  return measured(strprintf("%d cells, interface at %g, density %g: error of the velocity", n,
+                            layer.a, layer.density),
+                  std::sqrt(wrong / all));
+}
+
+/** Area of the squares of points next to each other at the start that are in a group. */
+class Squares {
+ public:
+  Squares(Scene &run, const std::string &group, double spacing) : run(run)
+  {
+    const int bit = run.lmp->group->bitmask[run.lmp->group->find(group)];
+    std::map<std::array<int, 2>, tagint> at;
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->mask[i] & bit)
+        at[{(int) std::floor(run.x()[i][0] / spacing), (int) std::floor(run.x()[i][1] / spacing)}] =
+            run.lmp->atom->tag[i];
+    for (const auto &one : at) {
+      const auto k = one.first;
+      const std::array<int, 2> corners[] = {
+          {k[0] + 1, k[1]}, {k[0] + 1, k[1] + 1}, {k[0], k[1] + 1}};
+      if (!at.count(corners[0]) || !at.count(corners[1]) || !at.count(corners[2])) continue;
+      list.push_back({one.second, at[corners[0]], at[corners[1]], at[corners[2]]});
+    }
+  }
+  double area()
+  {
+    double sum = 0.0;
+    for (const auto &square : list) {
+      double **const x = run.x();
+      int p[4];
+      for (int k = 0; k < 4; k++) p[k] = run.lmp->atom->map(square[k]);
+      const auto &a = x[p[0]], &b = x[p[1]], &c = x[p[2]], &d = x[p[3]];
+      sum += 0.5 * ((c[0] - a[0]) * (d[1] - b[1]) - (c[1] - a[1]) * (d[0] - b[0]));
+    }
+    return sum;
+  }
+
+ private:
+  Scene &run;
+  std::vector<std::array<tagint, 4>> list;
+};
+
+/** A soft disk of Zhao, Freund and Moser (J. Comput. Phys. 227 (2008) 3114) in a cavity with n cells, whose lid moves. */
+std::string cavity(int n, double density = 1.0, const std::string &more = "")
+{
+  return "atom_modify map array\n" + plane("lj", "f f", "0 1 0 1", 1, 0.02) +
+      strprintf("create_points 1 box spacing %.17g\n", 0.5 / n) +
+      "region disk sphere 0.6 0.5 0 0.2\ngroup disk region disk\nfix m disk " +
+      neohookean(density, 0.1) +
+      strprintf("fix w all mpm/incompressible %.17g 1 viscosity 0.01 solid disk wall yhi stick 1 0 "
+                "wall ylo stick wall xlo stick wall xhi stick %s\n",
+                1.0 / n, more.c_str());
+}
+
+}    // namespace
+
+// a transverse wave in a box full of solid, without viscosity: of second order
+SERIAL_TEST(FlowSolids, WavesOfShear)
+{
+  double before = 0.0;
+  for (const int n : {8, 16}) {
+    const double h = 1.0 / n, dt = 0.125 * h;
+    for (const int dim : {2, 3}) {
+      if (dim == 3 && n == 16) continue;
+      Scene run(
+          box(dim, "lj", "p p p", strprintf("0 1 0 %.17g 0 %.17g", 4 * h, 4 * h), 1, 0.5 * h) +
+          strprintf("create_points 1 box spacing %.17g\nfix m all ", 0.5 * h) +
+          neohookean(4.0, 4.0) +
+          strprintf("fix w all mpm/incompressible %.17g 1 solid all\nvariable v atom "
+                    "0.01*sin(2*PI*x)\nvelocity all set NULL v_v NULL\ntimestep %.17g\n",
+                    h, dt));
+      // the amplitude of sin(2 pi x), and when it is zero
+      double last = 1.0;
+      std::vector<double> zeros;
+      run.each_step([&](double **) {
+        double now = 0.0;
+        for (int i = 0; i < run.n(); i++) now += run.v()[i][1] * std::sin(2 * PI * run.x()[i][0]);
+        if (now * last < 0.0) zeros.push_back(run.time() - dt * now / (now - last));
+        last = now;
+      });
+      run.commands(strprintf("run %d\n", 22 * n));
+      ASSERT_GE(zeros.size(), 4u);
+      const double wrong = measured(strprintf("%d cells, %dd: error of the period", n, dim),
+                                    2.0 * (zeros[3] - zeros[0]) / 3.0 - 1.0);
+      EXPECT_LT(std::fabs(wrong), 0.05);
+      if (n == 16) { EXPECT_GT(measured("order", std::log2(std::fabs(before / wrong))), 1.7); }
+      before = wrong;
+    }
+  }
+}
+
+// a layer that is sheared by the fluid above it: of second order, wherever the interface is in a cell
+SERIAL_TEST(FlowSolids, LayerUnderAFlow)
+{
+  for (const double density : {1.0, 2.0})
+    for (const double a : {0.5, 0.5625}) {
+      const Layer layer = {a, density, 0.1, 1.0, 4.0};
+      const double coarse = error_of_layer(8, layer), fine = error_of_layer(16, layer);
+      EXPECT_LT(coarse, 0.05);
+      EXPECT_GT(measured("order", std::log2(coarse / fine)), 1.5);
+    }
+}
+
+// a disk that goes round in a cavity keeps its area, wherever its points go
+SERIAL_TEST(FlowSolids, DiskInACavity)
+{
+  Scene run(cavity(32) + "fix dt all mpm/dt 0.8 every 1 until 5\n");
+  Squares squares(run, "disk", 0.5 / 32);
+  const double before = squares.area();
+  run.commands("run 2000\n");
+  EXPECT_LT(measured("change of the area", std::fabs(squares.area() / before - 1.0)), 0.005);
+}
+
+// a heavy disk that sinks slowly in a channel, as a rigid one does (O.H. Faxen, Proc. R. Swed. Acad. Eng. Sci. 187 (1946) 1)
+SERIAL_TEST(FlowSolids, HeavyDiskSinks)
+{
+  double wrong[2];
+  for (const int a : {2, 4}) {
+    const double k = 0.25, speed = 0.02 / a,
+                 gap = -std::log(k) - 0.9157 + 1.7244 * std::pow(k, 2) - 1.7302 * std::pow(k, 4) +
+        2.4056 * std::pow(k, 6),
+                 g = 4.0 * speed / (gap * a * a);
+    Scene run(
+        plane("lj", "f f", strprintf("0 %d 0 %d", 8 * a, 14 * a), 1, 0.5) +
+        "create_points 1 box spacing 0.5\n" +
+        strprintf("region disk sphere %d %d 0 %d\ngroup disk region disk\nfix m disk ", 4 * a,
+                  7 * a, a) +
+        neohookean(2.0, 1.0) +
+        "fix w all mpm/incompressible 1 1 viscosity 1 solid disk wall xlo stick wall xhi stick\n"
+        "fix g all gravity " +
+        strprintf("%.17g vector 0 -1 0\ntimestep 0.12\nrun %d\n", g, 125 * a * a));
+    const int bit = run.lmp->group->bitmask[run.lmp->group->find("disk")];
+    double sum = 0.0, area = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->mask[i] & bit) {
+        sum -= 0.25 * run.v()[i][1];
+        area += 0.25;
+      }
+    // of the area that points have
+    wrong[a / 4] = measured(strprintf("%d cells in the radius: speed over theory", a),
+                            sum / area / speed * (PI * a * a / area)) -
+        1.0;
+  }
+  EXPECT_LT(std::fabs(wrong[0]), 0.18);
+  EXPECT_LT(std::fabs(wrong[1]), 0.10);
+}
+
+// a stream with vortices and a heavy disk: momentum is that of points that fill cells evenly
+SERIAL_TEST(FlowSolids, Momentum)
+{
+  for (const double viscosity : {0.0, 0.005}) {
+    Scene run(
+        plane("lj", "p p", "0 1 0 1", 1, 0.02) +
+        "create_points 1 box spacing 0.025\nregion disk sphere 0.5 0.5 0 0.25\ngroup disk region "
+        "disk\nvariable u atom 1+0.5*sin(2*PI*x)*cos(2*PI*y)\nvariable v atom "
+        "-0.5*cos(2*PI*x)*sin(2*PI*y)\nvelocity all set v_u v_v NULL\nfix m disk " +
+        neohookean(2.0, 1.0) +
+        strprintf("fix w all mpm/incompressible 0.05 1 viscosity %g solid disk\nfix dt all "
+                  "mpm/dt 0.5 every 1 max 0.02\nrun 0\n",
+                  viscosity));
+    const auto before = run.sums();
+    run.commands("run 100\n");
+    const auto after = run.sums();
+    for (int d = 0; d < 2; d++)
+      EXPECT_LT(measured(strprintf("viscosity %g: change of the mean velocity along %c", viscosity,
+                                   'x' + d),
+                         std::fabs(after.p[d] - before.p[d]) / before.mass),
+                1e-3);
+    EXPECT_LT(measured("kinetic energy over that before", after.kinetic / before.kinetic), 1.0);
+  }
+}
+
+// on four ranks, balanced; and the same to the last bit from a restart file
+TEST(FlowSolids, RanksAndRestart)
+{
+  for (const int dim : {2, 3}) {
+    const double h = dim == 2 ? 0.05 : 0.1;
+    const auto scene = box(dim, "lj", dim == 3 ? "f f p" : "f f",
+                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+        "region d block INF INF INF 0.81 INF INF\n" +
+        strprintf("create_points 1 region d spacing %g\n", 0.5 * h) +
+        "region low block INF 0.4 INF 0.6 INF INF\ngroup low region low\nvelocity low set 1 0.5 "
+        "0\n";
+    const auto fixes = "fix m low " + neohookean(2.0, 1.0) +
+        strprintf("fix w all mpm/incompressible %g 1 tolerance 1e-11 viscosity 0.01 solid low wall "
+                  "ylo stick\n",
+                  h) +
+        "fix g all gravity 1 vector 0 -1 0\nfix dt all mpm/dt 0.5 every 1 max 0.01\n";
+    OnRanks run(scene + fixes, "run 15\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
+    EXPECT_LT(measured("difference", run.difference()), 1e-9);
+    Continued again(scene + fixes, 6, "neighbor 0.02 bin\n" + fixes, 12);
+    EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+  }
+}
+
+SERIAL_TEST(FlowSolids, BadInput)
+{
+  const auto plain = plane("si", "p f", "0 1 0 1", 1, 0.02) +
+      "create_points 1 box spacing 0.05\nregion s block 0.2 0.6 0.2 0.6 INF INF\ngroup s region s\n"
+      "group none empty\nfix m s mpm/material density 1100 neohookean 1e4 0.49\n";
+  const std::string fix = "fix w all mpm/incompressible 0.1 1000 ";
+  expect_refused(plain,
+                 {{fix + "solid", "solid"},
+                  {fix + "solid nobody", "group nobody does not exist"},
+                  {fix + "solid none", "has no points of this fix"},
+                  {fix + "solid all", "have no law"},
+                  {fix + "solid s tension 1", "leave one of them out"},
+                  {fix + "solid s reflect 0.5", "leave it out"},
+                  {fix + "solid s viscosity 1 implicit yes", "use explicit viscosity"},
+                  {"unfix m\nfix m s mpm/material density 1000 linear 1e4 0.3\n" + fix + "solid s",
+                   "is no hyperelastic law"},
+                  {"timestep 1\n" + fix + "solid s", "too large for the stiffness of its solids"}},
+                 "run 1\n");
+}
