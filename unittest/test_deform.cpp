@@ -346,6 +346,8 @@ SERIAL_TEST(BadInput, IsRefused)
        {fix + "x erate 1\nregion b block 0 1 0 1 INF INF\nfix w all mpm/boundary region b stick",
         "walls would hold"},
        {fix + "x stress 1\nfix r all mpm/relax 1e-6", "use stop no"},
+       {fix + "x erate 1\nfix s all mpm/implicit static", "remove one of them"},
+       {"fix s all mpm/implicit euler\n" + fix + "x erate 1", "remove one of them"},
        {"unfix m\nunfix grid\n" + fix + "x erate 1", "needs a fix mpm"}},
       "timestep 0.1\nrun 1\n");
   const auto refused = [&](const std::string &options, const char *text) {

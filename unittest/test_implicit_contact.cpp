@@ -25,6 +25,28 @@ std::string block(const std::string &floor, const std::string &options, double y
       implicit + "\ntimestep 1.0\n";
 }
 
+/** A block of rubber of 0.5 by 0.5 at this many node spacings above a floor or hill at its place along y: part of a scene. */
+std::string above(const std::string &floor, double gap, const std::string &options, double low)
+{
+  const double h = 0.0625;
+  return plane("si", "f f", strprintf("0 1 %.17g 1", floor[0] == 'y' ? low : low - 0.25), 1,
+               0.3 * h) +
+      body("block 0.25 0.75 0.25 0.75 INF INF", "density 1000 neohookean 1e6 0.3",
+           "0.0625 " + options) +
+      strprintf("displace_atoms all move 0 %.17g 0\n", low + gap * h - 0.25) +
+      strprintf("region ground block INF INF INF %.17g INF INF\n", low) +
+      strprintf("region hill cylinder z 0.5 %.17g 1.0 INF INF\n", low - 1.0) +
+      strprintf("region bowl cylinder z 0.5 %.17g 2.0 INF INF side out\n", low + 2.0) +
+      "fix floor all mpm/boundary " + floor + "\n";
+}
+
+double mean_height(Scene &run)
+{
+  double sum = 0.0;
+  for (int i = 0; i < run.n(); i++) sum += run.x()[i][1] / run.n();
+  return sum;
+}
+
 }    // namespace
 
 // a wall pushes a block over a floor: mu N, wherever the floor is in a cell
@@ -124,6 +146,84 @@ SERIAL_TEST(Lid, LetsGo)
   }
 }
 
+// a block that a load of 20 times its weight pushes to a floor from up to 2.5 spacings away, and presses, in one step: as in many
+SERIAL_TEST(Block, ComesFromAfar)
+{
+  struct Case {
+    const char *floor, *options;
+    double low;
+  };
+  for (const auto &c :
+       {Case{"ylo separate", "", 0.0}, Case{"ylo separate", "", 0.02},
+        Case{"ylo separate friction 0.3", "shape cubic", 0.0},
+        Case{"region ground separate", "", 0.04},
+        Case{"ylo separate", "shape linear transfer pic", 0.0},
+        Case{"region bowl separate", "", 0.0}})
+    for (const double gap : {0.3, 1.0, 2.0, 2.5}) {
+      const bool rubs = std::string(c.floor).find("friction") != std::string::npos;
+      const bool bowl = std::string(c.floor).find("bowl") != std::string::npos;
+      double force[2] = {0.0, 5e4}, mean[2];
+      for (const int many : {0, 1}) {
+        if (many && rubs) break;    // bounces
+        Scene run(above(c.floor, gap, c.options, c.low) +
+                  "fix g all gravity 200 vector 0 -1 0\n"
+                  "fix solve all mpm/implicit euler solver multigrid\n" +
+                  strprintf("timestep %g\nrun %d\n", many ? 0.005 : bowl ? 0.02 : 10.0,
+                            many ? 400 : bowl ? 200 : 1));
+        force[many] = -run.fix("floor")->compute_vector(1);
+        mean[many] = mean_height(run);
+        if (!many) measured("iterations", run.fix("solve")->compute_vector(0));
+      }
+      const std::string name = strprintf("%s %s from %g: ", c.floor, c.options, gap);
+      EXPECT_NEAR(measured(name + "force over load", force[0] / 5e4), 1.0, 1e-4);
+      EXPECT_NEAR(measured(name + "the same, many steps", force[1] / 5e4), 1.0, 1e-3);
+      if (rubs) continue;
+      // of small steps, the last ones come to rest within NEXT_TO of the floor
+      EXPECT_NEAR(measured(name + "mean height, in spacings", (mean[0] - mean[1]) / 0.0625), 0.0,
+                  0.08);
+    }
+}
+
+// what comes from farther away is an error
+SERIAL_TEST(Block, ComesFromTooFar)
+{
+  for (const char *floor : {"ylo separate", "region ground separate"})
+    for (const double gap : {2.5, 3.0, 4.0}) {
+      const std::string scene = above(floor, gap, "", 0.0) +
+          strprintf("velocity all set 0 %.17g 0\n", -gap * 0.0625 - 0.04) +
+          "fix solve all mpm/implicit euler solver multigrid\ntimestep 1.0\n";
+      if (gap > 2.5)
+        expect_error(scene + "run 1\n", "within 2.5 node spacings");
+      else
+        Scene run(scene + "run 1\n");
+    }
+}
+
+// a block that falls comes to rest where it does in small steps
+SERIAL_TEST(Block, Falls)
+{
+  for (const double gap : {0.3, 1.0, 2.0, 2.5}) {
+    double force[2], mean[2];
+    for (const int many : {0, 1}) {
+      const double dt = many ? 0.005 : 0.1, speed = (gap * 0.0625 + 0.02) / 0.1;
+      Scene run(above("ylo separate", gap, "", 0.0) +
+                strprintf("velocity all set 0 %.17g 0\nfix g all gravity 10 vector 0 -1 0\n"
+                          "fix solve all mpm/implicit euler solver multigrid\n"
+                          "compute e all mpm/energy\nthermo_style custom step c_e[10]\n"
+                          "timestep %g\nrun %d\n",
+                          -speed, dt, many ? 800 : 40));
+      force[many] = -run.fix("floor")->compute_vector(1);
+      mean[many] = mean_height(run);
+    }
+    const std::string name = strprintf("from %g: ", gap);
+    EXPECT_NEAR(measured(name + "force over weight", force[0] / 2500.0), 1.0, 1e-2);
+    EXPECT_NEAR(measured(name + "force over weight, small steps", force[1] / 2500.0), 1.0, 1e-2);
+    // of small steps, the last ones come to rest within NEXT_TO of the floor
+    EXPECT_NEAR(measured(name + "mean height, in spacings", (mean[0] - mean[1]) / 0.0625), 0.0,
+                0.06);
+  }
+}
+
 TEST(Contact, Ranks)
 {
   for (const char *floor :
@@ -131,6 +231,14 @@ TEST(Contact, Ranks)
     OnRanks run(block(floor, "", 0.02, 0.2, "static tolerance 1e-10"), "run 2\n");
     EXPECT_LT(measured("difference", run.difference()), 1e-9);
   }
+  for (const char *floor : {"ylo separate", "region ground separate", "region hill separate"})
+    for (const double gap : {1.0, 2.5}) {
+      OnRanks run(above(floor, gap, "", 0.0) +
+                      "velocity all set 0.1 -1.7 0\n"
+                      "fix solve all mpm/implicit euler tolerance 1e-10\ntimestep 0.1\n",
+                  "run 2\n", "processors 1 * 1\n");
+      EXPECT_LT(measured("difference", run.difference()), 1e-9) << floor << gap;
+    }
 }
 
 SERIAL_TEST(Contact, BadInput)

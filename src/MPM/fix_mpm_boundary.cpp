@@ -292,6 +292,7 @@ void FixMPMBoundary::init()
                        return !v.variable.empty() || v.value != 0.0;
                      });
   nodes.clear();    // listed with the topology
+  seeks = kind == SEPARATE && !modify->get_fix_by_style("^mpm/implicit$").empty();
   for (auto *field : fields) {
     if (!acts_on(*field)) continue;
     nodes.push_back({field, faces_on_lattice(*field), {}, {}, {}, {}});
@@ -446,6 +447,7 @@ bool FixMPMBoundary::faces_are_near(const Faces &faces, int axis)
 void FixMPMBoundary::extend_topology(MPMField &field)
 {
   if (!acts_on(field)) return;
+  if (seeks) extend_to_approaches(field);
   if (region) return extend_across(field);
   Grid &grid = field.grid;
   const auto faces = faces_on_lattice(field);
@@ -478,7 +480,9 @@ bool FixMPMBoundary::looks_at_all(const MPMField &field, const Grid::Block &bloc
   for (const auto &list : nodes)
     for (const auto &face : list.faces) {
       const int first = block.b[face.axis] * side;
-      if (list.field == &field && first <= face.end() && first + side > face.begin()) return true;
+      int begin = face.begin(), end = face.end();
+      if (seeks) (face.inward > 0 ? end : begin) += face.inward * SOUGHT;
+      if (list.field == &field && first <= end && first + side > begin) return true;
     }
   return false;
 }
@@ -1039,10 +1043,10 @@ bool FixMPMBoundary::looks_at_blade(const MPMField &field, const Single &single,
    the end: the position is moved with it
 ------------------------------------------------------------------------- */
 
-std::function<double(const double *)> FixMPMBoundary::distance_from_region(const MPMField &field,
-                                                                           double dt) const
+std::function<double(const double *)>
+FixMPMBoundary::distance_from_region(const MPMField &field, double dt, double more) const
 {
-  const double h = field.lattice.h, far = MPMWallGap::farthest(field);
+  const double h = field.lattice.h, far = MPMWallGap::farthest(field, more);
   if (!region_moves())
     return [this, far, h](const double *x) {
       return surface->gap(x, far, h);
@@ -1139,7 +1143,7 @@ void FixMPMBoundary::check_speed(double dt)
                region_id, update->ntimestep);
   for (const auto &list : nodes) {
     const double h = list.field->lattice.h;
-    if (warned || !(way > h)) continue;
+    if (warned || !(way > (seeks ? COMES_FROM : 1.0) * h)) continue;
     warned = true;
     if (comm->me == 0)
       error->warning(FLERR,
@@ -1300,6 +1304,11 @@ void FixMPMBoundary::act(double dt, Stage stage)
       act_on_single(list, single);
     }
     now.touch = nullptr;
+    if (tries) {
+      const std::size_t first = nlines + ncrossings + list.singles.size();
+      for (std::size_t k = 0; k < list.approaches.size(); k++)
+        act_on_approach(list, list.approaches[k], touches[first + k]);
+    }
     if (count) ledger.boundary += now.kinetic * force->mvv2e;
     if (count) ledger.driven += now.driven * force->mvv2e;
     if (count && ledger.on) ledger.transfer += now.collided * force->mvv2e;
@@ -1722,6 +1731,7 @@ double FixMPMBoundary::memory_usage()
   for (const auto &list : nodes)
     bytes += list.lines.capacity() * sizeof(Line) + list.members.capacity() * sizeof(Member) +
         list.orbits.capacity() * sizeof(Orbit) + list.singles.capacity() * sizeof(Single) +
-        list.crossings.capacity() * sizeof(Crossing);
-  return bytes;
+        list.crossings.capacity() * sizeof(Crossing) +
+        list.approaches.capacity() * sizeof(Approach);
+  return bytes + clear.capacity() * sizeof(double) + touches.capacity() * sizeof(Touch);
 }

@@ -117,6 +117,11 @@ class FixMPMBoundary :
 
  private:
   static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
+  // node spacings from which material may come to a wall in an implicit step, and those that have to be known then
+  static constexpr double COMES_FROM = 2.5;
+  static constexpr int SOUGHT = 6;
+  static constexpr double DEEPEST =
+      1.25;    // node spacings in a region where it is known what touches
 
   struct Face {    // a face of the box on the lattice of a field
     int axis;
@@ -185,6 +190,15 @@ class FixMPMBoundary :
     enum Front { SOUND, THIN_PLACE, NEAR_OTHERS } front = SOUND;
     bool acts = true, in_plate = false;    // in_plate: of less than RESOLVED
   };
+  // a line of nodes through the surface of material that is not at the wall yet, in trials, see
+  // fix_mpm_boundary_approach.cpp; from the wall to the material
+  struct Approach {
+    int axis, n;
+    int64_t node[4];    // -1: out of reach of points
+    double weight[4];
+    double normal[3];    // of the wall
+    double gap;          // between them [distance]
+  };
   struct FieldNodes {
     MPMField *field;
     Faces faces;
@@ -199,6 +213,7 @@ class FixMPMBoundary :
     std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
     std::vector<MPMWallContact> crossed = {};     // with crossings, as far as they have been needed
     std::vector<char> crossed_known = {};
+    std::vector<Approach> approaches = {};
 
     void list_line(int face, const int *index);
     void list_orbits(const bool *prescribed, int axis);
@@ -269,10 +284,11 @@ class FixMPMBoundary :
   MPMFirstNote<5> too_thin;    // region: step, index of the field, place
   double reaction[6] = {};     // force and, of regions, torque
 
-  // contact of which a solver decides, see mpm_trial_contact.h: one for each line, crossing, and single, in this order
+  // contact of which a solver decides, see mpm_trial_contact.h: one for each line, crossing, single, and approach, in this order
   struct Touch {
     bool open;             // the material touches the wall, or may come to do so
     bool active = true;    // it is held
+    double gap = 0.0;      // between them at the start of the step [distance]
     double push = 0.0, base = 0.0, force = 0.0;    // sum of impulses, that of walls alone; N
     double slip[3] = {0.0, 0.0, 0.0}, rubs[3] = {0.0, 0.0, 0.0};    // s, and friction
     double dual[3] = {0.0, 0.0, 0.0};                               // w, see add_friction_change()
@@ -301,8 +317,15 @@ class FixMPMBoundary :
   MPMField *tried = nullptr;
   const double *motion = nullptr;    // velocities of nodes at the end of the step
   double trial_dt = 0.0, eps = 0.0, soft = 0.0;
+  int rounds = 0;        // of decisions in this step
+  bool seeks = false;    // material that comes to the wall in implicit steps
+  bool closes =
+      false;    // lines that are held go to the wall now, else they are at rest relative to it
+  std::vector<double> clear;    // [point][face] its distance from the wall at the start of the step
 
-  void begin_trials(MPMField &, double dt, double eps) override;
+  void begin_trials(MPMField &, double dt, double eps, bool rests) override;
+  bool close_gaps(bool yes) override;
+  void check_arrival() override;
   bool has_friction() const override { return friction > 0.0; }
   void forget_pushes() override;
   void take_base() override;
@@ -316,6 +339,11 @@ class FixMPMBoundary :
   void soften(double by) override { soft = by; }
   void foresee_velocities(const double *v) override { motion = v; }
   FieldNodes &tried_nodes();
+  void find_approaches(FieldNodes &, double dt);
+  void find_clear(const FieldNodes &, double dt);
+  bool is_deep(const FieldNodes &, std::size_t single) const;
+  void extend_to_approaches(MPMField &) const;
+  void act_on_approach(const FieldNodes &, const Approach &, Touch &);
   template <class Use> void visit_touches(const Use &use);
   int find_held(const FieldNodes &, int k, Held *held, double *normal) const;
   void change_of_direction(const Touch &, const double *slip, double *change) const;
@@ -352,7 +380,8 @@ class FixMPMBoundary :
   void update_motion(double dt);
   void find_gaps(FieldNodes &, double dt);
   void find_region_gaps(FieldNodes &, double dt);
-  std::function<double(const double *)> distance_from_region(const MPMField &, double dt) const;
+  std::function<double(const double *)> distance_from_region(const MPMField &, double dt,
+                                                             double more = 0.0) const;
   void check_speed(double dt);
   double slide_share(Contact &, double push, double water, double needed) const;
   void find_water(const FieldNodes &, double dt);

@@ -23,8 +23,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// node spacings from a wall at which statics has material touch it: nothing would bring it there
-static constexpr double NEXT_TO = 0.25;
+// node spacings in mean distances that decide on nothing where a solver does: contact with regions is tabulated
+static constexpr double NOT_KNOWN = 0.03;
 
 /* ---------------------------------------------------------------------- */
 
@@ -68,7 +68,7 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
       MPMWallGap::Sums sums;
       for (int k = 0; k < n; k++)
         if (line.node[k] >= 0) sums.add(face.cut ? face.weight[k] : 1.0, gap.at(line.node[k]));
-      line.touched = sums.touches(face.contact, in_trials ? NEXT_TO : 0.0);
+      line.touched = sums.touches(face.contact, in_trials ? NOT_KNOWN : 0.0);
     }
   }
 }
@@ -93,7 +93,6 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
   gap.map(field, near, region->nregion == 1, 2.45 * seen, distance_from_region(field, dt));
 
   constexpr int PER_CELL = 32;
-  constexpr double DEEPEST = 1.25;
   auto &contacts = list.contacts;
   for (auto k = contacts.size(); k <= DEEPEST * PER_CELL; k++) {
     const double at = -(double) k / PER_CELL, weight = 1.0;
@@ -105,13 +104,13 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
     if (depth > DEEPEST || !(depth > -0.01))
       continue;    // deep inside, or the distance is not known
     const auto k = (std::size_t) std::lround(std::max(0.0, depth) * PER_CELL);
-    single.touched = gap.at(single.node).touches(contacts[k], in_trials ? NEXT_TO : 0.0);
+    single.touched = gap.at(single.node).touches(contacts[k], in_trials ? NOT_KNOWN : 0.0);
   }
   for (auto &crossing : list.crossings) {
     MPMWallGap::Sums sums;
     for (int k = 0; k < crossing.n; k++)
       if (crossing.node[k] >= 0) sums.add(crossing.weight[k], gap.at(crossing.node[k]));
-    crossing.touched = sums.touches(list.crossed[crossing.full], in_trials ? NEXT_TO : 0.0);
+    crossing.touched = sums.touches(list.crossed[crossing.full], in_trials ? NOT_KNOWN : 0.0);
   }
 }
 

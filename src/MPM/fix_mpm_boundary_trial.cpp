@@ -26,11 +26,16 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double LONGEST = 0.99;    // of w: what slips as a whole has a stiffness
-static constexpr double PULL = 1.0e-9;     // of the largest push, which is let go
+static constexpr double WRONG =
+    1.0e-9;    // of the largest push, a pull that is let go; node spacings in the wall
+static constexpr double STILL_RIGHT = 1.0e-4;    // the same in the end
+static constexpr int AT_ONCE = 6;                // times that all is changed
+// node spacings from a wall at which material touches it if other does, and at which statics tries whether it does
+static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular)
+void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular, bool rests)
 {
   if (heating)
     error->all(FLERR, Error::NOLASTLINE,
@@ -45,11 +50,45 @@ void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular)
   update_motion(dt);
   FieldNodes &list = tried_nodes();
   const bool separates = kind == SEPARATE;
-  if (separates) find_gaps(list, dt);
+  closes = false;
+  rounds = 0;
   touches.clear();
+  list.approaches.clear();
+  if (separates) {
+    find_gaps(list, dt);
+    find_approaches(list, dt);
+    find_clear(list, dt);
+  }
   for (const auto &line : list.lines) touches.emplace_back(!separates || line.touched);
   for (const auto &crossing : list.crossings) touches.emplace_back(!separates || crossing.touched);
   for (const auto &single : list.singles) touches.emplace_back(!separates || single.touched);
+
+  // Of what is next to the wall, next to nothing decides whether it touches, where other material does. In statics, there
+  // may be nothing else that holds it
+
+  const std::size_t nlines = list.lines.size() + list.crossings.size();
+  int any = 0, touched = 0;
+  Held held[4];
+  double normal[3];
+  for (std::size_t k = 0; k < touches.size() && separates; k++)
+    if (touches[k].active && (k < nlines || !is_deep(list, k - nlines)) &&
+        find_held(list, (int) k, held, normal) > 0)
+      any = 1;
+  if (separates) MPI_Allreduce(&any, &touched, 1, MPI_INT, MPI_MAX, world);
+  for (std::size_t k = nlines; k < touches.size() && separates && !touched; k++)
+    touches[k].open = touches[k].active = false;
+  for (const auto &line : list.approaches) {
+    Touch touch(true);
+    touch.gap = touched && line.gap < NEXT_TO * field.lattice.h ? 0.0 : line.gap;
+    touch.active = touched ? touch.gap == 0.0 : rests && line.gap < NEARBY * field.lattice.h;
+    touches.push_back(touch);
+  }
+}
+
+/** Is it so far behind the surface that nothing is known of what touches it? */
+bool FixMPMBoundary::is_deep(const FieldNodes &list, std::size_t single) const
+{
+  return !region || -list.singles[single].distance > DEEPEST * list.field->lattice.h;
 }
 
 FixMPMBoundary::FieldNodes &FixMPMBoundary::tried_nodes()
@@ -110,10 +149,14 @@ int FixMPMBoundary::find_held(const FieldNodes &list, int k, Held *held, double 
     const Crossing &crossing = list.crossings[k - nlines];
     MathExtra::copy3(crossing.normal, normal);
     for (int j = 0; j < crossing.n; j++) add(crossing.node[j], crossing.weight[j]);
-  } else {
+  } else if (const int nsingles = (int) list.singles.size(); k < nlines + ncrossings + nsingles) {
     const Single &single = list.singles[k - nlines - ncrossings];
     MathExtra::copy3(single.normal, normal);
     add(single.node, 1.0);
+  } else {
+    const Approach &line = list.approaches[k - nlines - ncrossings - nsingles];
+    MathExtra::copy3(line.normal, normal);
+    for (int j = 0; j < line.n; j++) add(line.node[j], line.weight[j]);
   }
   for (int j = 0; j < n; j++) held[j].share /= all;
   return n;
@@ -260,30 +303,44 @@ void FixMPMBoundary::add_friction_stiffness(double *stiffness)
 
 /* ---------------------------------------------------------------------- */
 
+/* ----------------------------------------------------------------------
+   All that is wrong is changed at first. Where this goes to and fro, only what is most wrong is, and what is all but right stays
+------------------------------------------------------------------------- */
+
 bool FixMPMBoundary::decide(const double *u)
 {
   if (kind != SEPARATE) return false;
   const FieldNodes &list = tried_nodes();
   const double h = tried->lattice.h;
-  double largest = 0.0;
+  double mine = 0.0, largest, worst;
   for (const auto &touch : touches)
-    if (touch.active) largest = std::max(largest, std::fabs(touch.force));
-  bool changed = false;
+    if (touch.active) mine = std::max(mine, std::fabs(touch.force));
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
   Held held[4];
   double normal[3], slip[3], away;
+  std::vector<double> wrong(touches.size(), 0.0);
+  mine = 0.0;
   for (std::size_t k = 0; k < touches.size(); k++) {
-    Touch &touch = touches[k];
+    const Touch &touch = touches[k];
     if (!touch.open) continue;
     const int n = find_held(list, (int) k, held, normal);
     if (!n) continue;
-    const bool was = touch.active;
-    if (was) {
-      touch.active = touch.force >= -PULL * largest;
+    if (touch.active) {
+      wrong[k] = largest > 0.0 ? -touch.force / largest : 0.0;
     } else {
       find_slip(held, n, normal, u, true, slip, away);
-      touch.active = away < -PULL * h;
+      wrong[k] = (-away - touch.gap) / h;
     }
-    changed = changed || was != touch.active;
+    mine = std::max(mine, wrong[k]);
+  }
+  MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE, MPI_MAX, world);
+  const bool all = rounds++ < AT_ONCE;
+  if (worst <= (all ? WRONG : STILL_RIGHT)) return false;
+  bool changed = false;
+  for (std::size_t k = 0; k < touches.size(); k++) {
+    if (wrong[k] <= (all ? WRONG : 0.5 * worst)) continue;
+    touches[k].active = !touches[k].active;
+    changed = true;
   }
   return changed;
 }

@@ -243,6 +243,10 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("implicit step", [this]() {
       solver->finish();
     });
+  if (place == MPMPlan::AFTER_MOTION && (time == STATIC || time == EULER))
+    plan.together("implicit step", [this]() {
+      solver->check_contacts();
+    });
   if (place == MPMPlan::AFTER_MOTION && time == STATIC)
     plan.together("implicit step", [this]() {
       rest();

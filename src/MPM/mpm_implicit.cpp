@@ -39,6 +39,7 @@ static constexpr double SOFT = 0.1, HARDER = 0.1;    // the same at first, and i
 static constexpr double NEARLY = 1.0e-3;             // of all forces, for that change
 static constexpr double MAY_GROW =
     100.0;    // forces that are not in balance, where lines of nodes begin to stick or slip
+static constexpr double AT_ONCE = 0.1;    // node spacings that walls move nodes alone
 static constexpr int ROUNDS = 2;          // of friction of walls that press on each other
 static constexpr double LOST = 1.0e12;    // times the first residual
 // unknowns of a system that is factorized as a whole, which is faster than levels, by dimension
@@ -124,6 +125,7 @@ void MPMImplicit::find_constraints()
 {
   constrained = !field.plan->actions.empty();
   wall.assign(nreals(), 0.0);
+  closing.clear();
   wall_speed = 0.0;
   if (!constrained) return;
 
@@ -148,11 +150,27 @@ void MPMImplicit::find_constraints()
     project(twice.data());
     const double size = std::sqrt(product(once.data(), once.data()));
     for (int64_t k = 0; k < nreals(); k++) twice[k] -= once[k];
-    if (std::sqrt(product(twice.data(), twice.data())) <= PROJECTED * size) return;
+    if (std::sqrt(product(twice.data(), twice.data())) <= PROJECTED * size) return find_closing();
   }
   now.failure =
       "walls that meet contradict each other: give them the same velocity, or move faces of "
       "regions to planes of nodes";
+}
+
+/** Displacements of what walls hold, and was not at them at the start of the step. */
+void MPMImplicit::find_closing()
+{
+  int mine = 0, any = 0;
+  if (contacts.empty()) return;
+  for (auto *contact : contacts)
+    if (contact->close_gaps(true)) mine = 1;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
+  if (any) {
+    closing.assign(nreals(), 0.0);
+    act(closing.data());
+    for (int64_t k = 0; k < nreals(); k++) closing[k] = dt * (closing[k] - wall[k]);
+  }
+  for (auto *contact : contacts) contact->close_gaps(false);
 }
 
 /** x <- P x. Where walls move, x is made as large as their velocity, so that the difference keeps its digits. */
@@ -198,11 +216,33 @@ void MPMImplicit::find_friction(const std::vector<double> &u)
   }
 }
 
-/** u becomes what walls allow that have gone this share of their way. */
-void MPMImplicit::meet_walls(std::vector<double> &u, double share)
+/** u becomes what walls allow that have gone this share of their way. Where that is far, u is left as it is, and held gets the way in
+ *  addition: true, on all ranks. */
+bool MPMImplicit::meet_walls(std::vector<double> &u, double share)
 {
-  project(u.data());
-  for (int64_t k = 0; k < nreals(); k++) u[k] += share * dt * wall[k];
+  trial = u;
+  project(trial.data());
+  for (int64_t k = 0; k < nreals(); k++) trial[k] += share * dt * wall[k];
+  if (!closing.empty())
+    for (int64_t k = 0; k < nreals(); k++) trial[k] += closing[k];
+  double most = 0.0, way;
+  for (int64_t k = 0; k < nreals(); k++) most = std::max(most, std::fabs(trial[k] - u[k]));
+  MPI_Allreduce(&most, &way, 1, MPI_DOUBLE, MPI_MAX, lmp->world);
+  if (way <= AT_ONCE * field.lattice.h) {
+    u = trial;
+    return false;
+  }
+  for (int64_t k = 0; k < nreals(); k++) held[k] += trial[k] - u[k];
+  return true;
+}
+
+/** Sum of forces that are rounding errors: those of a strain, and of its part that comes from large motions of a node spacing. */
+double MPMImplicit::negligible_forces(const std::vector<double> &u, double stiffness) const
+{
+  double most = 0.0, way;
+  for (const double d : u) most = std::max(most, std::fabs(d));
+  MPI_Allreduce(&most, &way, 1, MPI_DOUBLE, MPI_MAX, lmp->world);
+  return ROUND_OFF * stiffness * std::max(1.0, 4.0 * way / field.lattice.h);
 }
 
 /** What touches, when forces are in balance: false, on all ranks, if nothing has to be changed. */
@@ -214,9 +254,28 @@ bool MPMImplicit::decide_contact(std::vector<double> &u)
   MPI_Allreduce(&changed, &any, 1, MPI_INT, MPI_MAX, lmp->world);
   if (!any) return false;
   find_constraints();
-  meet_walls(u, aim);
   by_levels = false;
   return true;
+}
+
+/** What is held goes its way, and all the rest with it, or the largest of shares 1, 1/2, ... of it after which no point is inside out. False
+ *  if there is none. */
+bool MPMImplicit::close(std::vector<double> &u, const std::vector<double> &du, double &size,
+                        double &share)
+{
+  const std::vector<double> begin = u, way = du;
+  share = 1.0;
+  for (int cut = 0; cut <= MOST_CUTS; cut++, now.cuts++, share *= 0.5) {
+    for (int64_t k = 0; k < nreals(); k++) u[k] = begin[k] + share * (held[k] + way[k]);
+    if (find_residual(u, size)) return true;
+  }
+  u = begin;
+  return false;
+}
+
+void MPMImplicit::check_contacts()
+{
+  for (auto *contact : contacts) contact->check_arrival();
 }
 
 /** Of the vectors of all nodes. */
@@ -520,17 +579,19 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     MPI_Allreduce(&most, &softness, 1, MPI_DOUBLE, MPI_MAX, lmp->world);
     for (auto *contact : contacts) contact->soften(softness);
   }
-  if (!contacts.empty()) meet_walls(u, reached_by_walls);
+  if (options.time != MPMImplicitOptions::STATIC) std::fill(held.begin(), held.end(), 0.0);
+  bool closes = !contacts.empty() && meet_walls(u, reached_by_walls);
   if (!find_residual(u, size)) {
     now.failure = "points are inside out or have no finite stress at the start of the step";
     return HOPELESS;
   }
-  bool wall_moves = options.time == MPMImplicitOptions::STATIC && wall_speed > 0.0;
+  bool wall_moves = closes || (options.time == MPMImplicitOptions::STATIC && wall_speed > 0.0);
+  double first = now.unbalanced;    // since it is known what touches
   while (true) {
     now.residuals.push_back(now.unbalanced);
     const double enough =
         std::max({options.tolerance * size, options.absolute * lmp->force->ftm2v,
-                  ROUND_OFF * stiffness, joint ? joint->negligible_forces() : 0.0});
+                  negligible_forces(u, stiffness), joint ? joint->negligible_forces() : 0.0});
     enough_force = enough;
     // sizes of what is left by the larger ones of forces and volumes, in parts of what may be left
     const double left = joint ? joint->excess() * enough : now.unbalanced;
@@ -544,7 +605,9 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     }
     if (left <= enough && !wall_moves) {
       if (contacts.empty() || !decide_contact(u)) return CONVERGED;
-      last = 0.0;
+      last = first = 0.0;
+      std::fill(held.begin(), held.end(), 0.0);
+      closes = wall_moves = meet_walls(u, aim);
       if (!find_residual(u, size)) {
         now.failure = "points are inside out when they touch walls";
         return FAILED;
@@ -555,8 +618,8 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
       now.failure = "it did not converge";
       return FAILED;
     }
-    if (!joint && now.unbalanced > LOST * now.residuals[0] && !wall_moves &&
-        now.residuals[0] > 0.0) {
+    if (!wall_moves && first == 0.0) first = now.unbalanced;
+    if (!joint && now.unbalanced > LOST * first && !wall_moves && first > 0.0) {
       now.failure = "it diverges";
       return FAILED;
     }
@@ -611,7 +674,15 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
 
     for (auto *contact : contacts) contact->correct(du.data());
     const double slope = product(du.data(), free.data());
-    if (wall_moves) {
+    if (closes) {
+      double share;
+      if (!close(u, du, size, share)) {
+        now.failure = "points are inside out when they come to walls";
+        return FAILED;
+      }
+      closes = wall_moves = share < 1.0;
+      for (int64_t k = 0; k < nreals(); k++) held[k] *= 1.0 - share;
+    } else if (wall_moves) {
       wall_moves = false;
       for (int64_t k = 0; k < nreals(); k++) u[k] += held[k] + du[k];
       if (joint) joint->move(1.0);
@@ -687,7 +758,7 @@ double MPMImplicit::step(double step_dt)
   slip = options.slip > 0.0 ? options.slip : SLIP * field.lattice.h;
   for (auto *action : field.plan->actions)
     if (auto *contact = action->trial_contact()) {
-      contact->begin_trials(field, dt, slip);
+      contact->begin_trials(field, dt, slip, options.time == MPMImplicitOptions::STATIC);
       contacts.push_back(contact);
       rubs = rubs || contact->has_friction();
     }
@@ -857,10 +928,11 @@ double MPMImplicit::memory_usage() const
   for (const auto *list : {&mass,     &friction, &before,       &explicit_velocity,
                            &outer,    &inner,    &from,         &wall,
                            &held,     &start,    &acceleration, &push,
-                           &velocity, &loads,    &more_loads,   &residual,
-                           &partial,  &of_nodes, &of_points,    &early,
-                           &next,     &free,     &change,       &trial,
-                           &blocks,   &room,     &allowed,      &of_heavy})
+                           &closing,  &velocity, &loads,        &more_loads,
+                           &residual, &partial,  &of_nodes,     &of_points,
+                           &early,    &next,     &free,         &change,
+                           &trial,    &blocks,   &room,         &allowed,
+                           &of_heavy})
     bytes += list->capacity() * sizeof(double);
   bytes += heavy.capacity() * sizeof(int64_t);
   return bytes;

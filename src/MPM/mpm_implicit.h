@@ -112,6 +112,8 @@ class MPMImplicit : private MPMNodeSystem {
   /** Points have moved: those of affine transfers get what their velocities at the end of the step have more than the mean ones that they
    *  have moved with. */
   void end_motion();
+  /** Points have moved: walls look at where they are. Collective. */
+  void check_contacts();
   const Report &report() const { return now; }
   /** Steps to come begin without what those before have told: for those of a restart file, which do not know it. */
   void forget()
@@ -145,6 +147,7 @@ class MPMImplicit : private MPMNodeSystem {
   double slip = 0.0;                           // from which on it is that of Coulomb
   double of_pushes = 1.0;                      // scale of the last projection
   double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of their way in this step
+  std::vector<double> closing;    // what walls bring to them, displacements; empty: nothing
   std::vector<double> friction;
   int repeats = 1;             // of node actions, until they are a projection
   std::vector<double> mass;    // [node]
@@ -200,7 +203,10 @@ class MPMImplicit : private MPMNodeSystem {
   void project(double *x);
   void find_friction(const std::vector<double> &u);
   bool decide_contact(std::vector<double> &u);
-  void meet_walls(std::vector<double> &u, double share);
+  void find_closing();
+  bool meet_walls(std::vector<double> &u, double share);
+  double negligible_forces(const std::vector<double> &u, double stiffness) const;
+  bool close(std::vector<double> &u, const std::vector<double> &du, double &size, double &share);
   void project_forces(double *f);
   double sum_of_sizes(const std::vector<double> &);
   bool find_residual(const std::vector<double> &u, double &size);

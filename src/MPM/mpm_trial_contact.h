@@ -24,8 +24,13 @@ class MPMField;
  *  friction to nodes as it was found last. Vectors are [node][dim]; forces are in units of mass times acceleration. */
 class MPMTrialContact {
  public:
-  /** The start of a step of duration dt; eps [distance]. */
-  virtual void begin_trials(MPMField &, double dt, double eps) = 0;
+  /** The start of a step of duration dt, in statics (rests) or dynamics; eps [distance]. Collective. */
+  virtual void begin_trials(MPMField &, double dt, double eps, bool rests) = 0;
+  /** From now on, is what is held that was not at the wall at the start of the step brought to it by acts? Else it is held at rest relative to the wall, as
+   *  all the rest. Returns whether there is such, on this rank. */
+  virtual bool close_gaps(bool yes) = 0;
+  /** Points have moved: an error if any has come into the wall. Collective. */
+  virtual void check_arrival() = 0;
   virtual bool has_friction() const = 0;
   /** Sums of impulses begin again with zero. */
   virtual void forget_pushes() = 0;

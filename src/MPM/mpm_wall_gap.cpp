@@ -37,6 +37,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -105,14 +106,20 @@ bool MPMWallGap::Sums::touches(const MPMWallContact &full, double near) const
       distance <= (full.distance(size2 / volume) + std::max(near, TOLERANCE)) * volume;
 }
 
+double MPMWallGap::Sums::beyond(const MPMWallContact &full) const
+{
+  if (!(volume > 0.0)) return std::numeric_limits<double>::infinity();
+  return distance / volume - full.distance(size2 / volume);
+}
+
 /* ---------------------------------------------------------------------- */
 
 /** Of the middle of a block whose points are out of reach. */
-double MPMWallGap::farthest(const MPMField &field)
+double MPMWallGap::farthest(const MPMField &field, double more)
 {
   const auto &lattice = field.lattice;
   const double radius = (0.5 * field.grid.side + 1.0) * sqrt((double) lattice.dim);
-  return (FARTHEST + radius) * lattice.h;
+  return (FARTHEST + more + radius) * lattice.h;
 }
 
 /* ----------------------------------------------------------------------
@@ -122,7 +129,7 @@ double MPMWallGap::farthest(const MPMField &field)
 ------------------------------------------------------------------------- */
 
 void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth, double reach,
-                     const std::function<double(const double *)> &away)
+                     const std::function<double(const double *)> &away, double more)
 {
   constexpr int CHUNK = 8;
   const auto &pic = field.pic;
@@ -130,7 +137,8 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   const auto nmax = (std::size_t) field.atom->nmax;
   const double h = lattice.h;
   const bool sized = field.options.has_size(), cubes = lattice.dim == 3;
-  const double far = farthest(field), seen_from = std::min(reach, FARTHEST) + 0.01;
+  const double limit = FARTHEST + more;
+  const double far = farthest(field, more), seen_from = std::min(reach, limit) + 0.01;
   if (volumes.size() < nmax) {
     volumes.resize(nmax);
     values.resize(3 * nmax);
@@ -176,7 +184,7 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
       bool seen = sized;
       for (int i = begin; i < end; i++) {
         double &d = distance[i - begin];
-        d = !sized && out_of_sight(x[i]) ? FARTHEST : look(x[i]) / h;
+        d = !sized && out_of_sight(x[i]) ? limit : look(x[i]) / h;
         seen = seen || d < seen_from;
       }
       if (!seen) continue;
@@ -187,7 +195,7 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
         double *const value = &values[3 * (std::size_t) i];
         volumes[i] = volume;
         const double crossing = std::max(0.0, 1.0 - d / (NEAR * size));
-        value[0] = std::min(d, FARTHEST) - BEHIND * crossing * crossing;
+        value[0] = std::min(d, limit) - BEHIND * crossing * crossing;
         value[1] = size * size;
         value[2] = 0.0;    // in 2d there is no third one
       }

@@ -48,17 +48,20 @@ class MPMWallGap {
     void add(double weight, const Sums &);
     /** Does the material touch the wall, or is it no farther from it than this (node spacings)? */
     bool touches(const MPMWallContact &, double near = 0.0) const;
+    /** Mean distance of the points that are seen less that of material which touches the wall (node spacings); not finite where
+     *  nothing is seen. */
+    double beyond(const MPMWallContact &) const;
   };
 
   /** Collective. Sums at the nodes of the blocks [slot] that are marked in near (and others). away(x) is
    *  the distance of a position from the wall, positive on the side of the material; smooth: it
    *  changes by no more than the position does. No node of the wall sees farther than reach (node
-   *  spacings). */
+   *  spacings). more: distances beyond those that a node at the wall sees are wanted, by so much (node spacings). */
   void map(MPMField &, const std::vector<char> &near, bool smooth, double reach,
-           const std::function<double(const double *)> &away);
+           const std::function<double(const double *)> &away, double more = 0.0);
 
   /** Distances beyond this one need not be known. */
-  static double farthest(const MPMField &);
+  static double farthest(const MPMField &, double more = 0.0);
 
   Sums at(int64_t node) const;
 
