@@ -83,9 +83,12 @@ static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;
 
 static constexpr double ROUNDING = 1.0e-8;
 
-// with pore water, of which each node between bodies bears a part, bodies touch at sums that are not smaller than this, and with points of
-// several lattices, of which sums over a part of a function differ by 0.4 % and, in 3d, three times that; and where it is told that
-// some of them do not
+// of points as boxes, which do not fill space exactly where they are strained
+
+static constexpr double BOX_ROUNDING = 1.0e-3;
+
+// with pore water, of which each node between bodies bears a part, bodies touch at sums that are not smaller than this; and where it is
+// told that some of them do not
 
 static constexpr double SLACK = 0.02, NEARLY = 0.8;
 
@@ -370,6 +373,23 @@ void FixMPMContact::couple_topology()
    blocks in reach of each body, and the range that they take up over all ranks
 ------------------------------------------------------------------------- */
 
+/** Boxes of points, see map_boxes(), reach farther than these. */
+static void activate_around(Grid &grid)
+{
+  const std::size_t known = grid.blocks.size();
+  for (std::size_t slot = 0; slot < known; slot++) {
+    if (!grid.blocks[slot].reached) continue;
+    int b[3], low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+    for (int d = 0; d < grid.lattice.dim; d++) {
+      low[d] = grid.blocks[slot].b[d] - 1;
+      high[d] = low[d] + 2;
+    }
+    for (b[0] = low[0]; b[0] <= high[0]; b[0]++)
+      for (b[1] = low[1]; b[1] <= high[1]; b[1]++)
+        for (b[2] = low[2]; b[2] <= high[2]; b[2]++) grid.activate(b);
+  }
+}
+
 void FixMPMContact::blocks_found()
 {
   if (!stale()) return;
@@ -377,6 +397,7 @@ void FixMPMContact::blocks_found()
 
   for (auto &body : bodies) {
     if (body.refined) body.refined->extend_for_finer(*body.field);
+    if (on_several_lattices) activate_around(body.field->grid);
     body.reach.find(body.field->grid, world);
   }
 }
@@ -500,22 +521,22 @@ bool FixMPMContact::map_bodies()
 }
 
 /* ----------------------------------------------------------------------
-   Gradient and share of a body at the nodes. What touches is decided by all that the function of a node reaches, also by the points
-   of finer lattices, of which the momentum of the node has those that have no free node between. All gradients are then those of
-   the functions, as those of affine terms have other sums over a part of a support
+   Gradient and share of a body at the nodes. On several lattices, what touches is decided by all that the function of a node reaches,
+   also by the points of finer lattices, of which the momentum of the node has those that have no free node between. Sums over a part of
+   a function by small points are not those by large ones: of points as boxes they are
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::map_content(Body &body)
 {
   const Weight weight = normal_by == MASS ? Weight::MASS : Weight::VOLUME;
-  if (on_several_lattices)
-    map_surface(*body.field, body.near, body.gradient, weight);
-  else
-    map_gradient(*body.field, weight, body.near, body.gradient);
-  body.share.clear();
+  if (on_several_lattices) {
+    std::vector<MPMField *> all = body.finer;
+    all.push_back(body.field);
+    map_boxes(*body.field, all, weight, body.near, body.gradient, body.share);
+    return;
+  }
+  map_gradient(*body.field, weight, body.near, body.gradient);
   if (gap || look) map_volume(*body.field, body.near, body.share);
-  if (!body.finer.empty())
-    add_points_of(*body.field, body.finer, weight, body.near, body.gradient, body.share);
 }
 
 /** Records of the bodies that have mass at node n of a block, null: it has none; how many have. */
@@ -813,7 +834,7 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
   }
   pair.water = 0.0;
   const bool wet = is_wet(pair);
-  const double slack = wet || on_several_lattices ? SLACK : ROUNDING;
+  const double slack = wet ? SLACK : on_several_lattices ? BOX_ROUNDING : ROUNDING;
   const bool touches = !gap || volume_share >= full * (1.0 - slack) || pair.fade > 0.0;
   if (wet) {
     pair.water = water_between(pair);

@@ -88,60 +88,96 @@ void LAMMPS_NS::map_gradient(MPMField &field, Weight content, const std::vector<
 }
 
 void LAMMPS_NS::map_surface(MPMField &field, const std::vector<char> &near,
-                            std::vector<double> &gradient, Weight content)
+                            std::vector<double> &gradient)
 {
-  map_gradient_with(field.pic, field, content, near, gradient);
+  map_gradient_with(field.pic, field, Weight::VOLUME, near, gradient);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void LAMMPS_NS::add_points_of(MPMField &field, const std::vector<MPMField *> &others,
-                              Weight content, const std::vector<char> &near,
-                              std::vector<double> &gradient, std::vector<double> &share)
+/** The B-spline of an order around 0 at x (power: its order), or its integral up to x (power: one more), as a sum of truncated powers. */
+static double spline_sum(int order, int power, double x)
 {
-  constexpr int NREAL = 4;    // gradient, volume
+  double sum = 0.0, binomial = 1.0, factorial = 1.0;
+  for (int k = 2; k <= power; k++) factorial *= k;
+  for (int k = 0; k <= order + 1; k++) {
+    const double t = x + 0.5 * (order + 1) - k;
+    if (t <= 0.0) break;
+    double term = binomial;
+    for (int p = 0; p < power; p++) term *= t;
+    sum += k % 2 ? -term : term;
+    binomial *= (double) (order + 1 - k) / (k + 1);
+  }
+  return sum / factorial;
+}
+
+void LAMMPS_NS::map_boxes(MPMField &field, const std::vector<MPMField *> &bodies, Weight content,
+                          const std::vector<char> &near, std::vector<double> &gradient,
+                          std::vector<double> &share)
+{
+  constexpr int NREAL = 4, MOST = 7;    // gradient, volume; nodes along an axis
   const Grid &grid = field.grid;
-  const MPMFrame &frame = *field.frame;
-  const MPMStencil stencil(field);
-  const int dim = field.lattice.dim;
+  const Lattice &lattice = field.lattice;
+  const int dim = lattice.dim, order = stencil_order(field.options.shape);
+  const double reach = 0.5 * (order + 1);
   auto &sums = field.work.nodes;
   sums.assign(NREAL * grid.nnodes(), 0.0);
-  for (const auto *other : others)
-    for (const auto &run : other->map->runs)
+  for (const auto *body : bodies)
+    for (const auto &run : body->map->runs)
       for (int i = run.first; i < run.last; i++) {
-        const double *const x = other->frame->places()[i];
-        int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
-        double w[3][4] = {{0.0}, {0.0}, {1.0}}, dw[3][4] = {{0.0}};
-        for (int d = 0; d < dim; d++)
-          count[d] = stencil.weights((x[d] - grid.lattice.origin[d]) / grid.lattice.h, base[d],
-                                     w[d], dw[d]);
-        const int b[3] = {base[0] >> grid.shift_bits, base[1] >> grid.shift_bits,
-                          base[2] >> grid.shift_bits};
+        const double *const x = body->frame->places()[i];
+        double t[3];
+        int center[3] = {0, 0, 0}, b[3] = {0, 0, 0};
+        for (int d = 0; d < dim; d++) {
+          t[d] = (x[d] - lattice.origin[d]) / lattice.h;
+          center[d] = (int) std::floor(t[d] + 0.5);
+          b[d] = center[d] >> grid.shift_bits;
+        }
         const int slot = grid.find(b);
         if (slot < 0 || !reaches(grid.blocks[slot], near)) continue;
-        const double V = field.atom->vfrac[i] * other->frame->lattice_jacobian(i),
-                     circle = other->frame->circle(x[0]), volume = V / circle,
-                     weight = content == Weight::MASS ? field.atom->rmass[i] / circle : V / circle;
+
+        const double circle = body->frame->circle(x[0]),
+                     volume = field.atom->vfrac[i] * body->frame->lattice_jacobian(i) / circle,
+                     weight = content == Weight::MASS ? field.atom->rmass[i] / circle : volume,
+                     size = std::min(1.0, std::pow(volume, 1.0 / dim) / lattice.h);
+        double w[3][MOST] = {{0.0}, {0.0}, {1.0}}, dw[3][MOST] = {{0.0}};
+        int first[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
+        for (int d = 0; d < dim; d++) {
+          const double low = t[d] - 0.5 * size, high = t[d] + 0.5 * size;
+          first[d] = (int) std::ceil(low - reach);
+          count[d] = (int) std::floor(high + reach) - first[d] + 1;
+          for (int n = 0; n < count[d]; n++) {
+            const double at = first[d] + n;
+            w[d][n] =
+                (spline_sum(order, order + 1, high - at) - spline_sum(order, order + 1, low - at)) /
+                size;
+            dw[d][n] = (spline_sum(order, order, high - at) - spline_sum(order, order, low - at)) /
+                (size * lattice.h);
+          }
+        }
         for (k[0] = 0; k[0] < count[0]; k[0]++)
           for (k[1] = 0; k[1] < count[1]; k[1]++)
             for (k[2] = 0; k[2] < count[2]; k[2]++) {
-              const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
+              const int index[3] = {first[0] + k[0], first[1] + k[1], first[2] + k[2]};
               const int64_t node = grid.locate_near(grid.blocks[slot], index);
               if (node < 0) continue;
               double *const to = &sums[NREAL * node];
-              for (int d = 0; d < dim; d++)
-                to[d] += weight / grid.lattice.h * dw[d][k[d]] * w[(d + 1) % 3][k[(d + 1) % 3]] *
-                    w[(d + 2) % 3][k[(d + 2) % 3]];
-              to[3] += volume * w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
+              const double wx = w[0][k[0]], wy = w[1][k[1]], wz = w[2][k[2]];
+              to[0] += weight * dw[0][k[0]] * wy * wz;
+              to[1] += weight * wx * dw[1][k[1]] * wz;
+              to[2] += weight * wx * wy * dw[2][k[2]];
+              to[3] += volume * wx * wy * wz;
             }
       }
   field.nodes.sum(sums.data(), NREAL, 0, NREAL);
-  const double inverse = 1.0 / field.lattice.cell_volume();
+  const double inverse = 1.0 / lattice.cell_volume();
+  gradient.resize(3 * grid.nnodes());
+  share.resize(grid.nnodes());
   for (int64_t n = 0; n < grid.nnodes(); n++) {
     const double length =
-        frame.node_circle((int) (n / NODES_PER_BLOCK), (int) (n % NODES_PER_BLOCK));
-    for (int d = 0; d < dim; d++) gradient[3 * n + d] += length * sums[NREAL * n + d];
-    if (!share.empty()) share[n] += inverse * sums[NREAL * n + 3];
+        field.frame->node_circle((int) (n / NODES_PER_BLOCK), (int) (n % NODES_PER_BLOCK));
+    for (int d = 0; d < 3; d++) gradient[3 * n + d] = length * sums[NREAL * n + d];
+    share[n] = inverse * sums[NREAL * n + 3];
   }
 }
 

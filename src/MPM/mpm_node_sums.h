@@ -23,8 +23,7 @@ enum class Weight { MASS, VOLUME };
 void map_gradient(MPMField &, Weight, const std::vector<char> &near, std::vector<double> &gradient);
 /** The same of volumes with the gradients of the functions, also where stress is an affine term of the transfer
  *  and so takes other ones. */
-void map_surface(MPMField &, const std::vector<char> &near, std::vector<double> &gradient,
-                 Weight = Weight::VOLUME);
+void map_surface(MPMField &, const std::vector<char> &near, std::vector<double> &gradient);
 /** At the same nodes: forces [node][3] of points whose stress and external force are those that give(i, tau, f) sets;
  *  tau: [6] J times the stress, f: [3], both in the units of a force over nktv2p. */
 void map_forces(MPMField &, const std::vector<char> &near,
@@ -32,11 +31,11 @@ void map_forces(MPMField &, const std::vector<char> &near,
                 std::vector<double> &force);
 /** At the same nodes: sum_p V_p N(x_p) as share of the volume of a cell, [node]. */
 void map_volume(MPMField &, const std::vector<char> &near, std::vector<double> &share);
-/** Add to map_surface() and map_volume() of a field what points of others would give with the functions of its lattice, if all
- *  nodes that they reach are active; share may be empty. Updated frame, points without size. */
-void add_points_of(MPMField &, const std::vector<MPMField *> &others, Weight,
-                   const std::vector<char> &near, std::vector<double> &gradient,
-                   std::vector<double> &share);
+/** The gradients and shares of points of several fields with the functions of this one's lattice, as if each point was a box (a square in
+ *  2d) with its volume: sums over points that fill space are exact whatever their sizes. Nodes that boxes reach must be active. Updated
+ *  frame, B-splines. */
+void map_boxes(MPMField &, const std::vector<MPMField *> &of, Weight, const std::vector<char> &near,
+               std::vector<double> &gradient, std::vector<double> &share);
 /** At the points, [n]: that share, which is 1 inside of a body and falls to 0 across its surface. Points
  *  that have failed do not count as volume. A body on a fixed face of the box has no surface there
  *  (updated frame, faces in planes of nodes). Finds the blocks if need be. */
