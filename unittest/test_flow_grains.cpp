@@ -8,6 +8,8 @@
 
 #include "mpm_lammps.h"
 
+#include "group.h"
+
 #include <complex>
 
 using namespace MPM_TEST;
@@ -264,6 +266,54 @@ SERIAL_TEST(Grain, KeepsMomentum)
     }
 }
 
+/** A wave between a suspension, 5 % of discs, and the water above or below it in a closed tank with n cells: frequency over that of liquids, of
+ *  which one has the density rho + (rho_s - rho) phi. */
+double wave_of_suspension(int n, double density, const std::string &options)
+{
+  const bool heavy = density > 1.0;
+  const double solid = 0.05, k = PI / n, other = 1.0 + (density - 1.0) * solid,
+               w = std::sqrt(k * std::fabs(other - 1.0) / (other + 1.0) * std::tanh(0.5 * n * k)),
+               a = 0.025 * n / (2.0 * std::sinh(0.5 * n * k)), dt = 0.3;
+  Scene run(
+      full(2, strprintf("0 %d 0 %d", n, n), "f f",
+           array(2, heavy ? strprintf("0 %d", n / 2) : strprintf("%d %d", n / 2, n),
+                 std::sqrt(solid / PI), density) +
+               strprintf("variable low atom y<%d\nvariable z atom v_low*y+(1-v_low)*(%d-y)\n",
+                         n / 2, n) +
+               strprintf("variable up atom %.17g*cos(%.17g*x)*(exp(%.17g*v_z)-exp(-%.17g*v_z))\n",
+                         a, k, k, k) +
+               strprintf("variable side atom "
+                         "%.17g*sin(%.17g*x)*(1-2*v_low)*(exp(%.17g*v_z)+exp(-%.17g*v_z))\n",
+                         a, k, k, k) +
+               "displace_atoms all move v_side v_up 0 units box\n") +
+      flow("", "10 drag stokes gravity 0 -1 0 " + options) + discs +
+      "fix g all gravity 1.0 vector 0 -1 0\n" + strprintf("timestep %g\n", dt));
+  const int bit = run.lmp->group->bitmask[run.lmp->group->find("grains")];
+  double before = 0.0, time = 0.0;
+  run.each_step([&](double **) {
+    double now = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->mask[i] & bit) now += run.x()[i][1] * std::cos(k * run.x()[i][0]);
+    if (now * before < 0.0 && time == 0.0) time = run.time() - dt * now / (now - before);
+    before = now;
+  });
+  run.commands(strprintf("run %d\n", (int) (0.6 * PI / w / dt)));
+  return measured(
+      strprintf("%d cells, density %g %s: frequency over theory", n, density, options.c_str()),
+      0.5 * PI / time / w);
+}
+
+// grains weigh what they do in the fluid that they displace: of first order, as the interface is as thick as the mapping of grains
+SERIAL_TEST(Suspension, WeighsWhatItDoes)
+{
+  EXPECT_GT(wave_of_suspension(16, 3.0, ""), 1.1);    // the miss that the manual tells of
+  const double coarse = 1.0 - wave_of_suspension(16, 3.0, "displace yes"),
+               fine = 1.0 - wave_of_suspension(32, 3.0, "displace yes");
+  EXPECT_LT(std::fabs(coarse), 0.08);
+  EXPECT_GT(measured("order", std::log2(coarse / fine)), 0.8);
+  EXPECT_NEAR(wave_of_suspension(16, 0.2, "displace yes"), 1.0, 0.08);
+}
+
 // Grains that the flow carries do not make it viscous: a shear wave with many light, stiff ones in it decays as one without
 SERIAL_TEST(Suspension, IsNotViscousByItself)
 {
@@ -338,7 +388,9 @@ std::string falling(int dim)
 
 std::string falling_fixes(int dim)
 {
-  return flow("viscosity 0.01 tolerance 1e-13", "0.01 drag difelice gravity 0 -1 0") +
+  return flow("viscosity 0.01 tolerance 1e-13",
+              std::string("0.01 drag difelice gravity 0 -1 0") +
+                  (dim == 3 ? " displace yes" : "")) +
       (dim == 2 ? discs : "fix move grains nve/sphere\n") +
       "fix g all gravity 1.0 vector 0 -1 0\nneigh_modify exclude type 1 1 exclude type 1 2\n"
       "pair_style gran/hooke 50.0 NULL 0.5 NULL 0.5 1\npair_coeff * *\ntimestep 0.05\n";
@@ -413,6 +465,10 @@ SERIAL_TEST(Grain, BadInput)
        {w + "\nfix d grains mpm/immersed other 1.0 0.1", "there is no fix mpm other"},
        {w + d + "1.0 0.1\nfix e grains mpm/immersed w 1.0 0.1",
         "have 2 grains and the field in common"},
-       {w + d + "1.0 0.1\nfix r grains rigid/nve single", "use single spheres"}},
+       {w + d + "1.0 0.1\nfix r grains rigid/nve single", "use single spheres"},
+       {w + d + "1.0 0.1 displace maybe", "maybe"},
+       {"fix w water mpm 1.0\nfix m water mpm/material density 1 eos linear 100" + d +
+            "1.0 0.1 displace yes",
+        "displace yes needs a fluid of fix mpm/incompressible"}},
       "timestep 0.001\nrun 1\n");
 }

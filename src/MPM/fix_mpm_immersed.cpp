@@ -91,6 +91,8 @@ Options MPMImmersedOptions::declare(int dim)
       "gravity",
       {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time",
                "acceleration of gravity that fluid and grains have from elsewhere, for buoyancy")});
+  o.add("displace", {yes_no(displace)},
+        "an incompressible flow has neither mass nor weight where grains are");
   o.refuse([=] {
     return OptionRules{
         {law != SphereDrag::NONE && viscosity == 0.0, "",
@@ -123,6 +125,12 @@ FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
 void FixMPMImmersed::init()
 {
   field = MPMField::find(lmp, field_id);
+  if (field && displace)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/immersed {}: displace yes needs a fluid of fix mpm/incompressible: leave it "
+        "out, or use that for the fluid",
+        id);
   if (field) return;
   const auto *const flow =
       dynamic_cast<const FixMPMIncompressible *>(modify->get_fix_by_id(field_id));

@@ -32,6 +32,7 @@ struct MPMImmersedOptions {
   double density = 0.0, viscosity = 0.0;    ///< viscosity: in units of pressure, then of mass
   MPM_NS::SphereDrag::Law law = MPM_NS::SphereDrag::GIDASPOW;
   double gravity[3] = {0.0, 0.0, 0.0};
+  bool displace = false;    ///< the fluid that grains displace is not there
 
   MPM_NS::Options declare(int dimension);
 };
@@ -59,6 +60,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   const std::string &fluid() const { return field_id; }
   double fluid_density() const { return density; }
   const double *acceleration_of_gravity() const { return gravity; }
+  bool displaces() const { return displace; }
   bool is_grain(int i) const;
   double volume(int i) const;    ///< in 2d per unit of depth
   /** Steps for which forces still act on a grain before it moves; mass: of the grain, infinite: held. */

@@ -102,6 +102,7 @@ class FixMPMIncompressible :
   /** Node spacing of a flow for which a region is solid; 0: it is not. */
   double spacing_around(const std::string &region) const;
   double spacing() const { return h; }
+  MPMFlowSolids *solids_of() const { return solids.get(); }    ///< null: none
   double density_of_fluid() const { return density; }
   /** An error of who has another density of the fluid. */
   void check_density(double of_fluid, const std::string &who) const;

@@ -200,6 +200,10 @@ template <int dim> void MPMFlowGrains::find_force(Grain &g)
         held * (stiff * (g.before[d] - v[d]) - steeper * left * slip[d] - g.displaced * gravity[d]);
   g.rate = held * (stiff + g.displaced / duration);
 
+  // What a grain displaces has mass and weight in the fluid of the lattice. Where it is not to have these, it gets back what it does not
+  // need of both: the force of the pressure around a grain, which is what moves and bears the fluid in its place
+
+  const double without = fix.displaces() ? g.displaced : 0.0;
   const int width = 3 * dim + 1;
   MPMFlowReach<dim> reach;
   reach.find(cells.grid, cells.grid.blocks[g.slot], g.w.base);
@@ -207,8 +211,8 @@ template <int dim> void MPMFlowGrains::find_force(Grain &g)
     double *const to = sums.data() + number * width;
     for (int c = 0; c < dim; c++) {
       const double weight = g.w.face<dim>(c, k) / g.of_weights[c];
-      to[dim + c] += weight * g.rate;
-      to[2 * dim + c] += weight * g.least[c];
+      to[dim + c] += weight * (g.rate - without / duration);
+      to[2 * dim + c] += weight * (g.least[c] + without * gravity[c]);
     }
   });
 }

@@ -589,6 +589,29 @@ double MPMFlowSolids::stable_dt(tagint &tag)
                      : std::numeric_limits<double>::max();
 }
 
+void MPMFlowSolids::visit_batches(
+    int groupbit, const std::function<void(const Batch &, const int *, const FixMPMMaterial &)> &f)
+{
+  const int dim = cells.lattice.dim;
+  const auto flush = [&](int m) {
+    auto &p = *pending[m];
+    if (!p.n) return;
+    std::fill_n(p.L, dim * dim * p.n, 0.0);
+    load(m, update->dt);
+    f(p.batch, p.point, *materials[m]);
+    p.n = 0;
+  };
+  for (int i = 0; i < atom->nlocal && !materials.empty(); i++) {
+    if (!(atom->mask[i] & groupbit) || !cells.is_point(i) || !holds(i)) continue;
+    const int m = material_of(i);
+    if (m < 0) continue;
+    auto &p = *pending[m];
+    p.point[p.n++] = i;
+    if (p.n == BATCH) flush(m);
+  }
+  for (std::size_t m = 0; m < pending.size(); m++) flush((int) m);
+}
+
 double MPMFlowSolids::memory_usage() const
 {
   double bytes =

@@ -13,13 +13,15 @@
 #include "mpm_flow_lattice.h"
 #include "mpm_rows.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace MPM_NS {
+struct Batch;
 struct BatchKernels;
-}
+}    // namespace MPM_NS
 
 namespace LAMMPS_NS {
 class FixMPMMaterial;
@@ -60,6 +62,11 @@ class MPMFlowSolids : protected Pointers {
   /** Largest stable step of waves of shear, in which nodes next to each other move against each other, over sqrt(2): that leaves
    *  room for a viscosity. tag: of the point. */
   double stable_dt(tagint &tag);
+
+  /** Hands over the present state of the points of a group, see visit_point_batches(). */
+  void visit_batches(
+      int groupbit,
+      const std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)> &);
 
   double memory_usage() const;
 

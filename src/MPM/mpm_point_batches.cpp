@@ -10,10 +10,12 @@
 
 #include "atom.h"
 #include "error.h"
+#include "fix_mpm_incompressible.h"
 #include "fix_mpm_material.h"
 #include "fix_mpm_mesh.h"
 #include "material/material.h"
 #include "mpm_field.h"
+#include "mpm_flow_solids.h"
 #include "mpm_physics.h"
 #include "mpm_points.h"
 
@@ -78,4 +80,6 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
     }
   }
   for (auto *mesh : find_fixes<FixMPMMesh>(lmp)) mesh->visit_batches(groupbit, visit);
+  for (auto *flow : find_fixes<FixMPMIncompressible>(lmp))
+    if (flow->solids_of()) flow->solids_of()->visit_batches(groupbit, visit);
 }

@@ -27,7 +27,7 @@ void load_state(MPMField &, MPM_NS::Batch &, const int *list, int n, const FixMP
 using BatchVisitor =
     std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)>;
 
-/** Hand over the present state of all material points of a group that belong to a fix mpm or mpm/mesh, in
+/** Hand over the present state of all material points of a group that belong to a fix mpm or mpm/mesh, or are solids of a flow, in
  *  batches of one of these and one material. For output, also between runs: nothing of the points is
  *  changed. Points without material are an error. */
 void visit_point_batches(class LAMMPS *, int groupbit, const BatchVisitor &);
