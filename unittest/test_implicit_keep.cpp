@@ -47,11 +47,10 @@ SERIAL_TEST(Keep, FactorsServeSeveralSteps)
     int steps;
     double made, iterations;    // at most: factors, iterations in a step
   };
-  for (const auto &c :
-       {Case{"frame total transfer flip 1.0", "newmark", 20.0, 60, 6.0, 9.0},
-        Case{"frame total transfer flip 1.0", "newmark", 100.0, 16, 4.0, 12.5},
-        Case{"frame total transfer flip 1.0", "alpha rho 0.5", 50.0, 30, 5.0, 10.5},
-        Case{"frame total", "euler", 50.0, 30, 6.0, 8.5}}) {
+  for (const auto &c : {Case{"frame total transfer flip 1.0", "newmark", 20.0, 60, 6.0, 9.0},
+                        Case{"frame total transfer flip 1.0", "newmark", 100.0, 16, 4.0, 12.5},
+                        Case{"frame total transfer flip 1.0", "alpha rho 0.5", 50.0, 30, 5.0, 10.5},
+                        Case{"frame total", "euler", 50.0, 30, 6.0, 8.5}}) {
     std::vector<double> x[2];
     for (const bool keeps : {false, true}) {
       Scene run(swing(c.options,
@@ -129,4 +128,27 @@ TEST(Keep, RanksAndRestart)
     Scene again("read_restart " + file.name + "\n" + fixes + "run 4\n");
     EXPECT_TRUE(identical(whole.gather(), again.gather())) << method;
   }
+}
+
+// statics of a body that nothing holds is told at once, and only where forces push it: of two bodies, and along the slope of a wall
+SERIAL_TEST(Free, BodiesAreToldAtOnce)
+{
+  const std::string two = plane("si", "f f", "0 2 0 2", 1, 0.02) +
+      "fix grid all mpm 0.1\nregion a block 0 0.5 0 0.5 INF INF\nregion b block 1 1.5 1 1.5 INF "
+      "INF\n"
+      "create_points 1 region a ppc 2\ncreate_points 1 region b ppc 2\n"
+      "fix m all mpm/material density 1000 neohookean 1e6 0.3\ngroup free region b\n"
+      "fix floor all mpm/boundary ylo stick\nfix solve all mpm/implicit static\ntimestep 1.0\n";
+  expect_error(two + "fix g free gravity 1.0 vector 0 -1 0\nrun 1\n",
+               "the body around (1.25, 1.25, 0) is held by no wall along the force (0, -250, 0)");
+  Scene rests(two + "fix g all gravity 0.0 vector 0 -1 0\nrun 1\n");
+
+  const auto slides = [](const char *along) {
+    return plane("si", "p f", "0 1 0 2", 1, 0.02) +
+        body("block INF INF 0 1 INF INF", "density 1000 neohookean 1e6 0.3", "0.1") +
+        "fix floor all mpm/boundary ylo slip\nfix g all gravity 1.0 vector " + along +
+        "\nfix solve all mpm/implicit static\ntimestep 1.0\nrun 1\n";
+  };
+  expect_error(slides("1 -1 0"), "along the force (707.1, 0, 0)");
+  Scene pressed(slides("0 -1 0"));
 }

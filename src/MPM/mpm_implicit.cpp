@@ -765,6 +765,7 @@ double MPMImplicit::step(double step_dt)
   find_constraints();
   if (joint) joint->begin_step();
   tangent.external_forces(outer.data());
+  if (options.time == MPMImplicitOptions::STATIC && now.failure.empty()) find_free_bodies();
   if (!now.failure.empty()) return 0.0;
 
   // u*: where inertia alone would bring nodes, and the first guess

@@ -164,6 +164,11 @@ class MPMImplicit : private MPMNodeSystem {
       more_loads;    // that follow points: at the start, and what is new at the end
   std::vector<double> residual, free, change, trial, blocks, room, allowed;
 
+  // bodies that nothing holds (mpm_implicit_free.cpp)
+
+  int find_bodies(std::vector<int> &body);
+  void find_free_bodies();
+
   // from step to step (mpm_implicit_quasi.cpp)
 
   MPMImplicitMemory memory;
