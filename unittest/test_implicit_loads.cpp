@@ -11,6 +11,8 @@
 #include "mpm_plan.h"
 #include "mpm_tangent.h"
 
+#include <map>
+
 using namespace MPM_TEST;
 
 namespace {
@@ -257,4 +259,42 @@ SERIAL_TEST(Physics, ThatIsRefused)
       {{"fix water all mpm/pore 2e9 1000 9810 soil m 0.4 constant 1e-4", "use frame updated"},
        {"fix rest all mpm/relax 1e-5", "would not be in its balance"}},
       "run 1\n");
+}
+
+// A load on a disk of radius 1 on a block of radius and height 10, on rollers (U2): settlement of the surface at the middle and at the rim of the disk by finite
+// elements that were refined, and the vertical stress a radius below, which is that of a half space (Boussinesq)
+SERIAL_TEST(Boussinesq, SettlementAndStress)
+{
+  const double h = 0.25, p = 1e3, E = 1e7;
+  Scene run(
+      plane("si", "f f", "0 10 0 12", 1, 0.08) +
+      strprintf("fix grid all mpm %g axisymmetric yes frame total\n", h) +
+      "region soil block 0 10 0 10 INF INF\ncreate_points 1 region soil ppc 2\n" +
+      strprintf("fix m all mpm/material density 1000 linear %g 0.3\n", E) +
+      "fix walls all mpm/boundary xlo xhi ylo slip\nfix solve all mpm/implicit static\n" +
+      strprintf("region under block 0 1 %g 11 INF INF\ngroup under region under\n"
+                "fix load under mpm/traction points $(PI) 0 1 0 traction 0 %g 0\ntimestep 1\n",
+                10.0 - 0.5 * h, -p));
+  run.set_reference();
+  run.commands("run 1\n");
+  // columns of points next to the axis and to the rim, layers below the surface and around the depth
+  std::map<tagint, double> sigma;
+  for (const auto &point : run.gather()) sigma[(tagint) point.tag] = point.stress[1];
+  double w[3][2], stress = 0.0;
+  const double s = 0.5 * h, columns[3] = {0.5 * s, 1.0 - 0.5 * s, 1.0 + 0.5 * s};
+  for (int i = 0; i < run.n(); i++) {
+    const double *const X = run.reference(i);
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < 2; k++)
+        if (std::fabs(X[0] - columns[c]) + std::fabs(X[1] - 10.0 + (k + 0.5) * s) < 1e-9)
+          w[c][k] = (X[1] - run.x()[i][1]) * 0.1 * E / p;
+    if (std::fabs(X[0] - columns[0]) < 1e-9 && std::fabs(X[1] - 9.0) < 0.51 * s)
+      stress += 0.5 * sigma[run.lmp->atom->tag[i]] / p;
+  }
+  const auto surface = [&](int c) {
+    return 1.5 * w[c][0] - 0.5 * w[c][1];
+  };
+  EXPECT_NEAR(measured("settlement", surface(0)) / 0.16907, 1.0, 0.01);
+  EXPECT_NEAR(measured("at the rim", 0.5 * (surface(1) + surface(2))) / 0.10297, 1.0, 0.02);
+  EXPECT_NEAR(measured("stress", stress) / -0.646447, 1.0, 0.03);
 }
