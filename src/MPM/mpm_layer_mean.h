@@ -34,7 +34,7 @@ class MPMLayerMean {
   MPMLayerMean(MPMField &field, bool along) : field(field), nodes(field), means_along(along) {}
 
   /** Start of a run. */
-  void init() { nodes.init(false, true); }
+  void init() { nodes.init(false, means_along); }
   /** The means of this rank's points in this step. Collective. */
   void find(const Fill &);
   /** Means of other values over about a node spacing, [n]; fill as in find(), with a value of any kind. Collective. */

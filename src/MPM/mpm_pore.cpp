@@ -128,20 +128,22 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
 void MPMPore::init_layers()
 {
   layers.reset();
-  bool differ = false;
+  bool differ = false, falls = false;
   double greatest = 0.0, fastest_soil = 0.0;
   for (const auto &s : soils) {
     const auto &first = soils.front().of;
-    differ = differ || s.of.law == MPMPoreSoil::FORMULA || s.of.law == MPMPoreSoil::KOZENY ||
-        s.of.law != first.law || s.of.permeability != first.permeability ||
-        s.of.quadratic != first.quadratic || s.of.diameter != first.diameter;
+    falls = falls || s.of.law == MPMPoreSoil::KOZENY;
+    differ = differ || s.of.law == MPMPoreSoil::FORMULA || s.of.law != first.law ||
+        s.of.permeability != first.permeability || s.of.quadratic != first.quadratic ||
+        s.of.diameter != first.diameter;
     greatest = std::max(greatest, s.of.permeability);
     fastest_soil = std::max(fastest_soil, s.of.permeability / s.of.storage_at(1.0, water));
   }
-  if (!differ) return;
-  // with formulas the permeabilities are not known, while capacities hardly differ
-  const bool along =
-      !motion && quadratic.empty() && greatest <= MPMLayerMean::MOST * fastest_soil * least_storage;
+  if (!differ && !falls) return;
+  // one soil has no interfaces along which means would be of use; with formulas the
+  // permeabilities are not known, while capacities hardly differ
+  const bool along = differ && !motion && quadratic.empty() &&
+      greatest <= MPMLayerMean::MOST * fastest_soil * least_storage;
   layers = std::make_unique<MPMLayerMean>(field, along);
   layers->init();
 }
