@@ -8,6 +8,8 @@
 
 #include "fix_mpm_elements.h"
 
+#include "fix_mpm_elements_work.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
@@ -41,25 +43,6 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/** Elements whose integration points are in the batch. */
-struct FixMPMElements::Work {
-  struct Element {
-    std::size_t number;
-    double *row;
-    const ElementRule &rule;
-    int start;    // its first point
-  };
-  std::vector<Element> elements;
-  int n;                                    // points
-  double *state[BATCH];                     // F tau history
-  double g[BATCH][MAX_ELEMENT_NODES][3];    // gradients of the functions in space
-  double volume[BATCH];                     // reference volume
-  double J[BATCH];                          // without F-bar
-  Batch batch = {};                         // must start from zero, see material/batch.h
-  std::vector<double> history, mean;        // of the batch, of an element
-  std::vector<PlaneStress::Point> thin;     // [BATCH], of surfaces and lines
-};
 
 /** Those of three dimensions read the same in two. */
 static const BatchKernels &kernels()
@@ -421,6 +404,7 @@ void FixMPMElements::init()
   has_lattice = field_of_nodes() != nullptr;
   pressure = nullptr;
   comm_reverse = width = 18 + nhistory;
+  comm_forward = 3;
 
   // the fix mpm/material of the definition may have been removed or defined again
 
@@ -666,6 +650,16 @@ template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit)
   flush();
 }
 
+void FixMPMElements::for_trial_batches(const std::function<void(Work &)> &visit) const
+{
+  for_batches(true, visit);
+}
+
+int FixMPMElements::nodes_of(std::size_t e) const
+{
+  return rule_of(row(e)).nnode;
+}
+
 /* ----------------------------------------------------------------------
    kinematics of an element: F = sum_k x_k grad_0 N_k, or, if it has not moved, what the row has.
    F-bar (E.A. de Souza Neto et al., Int. J. Solids Struct. 33 (1996) 3277) takes the mean of J over
@@ -681,6 +675,11 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     X[m][2] = 0.0;
     for (int d = 0; d < dim; d++) X[m][d] = r[2 + maxnode + m * dim + d];
     if (moved) MathExtra::sub3(atom->x[nodes[e][m]], atom->x[nodes[e][0]], x[m]);
+    for (int d = 0; d < dim && trying; d++) {
+      x[m][d] +=
+          motion[3 * (std::size_t) nodes[e][m] + d] - motion[3 * (std::size_t) nodes[e][0] + d];
+      if (m == shifted_node) x[m][d] += shift[d];
+    }
   }
 
   double F[MAX_ELEMENT_POINTS][9], mean = 0.0, size = 0.0;
@@ -707,7 +706,9 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
       memcpy(f, w.state[p], 9 * sizeof(double));
     }
     const double J = w.J[p] = MPMPoints::det(f);
-    if (!(J > 0.0))
+    if (!(J > 0.0) && trying)
+      *trying = false;
+    else if (!(J > 0.0))
       error->one(FLERR,
                  "Fix mpm/elements {}: element {} of the mesh has a deformation gradient of "
                  "determinant {} at step {}: use a smaller time step, a finer mesh, or elements of "
@@ -801,8 +802,9 @@ void FixMPMElements::find_stretches(Work &w)
   const int bad = plane_stress->update(w.batch, w.thin.data(), [this](Batch &b) {
     material->update_batch(b, kernels());
   });
+  if (trying && bad >= 0) *trying = false;
   for (const auto &[number, row, rule, start] : w.elements)
-    if (bad >= start && bad < start + rule.npoint)
+    if (!trying && bad >= start && bad < start + rule.npoint)
       error->one(
           FLERR,
           "Fix mpm/elements {}: no state without stress across element {} was found at step {}: "
@@ -865,41 +867,51 @@ void FixMPMElements::map_gradients(Work &w)
    strain belong together, and an elastic body keeps its energy
 ------------------------------------------------------------------------- */
 
+/** Minus f_k, in units of stress times volume over length: adds to f. */
+void FixMPMElements::find_forces(const Work &w, int start, const ElementRule &rule,
+                                 double (*f)[3]) const
+{
+  const bool average = fbar && rule.npoint > 1;
+  double volume = 0.0, pressure = 0.0;
+  for (int q = 0; q < rule.npoint; q++) {
+    const int p = start + q;
+    const double *const s = w.state[p], V = w.volume[p];
+    double t[6];
+    for (int c = 0; c < 6; c++) t[c] = V * s[9 + c];
+    if (average) {
+      const double trace = (t[0] + t[1] + (dim == 3 ? t[2] : 0.0)) / dim;
+      pressure += trace;
+      for (int d = 0; d < dim; d++) t[d] -= trace;
+      volume += V * w.J[p];
+    }
+    for (int m = 0; m < rule.nnode; m++) {
+      const double *const g = w.g[p][m];
+      f[m][0] += t[0] * g[0] + t[3] * g[1] + t[4] * g[2];
+      f[m][1] += t[3] * g[0] + t[1] * g[1] + t[5] * g[2];
+      f[m][2] += t[4] * g[0] + t[5] * g[1] + t[2] * g[2];
+    }
+  }
+  for (int q = 0; q < rule.npoint && average; q++) {
+    const double factor = pressure * w.volume[start + q] * w.J[start + q] / volume;
+    for (int m = 0; m < rule.nnode; m++)
+      for (int d = 0; d < dim; d++) f[m][d] += factor * w.g[start + q][m][d];
+  }
+}
+
+/** Forces and shares of the state of elements, to the sums of their nodes. */
 void FixMPMElements::add_sums(Work &w)
 {
   const double scale = 1.0 / force->nktv2p;
   for (const auto &[number, row, rule, start] : w.elements) {
-    const bool average = fbar && rule.npoint > 1;
     double f[MAX_ELEMENT_NODES][3] = {{0.0}}, share[MAX_ELEMENT_NODES] = {0.0};
-    double size = 0.0, volume = 0.0, pressure = 0.0;
+    double size = 0.0;
     w.mean.assign(15 + nhistory, 0.0);
+    find_forces(w, start, rule, f);
     for (int q = 0; q < rule.npoint; q++) {
-      const int p = start + q;
-      const double *const s = w.state[p], V = w.volume[p];
-      double t[6];
-      for (int c = 0; c < 6; c++) t[c] = V * s[9 + c];
-      if (average) {
-        const double trace = (t[0] + t[1] + (dim == 3 ? t[2] : 0.0)) / dim;
-        pressure += trace;
-        for (int d = 0; d < dim; d++) t[d] -= trace;
-        volume += V * w.J[p];
-      }
-      for (int m = 0; m < rule.nnode; m++) {
-        const double *const g = w.g[p][m];
-        f[m][0] += t[0] * g[0] + t[3] * g[1] + t[4] * g[2];
-        f[m][1] += t[3] * g[0] + t[1] * g[1] + t[5] * g[2];
-        f[m][2] += t[4] * g[0] + t[5] * g[1] + t[2] * g[2];
-        share[m] += V * rule.N[q][m];
-      }
+      const double V = w.volume[start + q];
+      for (int m = 0; m < rule.nnode; m++) share[m] += V * rule.N[q][m];
       size += V;
     }
-    if (average)
-      for (int q = 0; q < rule.npoint; q++) {
-        const int p = start + q;
-        const double factor = pressure * w.volume[p] * w.J[p] / volume;
-        for (int m = 0; m < rule.nnode; m++)
-          for (int d = 0; d < dim; d++) f[m][d] += factor * w.g[p][m][d];
-      }
     for (int q = 0; q < rule.npoint; q++) {
       const double *const s = w.state[start + q], weight = w.volume[start + q] / size;
       for (int c = 0; c < 15 + nhistory; c++) w.mean[c] += weight * s[c];
@@ -1242,13 +1254,19 @@ void FixMPMElements::restart(char *buf)
 
 int FixMPMElements::pack_reverse_comm(int n, int start, double *buf)
 {
+  if (!sent.empty()) {    // see bring_home()
+    std::copy_n(&sent[3 * (std::size_t) start], 3 * (std::size_t) n, buf);
+    return 3 * n;
+  }
   memcpy(buf, sums.data() + (std::size_t) start * width, sizeof(double) * n * width);
   return n * width;
 }
 
 void FixMPMElements::unpack_reverse_comm(int n, int *list, double *buf)
 {
-  for (int k = 0; k < n; k++) {
+  for (int k = 0; k < n && !sent.empty(); k++)
+    for (int d = 0; d < 3; d++) sent[3 * (std::size_t) list[k] + d] += *buf++;
+  for (int k = 0; k < n && sent.empty(); k++) {
     double *const s = &sums[(std::size_t) list[k] * width];
     for (int c = 0; c < width; c++) s[c] += *buf++;
   }

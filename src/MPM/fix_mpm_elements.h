@@ -21,8 +21,10 @@ FixStyle(mpm/elements,FixMPMElements);
 #include "mesh/near_nodes.h"
 #include "mpm_state.h"
 #include "mpm_thin_body.h"
+#include "mpm_trial_forces.h"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,7 +65,7 @@ class MPMElementsPressure {
  *
  *  An element belongs to one of its nodes and migrates with it; the others may be ghosts.
  */
-class FixMPMElements : public FixMPMState, private MPMElementsOptions {
+class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMElementsOptions {
  public:
   FixMPMElements(class LAMMPS *, int, char **);
   ~FixMPMElements() override;
@@ -103,7 +105,7 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
 
   /** Forces of the elements, and of the pressure in a closed surface, on the points of this rank, [nlocal][3], as added to
    *  atom->f. */
-  const double *forces() const { return force_on.data(); }
+  const double *forces() const override { return force_on.data(); }
 
   /** Smallest stable time step of this rank's elements: 2/omega with a bound of the highest
    *  frequency omega. tag: a node of that element, speed: its wave speed. */
@@ -111,6 +113,22 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
 
   /** Stop when the time step is above that of an element. */
   void check_dt() const;
+
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  bool forces_after(const double *u, double *force, double &carried) override;
+  double differentiate(const double *u) override;
+  void add_change(const double *du, double *dforce) override;
+  void add_blocks(double *blocks) override;
+  double asymmetry() const override;
+
+  /** What trial motions do not know, and what to do about it; null: nothing. */
+  const char *beyond_trials() const
+  {
+    return bending ? "bending: use explicit steps"
+        : pressure ? "the pressure in it: remove that, or use explicit steps"
+                   : nullptr;
+  }
 
   /** Is it a surface or a line? */
   bool is_thin() const { return (bool) thin; }
@@ -164,6 +182,12 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   int width;                                // of rows of sums
   std::vector<double> sums;                 // forces and averages of nodes
   std::vector<double> force_on;
+  // trial motions: [local and ghost][3] displacements, and what other ranks get; a component of one node of each element that has moved;
+  // [element][maxnode dim][maxnode dim] forces by a motion of each
+  std::vector<double> motion, sent, tangents;
+  int shifted_node = -1;
+  double shift[3] = {0.0, 0.0, 0.0};
+  bool *trying = nullptr;    // is all finite?
 
   double *row(std::size_t e) const { return const_cast<double *>(pool.data()) + e * stride; }
   double *state_of(double *row, int q) const
@@ -194,6 +218,12 @@ class FixMPMElements : public FixMPMState, private MPMElementsOptions {
   void define_plane_stress();
   template <class Visit> void for_batches(bool moved, Visit) const;
   void material_update(Work &, bool starting);
+  void find_forces(const Work &, int start, const MPM_NS::ElementRule &, double (*f)[3]) const;
+  void for_trial_batches(const std::function<void(Work &)> &) const;
+  int nodes_of(std::size_t e) const;
+  void take_motion(const double *u);
+  void bring_home(double *to);
+  template <class Use> bool try_elements(const Use &use);
   void add_sums(Work &);
   void add_pressure(bool starting);
   template <class Visit> void for_faces(Visit) const;

@@ -8,6 +8,7 @@
 
 #include "fix_mpm_implicit.h"
 
+#include "fix_mpm_elements.h"
 #include "mpm_affine.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
@@ -132,11 +133,6 @@ void FixMPMImplicit::init()
           "Fix mpm/implicit takes steps of any size, but fix {} {} sets that of explicit steps: "
           "remove it, and use timestep",
           other, ifix->id);
-    if (other == "mpm/elements")
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit does not know the forces of fix {} {}: use points instead of "
-                 "elements, or explicit steps",
-                 other, ifix->id);
   }
 }
 
@@ -197,6 +193,30 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
           "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
           "computes in explicit steps would not be in its balance: remove one of them",
           dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
+  for (const auto *elements : field->elements) {
+    if (const char *const what = elements->beyond_trials())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit knows of fix mpm/elements {} the forces of its elements, but not {}",
+          elements->id, what);
+    if (!elements->is_thin() || domain->dimension == 3)
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit knows the forces of lines in 2d, but not those of the elements of "
+          "fix mpm/elements {}: use points instead, or explicit steps",
+          elements->id);
+    if (preconditioner == MULTIGRID)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit solver multigrid is made of the stiffness of points, and knows "
+                 "nothing of that of fix mpm/elements {}: use solver blocks",
+                 elements->id);
+    for (auto *other : plan.physics)
+      if (other->node_pressure(*field))
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/implicit cannot solve for the pressure of fix {} {} together with the "
+                   "elements of fix mpm/elements {}: use explicit steps",
+                   dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id, elements->id);
+  }
   bool rubs = false;
   for (auto *action : plan.actions) {
     if (action->is_projection()) continue;

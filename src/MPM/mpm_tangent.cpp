@@ -15,6 +15,7 @@
 
 #include "mpm_tangent.h"
 
+#include "fix_mpm_elements.h"
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "material/batch.h"
@@ -58,6 +59,7 @@ void MPMTangent::init()
   // there are no fast ones for what fix mpm has in the updated frame only
   if (!with.p2g_force)
     with = MPMKernels::select("reference")->transfer_total(dim, options.shape, transfer, true);
+  between.assign(field.elements.begin(), field.elements.end());
   *batch = {};
   batch->h = field.lattice.h;
   int nhistory = 1;
@@ -127,6 +129,49 @@ template <class Use> void MPMTangent::gather(const double *u, const Use &use)
   });
 }
 
+/** Displacements of points by the motion u. */
+void MPMTangent::move_points(const double *u)
+{
+  nodes.assign(field.grid.nnodes() * with.nreal, 0.0);
+  for (int64_t n = 0; n < field.grid.nnodes(); n++)
+    for (int d = 0; d < dim; d++) nodes[with.nreal * n + d] = u[dim * n + d];
+  field.nodes.complete(nodes.data(), with.nreal, 3);
+  point_motion.assign(3 * (std::size_t) atom->nmax, 0.0);
+  PointRows rows = field.rows();
+  rows.P = P.data();
+  rows.F = nullptr;
+  const TransferStep step = field.step_data();
+  double L[9 * BATCH];
+  points_from(nodes, field, with, [&](const MPMPointMap::Run &run, const int *base) {
+    for (int i = run.first; i < run.last; i += BATCH) {
+      const int n = std::min(BATCH, run.last - i);
+      PointRows b = rows_from(field, rows, i);
+      b.P = P.data() + (bigint) nL * i;
+      b.velocity = &point_motion[3 * (bigint) i];
+      with.g2p_gradient(b, step, 0, n, base, field.map->tile_load, L);
+    }
+  });
+  for (std::size_t i = 0; i < (std::size_t) atom->nmax && dim == 2; i++)
+    point_motion[3 * i + 2] = 0.0;
+}
+
+/** In sum_forces: those of loads that follow, and the change since the start of the step of those between points. False, on this rank,
+ *  where they are not finite. */
+bool MPMTangent::add_between(const double *u, double &carried)
+{
+  bool good = true;
+  sum_forces = loaded ? load_forces : no_force;
+  move_points(u);
+  point_forces.resize(3 * (std::size_t) atom->nmax);
+  for (auto *forces : between) {
+    if (!forces->forces_after(point_motion.data(), point_forces.data(), carried)) good = false;
+    const double *const before = forces->forces();
+    for (std::size_t k = 0; k < 3 * (std::size_t) atom->nlocal; k++)
+      sum_forces[k] += point_forces[k] - before[k];
+  }
+  return good;
+}
+
 /* ----------------------------------------------------------------------
    deformation of the places of the lattice after H [n][nH] of n points from first on, as in MPMFrame
 ------------------------------------------------------------------------- */
@@ -183,6 +228,10 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
 {
   Batch &b = *batch;
   const FixMPMMaterial *const material = run.material;
+  if (!material) {    // nodes of elements
+    std::fill_n(stress, nH * n, 0.0);
+    return true;
+  }
   double tau[6 * BATCH + 8];
   deform(first, n, H);
   b.dt = dt;
@@ -250,6 +299,11 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
     }
   });
   carried = sum * field.step_data().stress_scale / field.lattice.h;
+  if (!between.empty()) {
+    double sizes = 0.0;
+    if (!add_between(u, sizes)) bad = 1;
+    carried += sizes * field.step_data().force_scale;
+  }
   MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) return false;
   if (averages()) add_averages(u);
@@ -258,7 +312,10 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
       for (bigint i = run.first; i < run.last; i++) added[i] = -pressure[i];
     add_to_stress(u);
   }
-  scatter(loaded ? load_forces.data() : no_force.data(), force);
+  scatter(!between.empty() ? sum_forces.data()
+              : loaded     ? load_forces.data()
+                           : no_force.data(),
+          force);
   return true;
 }
 
@@ -452,7 +509,9 @@ double MPMTangent::linearize(const double *u, double dt)
   if (adds()) volume_gradients.resize((std::size_t) atom->nmax * nH);
   double sum = 0.0, all;
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
-    if (run.material->material->has_tangent())
+    if (!run.material)
+      std::fill_n(&tangents[(bigint) first * nH * nH], n * nH * nH, 0.0);
+    else if (run.material->material->has_tangent())
       differentiate(run, first, n, H, dt);
     else
       take_differences(run, first, n, H, dt);
@@ -470,6 +529,9 @@ double MPMTangent::linearize(const double *u, double dt)
     if (follows(first, n)) differentiate_loads(first, n, H);
   });
   sum *= field.step_data().stress_scale / field.lattice.h;
+  if (!between.empty()) move_points(u);
+  for (auto *forces : between)
+    sum += field.step_data().force_scale * forces->differentiate(point_motion.data());
   MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
@@ -525,6 +587,12 @@ void MPMTangent::change_of_forces(const double *du, double *dforce, const double
     }
   });
   if (averages()) average_changes();
+  if (!between.empty()) {
+    sum_forces = loaded ? load_forces : no_force;
+    move_points(du);
+    for (auto *forces : between) forces->add_change(point_motion.data(), sum_forces.data());
+    return scatter(sum_forces.data(), dforce);
+  }
   scatter(loaded ? load_forces.data() : no_force.data(), dforce);
 }
 
@@ -646,12 +714,25 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
         add(K, g, around * node.weight, V, &blocks[node.number * nL]);
       });
     }
+  if (!between.empty()) {    // points that elements join have no other part in this
+    std::vector<double> of_points((std::size_t) atom->nmax * nL, 0.0);
+    for (auto *forces : between) forces->add_blocks(of_points.data());
+    const double unit = field.step_data().force_scale;
+    for (const auto &run : field.map->runs)
+      for (bigint i = run.first; i < run.last; i++)
+        stencil.visit(grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+          for (int k = 0; k < nL; k++)
+            blocks[node.number * nL + k] +=
+                unit * node.weight * node.weight * of_points[nL * (std::size_t) i + k];
+        });
+  }
   field.nodes.sum(blocks.data(), nL, 0, nL);
 }
 
 double MPMTangent::asymmetry() const
 {
-  double mine[2] = {0.0, 0.0}, all[2];
+  double mine[3] = {0.0, 0.0, 0.0}, all[3];
+  for (const auto *forces : between) mine[2] = std::max(mine[2], forces->asymmetry());
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       const double *const K = &tangents[i * nH * nH];
@@ -661,18 +742,18 @@ double MPMTangent::asymmetry() const
           mine[1] = std::max(mine[1], std::fabs(K[nH * k + l]));
         }
     }
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
-  const double of_stress = all[1] > 0.0 ? all[0] / all[1] : 0.0;
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, world);
+  const double of_stress = std::max(all[1] > 0.0 ? all[0] / all[1] : 0.0, all[2]);
   return loaded ? std::max(of_stress, asymmetry_of_loads()) : of_stress;
 }
 
 double MPMTangent::memory_usage() const
 {
   double bytes = sizeof(Batch);
-  for (const auto *list : {&nodes, &history, &P, &hoop_stress, &tangents, &no_force,
-                           &forces_on_points, &load_forces, &load_tangents, &stress_tangents,
-                           &deformations,
-                           &mean_stress, &mean_tangents, &added, &added_changes, &volume_gradients})
+  for (const auto *list :
+       {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points, &load_forces,
+        &load_tangents, &stress_tangents, &deformations, &mean_stress, &mean_tangents, &added,
+        &added_changes, &volume_gradients, &point_motion, &point_forces, &sum_forces})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

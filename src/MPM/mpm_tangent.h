@@ -24,6 +24,7 @@ struct Tangent;
 
 namespace LAMMPS_NS {
 class MPMField;
+class MPMTrialForces;
 
 /** What the stress of the points of a field would be after a motion that is only tried, and how it changes with that
  *  motion. Laws work on copies of the state of points: nothing is kept until the step itself moves them.
@@ -106,6 +107,12 @@ class MPMTangent : protected Pointers {
 
   // of a gradient: with it, the third derivatives of a law and the round-off of its stress are both some 1e-10 of its tangent
   static constexpr double DIFFERENCE = 6.0e-6;
+
+  // forces between points, see mpm_trial_forces.h: these, displacements and forces of points [n][3]
+  std::vector<MPMTrialForces *> between;
+  std::vector<double> point_motion, point_forces, sum_forces;
+  void move_points(const double *u);
+  bool add_between(const double *u, double &carried);
 
   template <class Use> void gather(const double *u, const Use &use);
   void scatter(const double *forces_of_points, double *force);

@@ -1,0 +1,39 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_FIX_MPM_ELEMENTS_WORK_H
+#define LMP_FIX_MPM_ELEMENTS_WORK_H
+
+#include "fix_mpm_elements.h"
+#include "material/batch.h"
+#include "material/plane_stress.h"
+#include "mesh/element.h"
+
+namespace LAMMPS_NS {
+
+/** Elements whose integration points are in the batch. */
+struct FixMPMElements::Work {
+  struct Element {
+    std::size_t number;
+    double *row;
+    const MPM_NS::ElementRule &rule;
+    int start;    // its first point
+  };
+  std::vector<Element> elements;
+  int n;                                                    // points
+  double *state[MPM_NS::BATCH];                             // F tau history
+  double g[MPM_NS::BATCH][MPM_NS::MAX_ELEMENT_NODES][3];    // gradients of the functions in space
+  double volume[MPM_NS::BATCH];                             // reference volume
+  double J[MPM_NS::BATCH];                                  // without F-bar
+  MPM_NS::Batch batch = {};                        // must start from zero, see material/batch.h
+  std::vector<double> history, mean;               // of the batch, of an element
+  std::vector<MPM_NS::PlaneStress::Point> thin;    // [BATCH], of surfaces and lines
+};
+
+}    // namespace LAMMPS_NS
+#endif
