@@ -8,12 +8,12 @@ Plane waves of one frequency in an elastic body (Poisson number 1/4) come to a p
 * dashpots (Lysmer and Kuhlemeyer 1969), as fix mpm/dashpot has them;
 * a layer of N cells with a damping -a(x) v per mass that grows with the square of the depth, and dashpots behind it;
 * a perfectly matched layer of N cells (Basu and Chopra, Comput. Methods Appl. Mech. Eng. 192 (2003) 1337), s = 1 + i b(x)/omega with
-  b(x) growing in the same way for an echo of 1e-4 at normal incidence, and dashpots behind it.
+  b(x) growing in the same way for an echo of 1e-4 (--reflection) at normal incidence, and a wall behind it, as fix mpm/pml has them.
 
 With the wave number along the plane given, what is left is a problem in one dimension, solved here with quadratic elements of one cell, 20 cells
 in a pressure wave (--cells).  Amplitudes of the echoes, as pressure and shear waves, and their share of the energy that came.
 
-  python3 absorbing_layers.py [--cells N]
+  python3 absorbing_layers.py [--cells N] [--reflection R]
 """
 
 import argparse
@@ -36,10 +36,11 @@ def stress(a, k):
     return 1j * np.array([(LAMBDA + 2 * MU) * a[0] * k[0] + LAMBDA * a[1] * k[1], MU * (a[0] * k[1] + a[1] * k[0])])
 
 
-def echoes(shear, degrees, depth, damping, stretch, omega=1.0, cells=20):
+def echoes(shear, degrees, depth, damping, stretch, omega=1.0, cells=20, wall=False):
     """Amplitudes of the pressure and the shear wave that come back, for one of 1, and the energy.
 
-    depth: cells of the layer; damping, stretch: a and b at its end, in units of the velocity over its depth."""
+    depth: cells of the layer; damping, stretch: a and b at its end, in units of the velocity over its depth; wall: at its
+    end, in place of dashpots."""
     theta = np.radians(degrees)
     a_in, d_in, c_in = wave(shear, theta, 1.0)
     ky = omega / c_in * d_in[1]
@@ -84,6 +85,9 @@ def echoes(shear, degrees, depth, damping, stretch, omega=1.0, cells=20):
     # dashpots at the end: traction -Z v on the body, v = -i omega u
     for d, c in enumerate((CP, CS)):
         K[2 * (n - 1) + d, 2 * (n - 1) + d] += -1j * omega * c
+        if wall:
+            K[2 * (n - 1) + d] = 0.0
+            K[2 * (n - 1) + d, 2 * (n - 1) + d] = 1.0
     # at the plane: traction of the waves in front is what the layer gets (-t on its face to the left), and the same motion
     t_in = stress(a_in, omega / c_in * d_in)
     for d in range(2):
@@ -103,25 +107,27 @@ def dashpots(shear, degrees):
     return echoes(shear, degrees, 1, 0.0, 0.0, cells=100000)
 
 
-def far_side(name, depth, shear, degrees, cells=20):
+def far_side(name, depth, shear, degrees, cells=20, reflection=1e-4):
     """The same for one of the cases above, with a layer of some cells."""
     if name == "dashpots":
         return dashpots(shear, degrees)
     # of b: exp(-2/3 b) at normal incidence, there and back; a: more is better
     # along the normal, less at large angles
-    damping, stretch = (6.0, 0.0) if name == "damping" else (0.0, 1.5 * np.log(1e4))
-    return echoes(shear, degrees, depth, damping, stretch, cells=cells)
+    if name == "matched":
+        return echoes(shear, degrees, depth, 0.0, -1.5 * np.log(reflection), cells=cells, wall=True)
+    return echoes(shear, degrees, depth, 6.0, 0.0, cells=cells)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cells", type=int, default=20, help="in a pressure wave")
-    cells = parser.parse_args().cells
+    parser.add_argument("--reflection", type=float, default=1e-4, help="of matched layers")
+    cells, reflection = parser.parse_args().cells, parser.parse_args().reflection
     waves = [(False, angle) for angle in (0, 30, 45, 60, 70, 80)] + [(True, angle) for angle in (0, 20, 30)]
     print("".ljust(22) + "".join("%9s" % ("PS"[shear] + " %d" % angle) for shear, angle in waves))
     for name, depth in (("dashpots", 0), ("damping", 10), ("damping", 20), ("damping", 40), ("matched", 5),
                         ("matched", 10), ("matched", 20)):
-        rows = np.array([far_side(name, depth, shear, angle, cells) for shear, angle in waves])
+        rows = np.array([far_side(name, depth, shear, angle, cells, reflection) for shear, angle in waves])
         print(("%s, %d cells" % (name, depth)).ljust(22) + "".join("%9.4f" % max(row[:2]) for row in rows))
         print("  energy".ljust(22) + "".join("%9.4f" % row[2] for row in rows))
 

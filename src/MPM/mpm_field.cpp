@@ -145,6 +145,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   ledger.on = !modify->get_compute_by_style("^mpm/energy$").empty();
   nodes.clear_fields();
   slopes.clear();
+  stretching.clear();
   frame->mean_rate = nullptr;
   jacobians.init();
 

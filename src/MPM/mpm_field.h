@@ -37,6 +37,7 @@ class MPMFractureWatch;
 class MPMFrame;
 class MPMGuard;
 class MPMLocking;
+class MPMPhysics;
 class MPMPlan;
 class MPMPointMap;
 class MPMPointState;
@@ -85,6 +86,8 @@ class MPMField : protected Pointers {
 
   /** [n][dim] gradients on the lattice that other physics keeps for points; set by its init_physics(). */
   std::vector<const MPMRows *> slopes;
+  /** Physics that change how points strain: set by their init_physics(). */
+  std::vector<MPMPhysics *> stretching;
   /** det F of points, for other physics: asked for by its topology_changed(). */
   MPMJacobians jacobians;
 

@@ -93,6 +93,15 @@ class MPMPhysics {
     return false;
   }
 
+  /** Points that strain otherwise than the nodes around them move: has any of n points from first on its own rate? If so, in a step
+   *  of the duration dt, change their velocity gradients L, [n][dim*dim], column-major. Only of physics that its init_physics() has
+   *  put into MPMField::stretching. */
+  virtual bool stretches(int /*first*/, int /*n*/) const { return false; }
+  virtual void stretch_gradients(MPMField &, int /*first*/, int /*n*/, double /*dt*/,
+                                 double * /*L*/)
+  {
+  }
+
   /** Quantities of points for compute mpm/atom: names, fixed when the fix is defined, and their values. */
   virtual std::vector<std::string> quantities() const { return {}; }
   virtual double quantity(int /*k*/, int /*i*/) const { return 0.0; }

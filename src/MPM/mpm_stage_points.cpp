@@ -161,6 +161,13 @@ void MPMStages::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   FixMPMMaterial *material = run.material;
   if (!material) return;    // nodes of elements
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
+  double stretched[9 * BATCH];
+  for (auto *physics : field.stretching) {
+    if (!physics->stretches(first, n)) continue;
+    if (L != stretched) std::copy_n(L, field.lattice.dim * field.lattice.dim * n, stretched);
+    L = stretched;
+    physics->stretch_gradients(field, first, n, dt, stretched);
+  }
   field.frame->load(b, first, n, dt, L, F, tau, r.vol0 + first);
   b.history = reinterpret_cast<double(*)[BATCH]>(field.work.history.data());
   b.time = elapsed_time(*field.lmp->update);

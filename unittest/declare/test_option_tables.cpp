@@ -34,6 +34,7 @@
 #include "fix_mpm_mesh_contact.h"
 #include "fix_mpm_mesh_heat.h"
 #include "fix_mpm_mixture.h"
+#include "fix_mpm_pml.h"
 #include "fix_mpm_pore.h"
 #include "fix_mpm_relax.h"
 #include "fix_mpm_rigid.h"
@@ -84,6 +85,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_rigid", MPMRigidOptions().declare());
   add("fix_mpm_surface", MPMSurfaceOptions().declare());
   add("fix_mpm_dashpot", MPMDashpotOptions().declare(3));
+  add("fix_mpm_pml", MPMPMLOptions().declare(3));
   add("fix_mpm_deform", MPMDeformOptions().declare(3));
   add("fix_mpm_traction", MPMTractionOptions().declare(3));
   add("fix_mpm_emit", MPMEmitOptions().declare(3));

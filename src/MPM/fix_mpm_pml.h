@@ -1,0 +1,108 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/pml,FixMPMPML);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_PML_H
+#define LMP_FIX_MPM_PML_H
+
+#include "declare/option.h"
+#include "mpm_nodes.h"
+#include "mpm_physics.h"
+#include "mpm_state.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+struct MPMPMLOptions {
+  static constexpr int NFACE = 6;
+
+  int cells[NFACE] = {0, 0, 0, 0, 0, 0};    ///< of the layer at each face of the box, xlo ... zhi
+  double reflection = 1.0e-4;    ///< of a wave along the normal, as a share of its amplitude
+  double exponent = 2.0;         ///< of the depth in the layer
+  double speed = 0.0;            ///< 0: of the fastest wave in the layers
+  double mix = 0.0;              ///< share of the damping of an axis that other axes have
+
+  MPM_NS::Options declare(int dimension);
+};
+
+/** Perfectly matched layers next to faces of the box: points there see stretched coordinates in which waves decay, and waves
+ *  that come in are not reflected at any angle (unsplit, after Basu and Chopra). The stress that the layers have at the start
+ *  stays. */
+class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
+ public:
+  FixMPMPML(class LAMMPS *, int, char **);
+  int setmask() override { return 0; }
+  void init() override;
+  void setup(int) override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void init_physics(MPMPlan &) override;
+  void add_stages(MPMPlan &, MPMPlan::Place) override;
+  void topology_changed(MPMField &) override;
+  bool looks_beyond_points() const override { return false; }
+  double wave_speed(const MPMField &, int i, double c) const override;
+  bool stretches(int first, int n) const override;
+  void stretch_gradients(MPMField &, int first, int n, double dt, double *L) override;
+  std::vector<Account> accounts() const override { return {{"matched layers", false}}; }
+  void account(double *values) const override;
+
+ private:
+  // of a point; all are zero outside of the layers
+  MPMRows rows;
+  enum {
+    DAMPING,              // of the axes [1/time]
+    TAU = DAMPING + 3,    // Kirchhoff stress at the start
+    START = TAU + 6,      // place at the start, without periodic images
+    G = START + 3,    // displacement gradient in stretched coordinates, as velocity gradients are
+    SUM = G + 9,      // integral of the change of stress over time, half a step ago
+    WIDTH_2D = SUM + 6,
+    SUM_OF_SUM = WIDTH_2D,    // integral of this
+    WAY = SUM_OF_SUM + 6,     // integral of the displacement, half a step ago
+    WIDTH_3D = WAY + 3
+  };
+
+  struct Body {
+    MPMField *field;
+    MPM_NS::NodeField
+        *pushes;    // of a node: force, then impulse [3], damping of its mass [mass/time]
+    struct Point {
+      int i, slot;
+    };
+    std::vector<Point> points;
+  };
+  std::vector<Body> bodies;
+  std::vector<char>
+      is_inside;    // [n] until the topology is renewed, which is when points move in memory
+  bool defined = false;
+  double known = 0.0;                                  // points in the layers
+  double largest = 0.0;                                // damping along one axis
+  double work_of_nodes = 0.0, work_of_strain = 0.0;    // this rank's shares [energy]
+  bool told = false;
+
+  double thickness(const MPMField &, int face) const;
+  double depth(const MPMField &, int face, const double *x) const;
+  void define();
+  void find_forces(Body &);
+  void apply(Body &);
+  void count_work(Body &);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif
