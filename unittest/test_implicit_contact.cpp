@@ -184,6 +184,38 @@ SERIAL_TEST(Block, ComesFromAfar)
     }
 }
 
+// a plate presses a block, in steps that are long and short beside cells: the material goes from node to node
+SERIAL_TEST(Block, IsPressed)
+{
+  const double mu = 100.0 / 2.6, lambda = 30.0 / (1.3 * 0.4);
+  for (const double gap : {0.0, 0.03, 0.05}) {
+    const double height = 0.84 + gap;
+    // of a free side: mu (b - 1) + lambda log J = 0
+    double low = 1.0, high = 1.2;
+    while (high - low > 1e-12) {
+      const double wide = 0.5 * (low + high);
+      (mu * (wide * wide - 1.0) + lambda * std::log(wide * height) < 0.0 ? low : high) = wide;
+    }
+    const double exact =
+        -(mu * (height * height - 1.0) + lambda * std::log(low * height)) / height;
+    for (const int steps : {1, 7, 50, 200}) {
+      Scene run(plane("lj", "f f", "-2 2 0 2.4", 1, 0.1) +
+                body("block -0.5 0.5 0 1 INF INF", "density 1 neohookean 100 0.3",
+                     "0.1 stress gradient") +
+                strprintf("variable way equal -0.16*time\n"
+                          "region plate block -1.5 1.5 %.17g 2.2 INF INF move NULL v_way NULL\n",
+                          1.0 + gap) +
+                "fix floor all mpm/boundary ylo slip\n"
+                "fix press all mpm/boundary region plate separate\n"
+                "fix solve all mpm/implicit static\n" +
+                strprintf("timestep %.17g\nrun %d\n", 1.0 / steps, steps));
+      EXPECT_NEAR(measured(strprintf("from %g in %d steps: force over that of theory", gap, steps),
+                           run.fix("press")->compute_vector(1) / exact),
+                  1.0, 1.5e-2);
+    }
+  }
+}
+
 // what comes from farther away is an error
 SERIAL_TEST(Block, ComesFromTooFar)
 {

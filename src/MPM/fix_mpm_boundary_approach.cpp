@@ -165,12 +165,24 @@ void FixMPMBoundary::find_approaches(FieldNodes &list, double dt)
       grid.node_index(node, index);
       lines.erase(key_of(axis, up, index));
     };
-    for (const auto &line : list.lines)
-      if (face && line.face == f && line.touched)
-        leave_out(face->axis, face->inward > 0, line.node[0]);
-    for (const auto &crossing : list.crossings)
+    // Where the material has gone from the outer node of a line through the wall (find_chain()), that line cannot act: one
+    // through the material a little further in can, and explicit steps come back to the wall within a few steps
+
+    Chain acting;
+    for (auto &line : list.lines) {
+      if (!face || line.face != f || !line.touched) continue;
+      acting = Chain();
+      line.touched = !face->cut ||
+          find_chain(list, line.node, face->weight, face->nweight, face->inward, acting);
+      if (line.touched) leave_out(face->axis, face->inward > 0, line.node[0]);
+    }
+    for (auto &crossing : list.crossings) {
+      if (!crossing.touched) continue;
+      acting = Chain();
+      crossing.touched = find_chain(list, crossing.node, crossing.weight, crossing.n, 1, acting);
       if (crossing.touched)
         leave_out(crossing.axis, crossing.normal[crossing.axis] > 0.0, crossing.base);
+    }
 
     gap.map(field, near, !region || region->nregion == 1,
             (region ? 2.45 : 2.0) * seen + COMES_FROM + MORE, away, more);

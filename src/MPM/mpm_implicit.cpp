@@ -586,7 +586,8 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     return HOPELESS;
   }
   bool wall_moves = closes || (options.time == MPMImplicitOptions::STATIC && wall_speed > 0.0);
-  double first = now.unbalanced;    // since it is known what touches
+  // since walls have moved, and it is known what touches
+  double first = wall_moves ? 0.0 : now.unbalanced;
   while (true) {
     now.residuals.push_back(now.unbalanced);
     const double enough =
