@@ -58,7 +58,7 @@ void MPMEnergyWatch::step()
   if (run.steps == 1 && centers) center_start();
   if (run.steps % CHECK_EVERY == 0) check();
   if (centers && ((run.steps + 1) % CHECK_EVERY == 0 || is_last_step())) {
-    run.stored = sums().stored;
+    run.elastic = sums().elastic;
     run.noted = run.steps + 1;
   }
   seen.clear();
@@ -168,7 +168,7 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
   const MPMPointEnergies points = point_energies(lmp);
   Sums mine = {};
   mine.kinetic = points.kinetic;
-  mine.stored = points.stored;
+  mine.stored = mine.elastic = points.stored;
   mine.spent = points.taken() - points.stored;
   mine.work = run.force_work;
   const int met = number_met();
@@ -224,7 +224,7 @@ bool MPMEnergyWatch::is_last_step() const
 /** A run may begin in the middle of a vibration: the step before it had about as much as the first one. */
 void MPMEnergyWatch::center_start()
 {
-  const double change = 0.5 * (sums().stored - run.start.stored);
+  const double change = 0.5 * (sums().elastic - run.start.elastic);
   run.start.stored -= change;
   run.lowest -= change;
 }
@@ -248,7 +248,7 @@ void MPMEnergyWatch::check()
   const Sums now = sums();
   if (run.steps == 0 || now.points != run.start.points) begin(now);
   if (run.steps % CHECK_EVERY == 0) choose_turns(now);
-  const double ahead = run.noted > 0 && run.noted == run.steps ? 0.5 * (now.stored - run.stored)
+  const double ahead = run.noted > 0 && run.noted == run.steps ? 0.5 * (now.elastic - run.elastic)
                                                                : 0.0,
                spent = now.spent - run.start.spent, unexplained = now.unexplained() - ahead;
   run.last = now;

@@ -52,7 +52,8 @@ class MPMEnergyWatch : protected Pointers {
   struct Sums {
     double points, met, mass;    // met: points that pair styles may act on
     double kinetic, stored, spent;
-    double work;    // done on the points, less what deleted points had
+    double elastic;    // of the stored energy, what is in the stress of points; the rest is heat
+    double work;       // done on the points, less what deleted points had
     /** Energy that work does not explain, from the same start. */
     double unexplained() const { return kinetic + stored + spent - work; }
   };
@@ -87,7 +88,7 @@ class MPMEnergyWatch : protected Pointers {
     double in_play;    // largest energy so far
     double gained;     // since it was lowest
     Sums last;         // at the last look
-    double stored;     // at the start of the step that has noted it
+    double elastic;    // at the start of the step that has noted it
     bigint noted;      // steps done by then, plus 1; 0: none
     bool told;
   } run = {};
