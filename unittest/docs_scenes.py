@@ -203,6 +203,9 @@ def scene_for(lines):
         grid = grid.replace("\n", " transfer flip 1.0\n")
     if "mpm/incompressible" in text:    # has a lattice of its own, and no materials
         grid = "".join("group %s empty\n" % name for name in re.findall(r" liquid (\w+) ", text))
+        for name in re.findall(r" solid (\w+)", text):    # points of it begin beside the fluid
+            before += ("region organ block 0.07 0.08 0.02 0.05 0.02 0.05\ncreate_points 1 region organ spacing 0.005\n"
+                       "group %s region organ\nfix soft %s mpm/material density 1000 neohookean 1 0.49\n" % (name, name))
     mixture = "mpm/mixture" in text and not makes_points
     if mixture:
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)

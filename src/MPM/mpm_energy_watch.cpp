@@ -221,10 +221,14 @@ bool MPMEnergyWatch::is_last_step() const
   return update->ntimestep + fields[0]->options.every > update->laststep;
 }
 
-/** A run may begin in the middle of a vibration: the step before it had about as much as the first one. */
+/** A run may begin in the middle of a vibration: the step before it had about as much as the first one, in proportion to the
+ *  velocities. What was at rest is strained by a first step that has a jump of strain or load, and was not before. */
 void MPMEnergyWatch::center_start()
 {
-  const double change = 0.5 * (sums().elastic - run.start.elastic);
+  const Sums now = sums();
+  const double share = now.kinetic > 0.0 ? sqrt(std::min(1.0, run.start.kinetic / now.kinetic))
+                                         : 0.0,
+               change = 0.5 * share * (now.elastic - run.start.elastic);
   run.start.stored -= change;
   run.lowest -= change;
 }
