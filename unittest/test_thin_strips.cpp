@@ -129,3 +129,32 @@ SERIAL_TEST(ThinPlate, ClampedAtItsRim)
         1.0, gate);
   }
 }
+
+// a quarter of a square on supports, 0.00406235 q L^4/D in 3d, on faces of the box that hold what is across the plate and along its rim. For moderately
+// thick plates (Reissner) this is multiplied by 1 + 5.18 (t/L)^2
+SERIAL_TEST(ThinPlate, SquareOnSupports)
+{
+  for (const auto &[ratio, cells, gate] :
+       {std::tuple{10, 2, 0.08}, std::tuple{10, 4, 0.02}, std::tuple{20, 4, 0.02}}) {
+    const double t = 1.0 / ratio, h = t / cells, D = E * t * t * t / (12.0 * (1.0 - NU * NU)),
+                 w0 = 0.01 * t, q = w0 * D / 0.00406235, thick = 1.0 + 5.18 * t * t;
+    Scene run(
+        strprintf("units si\nboundary f f f\natom_style mpm\nneighbor %g bin\n"
+                  "region box block 0 0.5 0 0.5 %.17g %.17g\ncreate_box 1 box\n"
+                  "region plate block 0 0.5 0 0.5 0 %.17g\nfix grid all mpm %.17g frame total\n"
+                  "create_points 1 region plate ppc 2\n",
+                  0.3 * h, -2.0 * h, 2.0 * h + t, t, h) +
+        strprintf("fix m all mpm/material density %g linear %g %g\n"
+                  "fix middle all mpm/boundary xlo ylo slip\n"
+                  "fix rx all mpm/boundary xhi stick velocity NULL 0 0\n"
+                  "fix ry all mpm/boundary yhi stick velocity 0 NULL 0\n"
+                  "fix g all gravity %.17g vector 0 0 -1\n",
+                  RHO, E, NU, q / (RHO * t)) +
+        "compute u all displace/atom\ncompute w all reduce min c_u[3]\n"
+        "thermo_style custom step c_w\nfix solve all mpm/implicit static solver multigrid\n"
+        "timestep 1\nrun 1\n");
+    EXPECT_NEAR(measured(strprintf("length %d, %d cells", ratio, cells),
+                         -run.compute_scalar("w") / (w0 * thick)),
+                1.0, gate);
+  }
+}
