@@ -6,6 +6,7 @@
 // Plates, shells, and soap films of fix mpm/elements whose nodes are free, without a lattice: benchmark R5. Loads on plates are small, and a damped motion
 // ends in equilibrium.
 
+#include "fix_mpm_elements.h"
 #include "mesh/thin_testing.h"
 
 using namespace MPM_TEST;
@@ -87,7 +88,7 @@ Plate hemisphere(int divisions, double R)
 constexpr double DENSITY = 1.0;
 
 /** Input up to the elements and the time step. */
-std::string scene(const Plate &body, const ScratchFile &file)
+std::string scene(const Plate &body, const ScratchFile &file, double room = 0.1)
 {
   Node low = body.x[0], high = body.x[0];
   double size = 0.0;
@@ -97,11 +98,11 @@ std::string scene(const Plate &body, const ScratchFile &file)
       high[d] = std::max(high[d], x[d]);
       size = std::max(size, high[d] - low[d]);
     }
-  const double gap = 0.1 * size;
+  const double gap = room * size;
   const std::string thick = strprintf("thickness %.17g", body.thickness);
   return strprintf("units si\ndimension %d\nboundary f f %s\nneighbor %g bin\natom_style mpm\n"
                    "atom_modify map array\n",
-                   body.dim, body.dim == 2 ? "p" : "f", 0.1 * gap) +
+                   body.dim, body.dim == 2 ? "p" : "f", 0.01 * size) +
       strprintf("region box block %g %g %g %g %g %g\ncreate_box 1 box\ncomm_modify cutoff %g\n",
                 low[0] - gap, high[0] + gap, low[1] - gap, high[1] + gap, low[2] - gap,
                 high[2] + gap, 0.3 * size) +
@@ -290,6 +291,45 @@ SERIAL_TEST(Bending, ScordelisLoRoof)
   }
   EXPECT_NEAR(w[1], 0.87, 0.02);
   EXPECT_GT(w[1], w[0]);
+}
+
+// a strip of lines rolled to half a circle without being stretched has the energy of bending alone, D angle^2/2 l for each corner, and no stress
+SERIAL_TEST(Bending, RolledStripHasNoMembraneStress)
+{
+  const int n = 20;
+  const double t = 0.05, young = 1e6, l = 1.0 / n, angle = PI / n, R = 0.5 * l / sin(0.5 * angle);
+  Plate strip;
+  strip.dim = 2;
+  strip.thickness = t;
+  strip.E = young;
+  strip.nu = 0.3;
+  for (int i = 0; i <= n; i++) {
+    strip.x.push_back({i * l, 0.0, 0.0});
+    if (i > 0) strip.elements.push_back({i - 1, i});
+  }
+  const ScratchFile file("strip.msh", gmsh(1, strip.x, strip.elements));
+  Scene run(replaced(scene(strip, file, 0.8), "linear", "neohookean") +
+            "fix move all nve\nrun 0 post no\n");
+  for (const double stretch : {1.0, 1.001}) {
+    for (int i = 0; i < run.n(); i++) {
+      const double at = (run.lmp->atom->tag[i] - 1) * angle;
+      run.x()[i][0] = stretch * R * sin(at);
+      run.x()[i][1] = stretch * R * (1.0 - cos(at));
+    }
+    run.commands("run 0 post no\n");
+    double worst = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      for (int c = 0; c < 6; c++) worst = std::max(worst, std::fabs(run.points().tau[i][c]));
+    const double D = young * t * t * t / (12.0 * 0.91),
+                 energy = (n - 1) * D * angle * angle / (2.0 * l),
+                 stored = run.fix<FixMPMElements>("e")->stored_energy();
+    if (stretch == 1.0) {
+      EXPECT_LT(measured("stress over Young's modulus", worst / young), 1e-10);
+      EXPECT_NEAR(measured("energy of bending", stored / energy), 1.0,
+                  1e-5);    // by a modulus that is found numerically
+    } else
+      EXPECT_NEAR(measured("stress of a stretch by 0.001", 0.91 * worst / young), 1e-3, 1e-5);
+  }
 }
 
 namespace {
