@@ -738,9 +738,9 @@ struct HollowSphere {
   Scene run;
   double p = 0.0;
 
-  HollowSphere(const char *options, int ppc) :
+  HollowSphere(const char *options, int ppc, double h = 0.1) :
       run(plane("si", "f f", "0 2.4 0 2.4", 1, 0.03) +
-          "fix grid all mpm 0.1 axisymmetric yes frame total " + options +
+          strprintf("fix grid all mpm %g axisymmetric yes frame total ", h) + options +
           "\nregion outer sphere 0 0 0 2\nregion bore sphere 0 0 0 1 side out\n"
           "region shell intersect 2 outer bore\n" +
           strprintf("create_points 1 region shell ppc %d outside ignore\n", ppc) +
@@ -805,6 +805,18 @@ SERIAL_TEST(Sphere, BecomesPlastic)
   }
 }
 
+// at 0.978 of the limit load, c = 1.8, 10 and 20 cells give 2.8 and 2.1 % too much, and 30 are within the gate of 2 %
+SERIAL_TEST(Sphere, IsAlmostAllPlastic)
+{
+  for (const double h : {0.1, 1.0 / 30.0}) {
+    HollowSphere sphere("", 4, h);
+    sphere.load(1.110944, 5);
+    sphere.load(1.356240, 5);
+    EXPECT_NEAR(measured(strprintf("h = %g: u(a) over exact", h), sphere.at_bore(false) / 3.539904),
+                1.0, h < 0.1 ? 0.02 : 0.03);
+  }
+}
+
 // the same sphere bears 2 ln(b/a) and no more, to +2 % and -1 %, with averages of the pressure
 SERIAL_TEST(Sphere, BearsTheLimitLoad)
 {
@@ -860,6 +872,64 @@ SERIAL_TEST(Indenter, IsInBalanceWithTheFloor)
   }
 }
 
+// Cook's membrane, compressible rubber under a dead shear force: benchmark P2b, with the displacement of the middle of its free side by
+// finite elements of order 2, nine iterations in a step, and the same end in one load step and in two
+SERIAL_TEST(Cook, ConvergesQuadratically)
+{
+  const auto scene = [](double h, int steps, const char *options) {
+    return plane("si", "f f", "0 60 0 90", 1, 0.4 * h) +
+        strprintf("fix grid all mpm %.17g frame total\n", h) +
+        "region lower plane 0 0 0 -44 48 0\nregion upper plane 0 44 0 16 -48 0\n"
+        "region span block 0 48 0 60 INF INF\nregion plate intersect 3 span lower upper\n"
+        "create_points 1 region plate ppc 2 outside ignore\n"
+        "fix m all mpm/material density 1 neohookean 70 $(1/3)\n"
+        "fix clamp all mpm/boundary xlo stick\nregion edge plane 48 0 0 -1 0 0\n" +
+        strprintf("variable t equal 100/16*(step+1)/%d\n", steps) +
+        "fix load all mpm/traction region edge traction 0 v_t 0 area 16\n"
+        "fix solve all mpm/implicit static solver multigrid tolerance 1e-10 report yes " +
+        options + strprintf("\ntimestep 1.0\nrun %d\n", steps);
+  };
+  const auto end = [](Scene &run, double h) {
+    // the last two columns of points, next to y = 52, extrapolated
+    double u[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
+    for (int i = 0; i < run.n(); i++) {
+      const double *const X = run.reference(i);
+      if (std::abs(X[1] - 52.0) > 0.5 * h || X[0] < 48.0 - h) continue;
+      const int k = X[0] < 48.0 - 0.5 * h;
+      u[k] += run.x()[i][1] - X[1];
+      n[k]++;
+    }
+    return 1.5 * u[0] / n[0] - 0.5 * u[1] / n[1];
+  };
+  for (const double h : {4.0, 2.0, 1.0}) {
+    double u[2];
+    for (const int steps : {1, 2}) {
+      const auto text = scene(h, steps, "");
+      const auto at = text.find("run ");
+      Scene run(text.substr(0, at));
+      run.set_reference();
+      run.commands(text.substr(at));
+      u[steps - 1] = end(run, h);
+      if (steps == 1) EXPECT_LE(measured("iterations", run.fix("solve")->compute_vector(0)), 9.0);
+    }
+    EXPECT_NEAR(measured(strprintf("h = %g: u over that of finite elements", h), u[0] / 19.3132),
+                1.0, 0.0045 * h);
+    EXPECT_LT(measured("one step or two", std::fabs(u[1] / u[0] - 1.0)), 1e-8);
+  }
+  // in five steps, with linear systems solved exactly: of all but the first, the last two iterations before rounding errors
+  const auto steps = residuals(scene(2.0, 5, "accuracy 1e-10"));
+  ASSERT_EQ(steps.size(), 5u);
+  for (std::size_t k = 1; k < 5; k++) {
+    auto f = steps[k];
+    while (f.size() > 4 && f.back() < 1e-12 * *std::max_element(f.begin(), f.end())) f.pop_back();
+    const auto n = f.size();
+    ASSERT_GE(n, 4u);
+    EXPECT_LE(steps[k].size(), 7u);
+    EXPECT_GT(measured("order", std::log(f[n - 1] / f[n - 2]) / std::log(f[n - 2] / f[n - 3])),
+              1.8);
+  }
+}
+
 // a slender cantilever with a force at its tip that keeps its direction, a load step of P L^2 / EI = 1 in each solve: benchmark
 // P1, with the values of plane strain. Its gate of 1 % needs more than 4 cells, with which w is 1.0 and u 2.1 % too large
 SERIAL_TEST(Elastica, BendsAsFarAsTheory)
@@ -868,8 +938,7 @@ SERIAL_TEST(Elastica, BendsAsFarAsTheory)
     Scene run(elastica(n, "variable each equal v_force/v_n\nfix load tip addforce 0 v_each 0") +
               "run 1\n");
     const auto expect = [&](double w, double u, double error_w, double error_u) {
-      const std::string name =
-          strprintf("%d cells, a = %d: ", n, (int) run.lmp->update->ntimestep);
+      const std::string name = strprintf("%d cells, a = %d: ", n, (int) run.lmp->update->ntimestep);
       EXPECT_NEAR(measured(name + "w over exact", -run.compute_scalar("w") / w), 1.0, error_w);
       EXPECT_NEAR(measured(name + "u over exact", -run.compute_scalar("along") / u), 1.0, error_u);
     };
@@ -891,7 +960,8 @@ SERIAL_TEST(Elastica, FollowsItsTip)
                                       std::array<double, 3>{1, 0.573839, 0.232638},
                                       std::array<double, 3>{3, 0.780690, 0.827722}}) {
       if (steps > 0) run.commands(strprintf("run %g\n", steps));
-      const std::string name = strprintf("%d cells, step %d: ", n, (int) run.lmp->update->ntimestep);
+      const std::string name =
+          strprintf("%d cells, step %d: ", n, (int) run.lmp->update->ntimestep);
       EXPECT_NEAR(measured(name + "w over exact", -run.compute_scalar("w") / w), 1.0,
                   n == 4 ? 0.0125 : 0.005);
       EXPECT_NEAR(measured(name + "u over exact", -run.compute_scalar("along") / u), 1.0,

@@ -153,12 +153,11 @@ SERIAL_TEST(Block, ComesFromAfar)
     const char *floor, *options;
     double low;
   };
-  for (const auto &c :
-       {Case{"ylo separate", "", 0.0}, Case{"ylo separate", "", 0.02},
-        Case{"ylo separate friction 0.3", "shape cubic", 0.0},
-        Case{"region ground separate", "", 0.04},
-        Case{"ylo separate", "shape linear transfer pic", 0.0},
-        Case{"region bowl separate", "", 0.0}})
+  for (const auto &c : {Case{"ylo separate", "", 0.0}, Case{"ylo separate", "", 0.02},
+                        Case{"ylo separate friction 0.3", "shape cubic", 0.0},
+                        Case{"region ground separate", "", 0.04},
+                        Case{"ylo separate", "shape linear transfer pic", 0.0},
+                        Case{"region bowl separate", "", 0.0}})
     for (const double gap : {0.3, 1.0, 2.0, 2.5}) {
       const bool rubs = std::string(c.floor).find("friction") != std::string::npos;
       const bool bowl = std::string(c.floor).find("bowl") != std::string::npos;
@@ -168,8 +167,13 @@ SERIAL_TEST(Block, ComesFromAfar)
         Scene run(above(c.floor, gap, c.options, c.low) +
                   "fix g all gravity 200 vector 0 -1 0\n"
                   "fix solve all mpm/implicit euler solver multigrid\n" +
-                  strprintf("timestep %g\nrun %d\n", many ? 0.005 : bowl ? 0.02 : 10.0,
-                            many ? 400 : bowl ? 200 : 1));
+                  strprintf("timestep %g\nrun %d\n",
+                            many       ? 0.005
+                                : bowl ? 0.02
+                                       : 10.0,
+                            many       ? 400
+                                : bowl ? 200
+                                       : 1));
         force[many] = -run.fix("floor")->compute_vector(1);
         mean[many] = mean_height(run);
         if (!many) measured("iterations", run.fix("solve")->compute_vector(0));
@@ -196,8 +200,7 @@ SERIAL_TEST(Block, IsPressed)
       const double wide = 0.5 * (low + high);
       (mu * (wide * wide - 1.0) + lambda * std::log(wide * height) < 0.0 ? low : high) = wide;
     }
-    const double exact =
-        -(mu * (height * height - 1.0) + lambda * std::log(low * height)) / height;
+    const double exact = -(mu * (height * height - 1.0) + lambda * std::log(low * height)) / height;
     for (const int steps : {1, 7, 50, 200}) {
       Scene run(plane("lj", "f f", "-2 2 0 2.4", 1, 0.1) +
                 body("block -0.5 0.5 0 1 INF INF", "density 1 neohookean 100 0.3",
@@ -214,6 +217,72 @@ SERIAL_TEST(Block, IsPressed)
                   1.0, 1.5e-2);
     }
   }
+}
+
+// the same by a plate that holds what it touches, with a free side, and with one that cannot move
+SERIAL_TEST(Block, IsPressedByAPlateThatHolds)
+{
+  const double height = 0.84;
+  struct Case {
+    const char *kind, *options;
+    double nu;
+    bool free;
+  };
+  for (const auto &c :
+       {Case{"slip", "", 0.3, true}, Case{"slip", "", 0.3, false}, Case{"stick", "", 0.0, true},
+        Case{"stick", "", 0.3, false}, Case{"slip friction 0.3", "", 0.0, true},
+        Case{"stick", "shape cubic", 0.0, true}}) {
+    const double mu = 50.0 / (1.0 + c.nu),
+                 lambda = 100.0 * c.nu / ((1.0 + c.nu) * (1.0 - 2.0 * c.nu));
+    double low = 1.0, high = c.free ? 1.2 : 1.0;
+    while (high - low > 1e-12) {
+      const double wide = 0.5 * (low + high);
+      (mu * (wide * wide - 1.0) + lambda * std::log(wide * height) < 0.0 ? low : high) = wide;
+    }
+    const double exact = -(mu * (height * height - 1.0) + lambda * std::log(low * height)) / height;
+    for (const int steps : c.free ? std::vector<int>{1, 10, 100} : std::vector<int>{50}) {
+      Scene run(plane("lj", "f f", c.free ? "-2 2 0 2.4" : "-0.5 0.5 0 2.4", 1, 0.1) +
+                body("block -0.5 0.5 0 1 INF INF", strprintf("density 1 neohookean 100 %g", c.nu),
+                     std::string("0.1 stress gradient ") + c.options) +
+                "variable way equal -0.16*time\n"
+                "region plate block INF INF 1 2.2 INF INF move NULL v_way NULL\n"
+                "fix floor all mpm/boundary ylo slip\n" +
+                (c.free ? "" : "fix sides all mpm/boundary xlo xhi slip\n") +
+                "fix press all mpm/boundary region plate " + c.kind +
+                "\n"
+                "fix solve all mpm/implicit static\n" +
+                strprintf("timestep %.17g\nrun %d\n", 1.0 / steps, steps));
+      EXPECT_NEAR(measured(strprintf("%s %s, %s side, %d steps: force over that of theory", c.kind,
+                                     c.options, c.free ? "free" : "fixed", steps),
+                           run.fix("press")->compute_vector(1) / exact),
+                  1.0, 2.5e-3);
+    }
+  }
+}
+
+// a grip that moves holds the material inside it: a gauge of ten node spacings is longer or shorter by 0.65 of one at most
+SERIAL_TEST(Bar, IsPulledByAGrip)
+{
+  for (const char *kind : {"stick", "slip"})
+    for (const double length : {1.0, 1.03, 1.07})
+      for (const int steps : {10, 50}) {
+        Scene run(
+            plane("lj", "f f", "0 2.4 -0.2 1.2", 1, 0.1) +
+            body("block 0 1.5 0 1 INF INF", "density 1 neohookean 100 0.0", "0.1 stress gradient") +
+            "variable way equal 0.16*time\n" +
+            strprintf("region grip block %g 2.3 INF INF INF INF move v_way NULL NULL\n", length) +
+            "fix end all mpm/boundary xlo slip\nfix pull all mpm/boundary region grip " + kind +
+            "\nfix solve all mpm/implicit static\n" +
+            strprintf("timestep %.17g\nrun %d\n", 1.0 / steps, steps));
+        const double stretch = 1.0 + 0.16 / length,
+                     exact = -50.0 * (stretch * stretch - 1.0) / stretch,
+                     force = run.fix("pull")->compute_vector(0);
+        EXPECT_NEAR(measured(strprintf("%s at %g in %d steps: force over that of theory", kind,
+                                       length, steps),
+                             force / exact),
+                    1.0, 0.065);
+        EXPECT_NEAR(run.fix("end")->compute_vector(0) / force, -1.0, 1e-6);
+      }
 }
 
 // what comes from farther away is an error
@@ -258,6 +327,15 @@ SERIAL_TEST(Block, Falls)
 
 TEST(Contact, Ranks)
 {
+  for (const char *kind : {"stick", "slip"}) {
+    OnRanks run(above("ylo slip", 0.0, "", 0.0) +
+                    "variable way equal -0.03*time\n"
+                    "region plate block INF INF 0.5 0.9 INF INF move NULL v_way NULL\n"
+                    "fix press all mpm/boundary region plate " +
+                    kind + "\nfix solve all mpm/implicit static tolerance 1e-10\ntimestep 0.5\n",
+                "run 4\n", "processors * 1 1\n");
+    EXPECT_LT(measured("difference", run.difference()), 1e-9) << kind;
+  }
   for (const char *floor :
        {"region ground slip friction 0.3", "region ground separate friction 0.3"}) {
     OnRanks run(block(floor, "", 0.02, 0.2, "static tolerance 1e-10"), "run 2\n");

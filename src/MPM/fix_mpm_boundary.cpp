@@ -247,6 +247,7 @@ bool FixMPMBoundary::region_moves() const
 bool FixMPMBoundary::acts_across(const MPMField &field) const
 {
   if (region->varshape) return false;
+  if (follows) return true;
   return decides() ||
       (kind == SLIP && !region_moves() &&
        std::count(of_elements.begin(), of_elements.end(), &field));
@@ -292,7 +293,10 @@ void FixMPMBoundary::init()
                        return !v.variable.empty() || v.value != 0.0;
                      });
   nodes.clear();    // listed with the topology
-  seeks = kind == SEPARATE && !modify->get_fix_by_style("^mpm/implicit$").empty();
+  const bool implicit = !modify->get_fix_by_style("^mpm/implicit$").empty();
+  seeks = kind == SEPARATE && implicit;
+  follows = kind != SEPARATE && implicit && !region_id.empty() &&
+      domain->get_region_by_id(region_id) && domain->get_region_by_id(region_id)->dynamic_check();
   for (auto *field : fields) {
     if (!acts_on(*field)) continue;
     nodes.push_back({field, faces_on_lattice(*field), {}, {}, {}, {}});
@@ -447,7 +451,7 @@ bool FixMPMBoundary::faces_are_near(const Faces &faces, int axis)
 void FixMPMBoundary::extend_topology(MPMField &field)
 {
   if (!acts_on(field)) return;
-  if (seeks) extend_to_approaches(field);
+  if (seeks || follows) extend_to_approaches(field);
   if (region) return extend_across(field);
   Grid &grid = field.grid;
   const auto faces = faces_on_lattice(field);
@@ -701,6 +705,10 @@ void FixMPMBoundary::FieldNodes::list_orbits(const bool *prescribed, int axis)
    force itself; a node that is taken at once gets the momentum that it lacks in one step. With slow
    motion the node slips behind the wall before it is let go: (1 - share)/share of what its
    acceleration gives it in each step, little at first because of the power of s.
+
+   Implicit steps have no hand-over (follows): to go a part of the way is no projection, and in equilibrium a node that goes half
+   the way in each step is behind by as much as in none. Lines through the surface hold what is in front of it, as they do for
+   separate, and single nodes act where there is also material behind, in a grip: wholly, up to half a spacing outside.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_region_nodes(FieldNodes &list)
@@ -754,7 +762,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
           outside.push_back(s);
         }
         if (gap >= taken) continue;
-        if (gap > ON_SURFACE * h) s.share = cube(1.0 - cube(gap / taken));
+        if (gap > ON_SURFACE * h && !follows) s.share = cube(1.0 - cube(gap / taken));
       }
       if (kind != STICK || region->varshape) surface->normal(x, far, 1.0e-4 * h, s.normal);
       if (region->varshape || across) s.distance = surface->distance(x, far);
@@ -766,7 +774,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
     return;
   }
   list_crossings(list, outside);
-  if (!hands_over) take_off_lines(list);
+  if (!hands_over || follows) take_off_lines(list);
 }
 
 /* ----------------------------------------------------------------------
@@ -789,6 +797,7 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
     if (!(single.distance <= ON_SURFACE * h && single.distance >= -h)) continue;
     Crossing c = {};
     if (!find_crossing(list, single, c)) continue;
+    if (follows) c.front = Crossing::NEAR_OTHERS;
     if (c.inside < c.n) ahead.push_back(c.node[c.inside]);
     list.crossings.push_back(c);
   }
@@ -852,7 +861,7 @@ void FixMPMBoundary::take_off_lines(FieldNodes &list)
 {
   const MPMField &field = *list.field;
   auto &crossings = list.crossings;
-  const bool hands_over = region_moves() && kind == SLIP;
+  const bool hands_over = region_moves() && kind == SLIP && !follows;
   if (hands_over)
     crossings.erase(std::remove_if(crossings.begin(), crossings.end(),
                                    [&](const Crossing &c) {
@@ -1223,7 +1232,7 @@ void FixMPMBoundary::update_motion(double dt)
           s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
         }
     for (int k = 0; k < 4; k++) old[k] = *motion[k];
-    if (kind == SLIP)
+    if (kind == SLIP && !follows)
       for (auto &list : nodes)
         if (acts_across(*list.field)) take_off_lines(list);
   }
@@ -1268,7 +1277,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     // that no material gets out
 
     // in trials: contact of this one
-    const bool tries = in_trials && decides() && list.field == tried;
+    const bool tries = in_trials && (decides() || follows) && list.field == tried;
     const auto touch = [&](std::size_t k) {
       now.touch = tries ? &touches[k] : nullptr;
     };
@@ -1293,6 +1302,12 @@ void FixMPMBoundary::act(double dt, Stage stage)
       touch(nlines + k);
       act_on_crossing(list, list.crossings[k]);
     }
+    if (tries && follows)
+      for (std::size_t k = 0; k < list.approaches.size(); k++) {
+        const auto &line = list.approaches[k];
+        if (touches[nlines + ncrossings + list.singles.size() + k].active)
+          held_by_lines.insert(held_by_lines.end(), line.node, line.node + line.n);
+      }
     std::sort(held_by_lines.begin(), held_by_lines.end());
     for (std::size_t k = 0; k < list.singles.size(); k++) {
       Single &single = list.singles[k];
@@ -1327,6 +1342,11 @@ void FixMPMBoundary::act(double dt, Stage stage)
 double FixMPMBoundary::slide_share(Contact &contact, double push, double of_water,
                                    double needed) const
 {
+  if (kind == STICK) {
+    contact = STUCK;
+    if (now.touch && !now.counting) now.touch->push += now.unit * push;
+    return 1.0;
+  }
   if (now.touch) {
     contact = now.touch->active ? SLIDING : FREE;
     if (!now.counting) now.touch->push += now.unit * push;

@@ -86,7 +86,7 @@ class FixMPMBoundary :
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override;
   bool decides_contact(const MPMField &) const override;
   bool is_projection() const override { return !decides(); }
-  MPMTrialContact *trial_contact() override { return decides() ? this : nullptr; }
+  MPMTrialContact *trial_contact() override { return decides() || follows ? this : nullptr; }
   void act(double dt, Stage) override;
 
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
@@ -317,8 +317,9 @@ class FixMPMBoundary :
   MPMField *tried = nullptr;
   const double *motion = nullptr;    // velocities of nodes at the end of the step
   double trial_dt = 0.0, eps = 0.0, soft = 0.0;
-  int rounds = 0;        // of decisions in this step
-  bool seeks = false;    // material that comes to the wall in implicit steps
+  int rounds = 0;          // of decisions in this step
+  bool seeks = false;      // material that comes to the wall in implicit steps
+  bool follows = false;    // a region that moves and holds: by lines in implicit steps
   bool closes =
       false;    // lines that are held go to the wall now, else they are at rest relative to it
   std::vector<double> clear;    // [point][face] its distance from the wall at the start of the step

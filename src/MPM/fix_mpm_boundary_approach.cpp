@@ -36,6 +36,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -184,6 +185,20 @@ void FixMPMBoundary::find_approaches(FieldNodes &list, double dt)
         leave_out(crossing.axis, crossing.normal[crossing.axis] > 0.0, crossing.base);
     }
 
+    // a wall that holds needs none but in place of lines that cannot act
+
+    if (follows) {
+      std::set<std::array<int, 4>> instead;
+      for (const auto &crossing : list.crossings) {
+        int index[3];
+        if (crossing.touched || !is_in_front(field.grid, crossing)) continue;
+        grid.node_index(crossing.base, index);
+        instead.insert(key_of(crossing.axis, crossing.normal[crossing.axis] > 0.0, index));
+      }
+      for (auto line = lines.begin(); line != lines.end();)
+        line = instead.count(line->first) ? std::next(line) : lines.erase(line);
+    }
+
     gap.map(field, near, !region || region->nregion == 1,
             (region ? 2.45 : 2.0) * seen + COMES_FROM + MORE, away, more);
 
@@ -275,21 +290,26 @@ void FixMPMBoundary::act_on_approach(const FieldNodes &list, const Approach &lin
   if (!touch.active) return;
   Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
+  const bool sticks = kind == STICK;
   const double *const n = line.normal,
                       closing = closes || now.counting ? touch.gap / trial_dt : 0.0;
   Chain chain;
   if (!find_chain(list, line.node, line.weight, line.n, 1, chain)) return;
-  double relative[4], change[4];
+  double relative[4], change[4], all[3][4] = {};
   for (int k = 0; k < chain.m; k++) {
     relative[k] = closing;
     for (int d = 0; d < dim; d++) relative[k] += (chain.r[k][d] - chain.V[k][d]) * n[d];
   }
   const double lambda = chain.solve(relative, change);
   if (!now.counting) touch.push += chain.total * lambda;
+  for (int d = 0; d < dim && sticks; d++) {
+    for (int k = 0; k < chain.m; k++) relative[k] = chain.r[k][d] - chain.V[k][d];
+    chain.solve(relative, all[d]);
+  }
   for (int k = 0; k < chain.m; k++) {
     double v[3] = {0.0, 0.0, 0.0}, whole[3] = {0.0, 0.0, 0.0};
     for (int d = 0; d < dim; d++) {
-      v[d] = chain.r[k][d] + change[k] * n[d];
+      v[d] = chain.r[k][d] + (sticks ? all[d][k] : change[k] * n[d]);
       whole[d] = v[d] + closing * n[d];
     }
     if (region) count_moment(grid, chain.node[k], chain.r[k], v);

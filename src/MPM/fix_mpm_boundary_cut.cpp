@@ -239,7 +239,8 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
                                                              : is_in_front(grid, crossing);
     if (!crossing.acts) return;
     if (crossing.front == Crossing::NEAR_OTHERS)
-      held_by_lines.insert(held_by_lines.end(), crossing.node, crossing.node + crossing.inside);
+      held_by_lines.insert(held_by_lines.end(), crossing.node,
+                           crossing.node + (follows ? crossing.n : crossing.inside));
   }
   Chain chain;
   if (!find_chain(list, crossing.node, crossing.weight, crossing.n, 1, chain)) return;

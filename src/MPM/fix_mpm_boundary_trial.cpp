@@ -58,6 +58,8 @@ void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular, bo
     find_gaps(list, dt);
     find_approaches(list, dt);
     find_clear(list, dt);
+  } else if (follows && acts_across(field)) {
+    find_approaches(list, dt);
   }
   for (const auto &line : list.lines) touches.emplace_back(!separates || line.touched);
   for (const auto &crossing : list.crossings) touches.emplace_back(!separates || crossing.touched);
@@ -79,6 +81,11 @@ void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular, bo
     touches[k].open = touches[k].active = false;
   for (const auto &line : list.approaches) {
     Touch touch(true);
+    if (follows) {
+      touch.active = line.gap < NEARBY * field.lattice.h;
+      touches.push_back(touch);
+      continue;
+    }
     touch.gap = touched && line.gap < NEXT_TO * field.lattice.h ? 0.0 : line.gap;
     touch.active = touched ? touch.gap == 0.0 : rests && line.gap < NEARBY * field.lattice.h;
     touches.push_back(touch);

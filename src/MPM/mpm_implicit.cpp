@@ -756,11 +756,13 @@ double MPMImplicit::step(double step_dt)
   take_nodes();
   contacts.clear();
   rubs = false;
+  bool all_hold = true;
   slip = options.slip > 0.0 ? options.slip : SLIP * field.lattice.h;
   for (auto *action : field.plan->actions)
     if (auto *contact = action->trial_contact()) {
       contact->begin_trials(field, dt, slip, options.time == MPMImplicitOptions::STATIC);
       contacts.push_back(contact);
+      all_hold = all_hold && action->is_projection();
       rubs = rubs || contact->has_friction();
     }
   find_constraints();
@@ -782,7 +784,7 @@ double MPMImplicit::step(double step_dt)
     // velocities, and accelerations by the forces of the start of the step, with those of walls
 
     start = before;
-    if (constrained && contacts.empty()) act(start.data());
+    if (constrained && all_hold) act(start.data());
     inertia = 1.0 / (part * dt * dt);
     for (int64_t k = 0; k < nreals(); k++) u[k] = from[k] = dt * start[k];
     if (options.time == MPMImplicitOptions::NEWMARK || options.keeps_acceleration()) {
