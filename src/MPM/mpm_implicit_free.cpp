@@ -17,6 +17,7 @@
 #include "comm.h"
 #include "fmt/format.h"
 #include "force.h"
+#include "math/sets.h"
 #include "mpm_field.h"
 #include "mpm_stencil.h"
 #include "solve/lattice_key.h"
@@ -25,7 +26,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 
 using namespace LAMMPS_NS;
@@ -36,32 +36,16 @@ static constexpr double CANCELS = 1.0e-6;    // sum of forces over that of their
 
 namespace {
 
-/** Sets that grow together. */
-struct Sets {
-  std::vector<int> parent;
-
-  int add()
-  {
-    parent.push_back((int) parent.size());
-    return parent.back();
-  }
-  int find(int k)
-  {
-    while (parent[k] != k) k = parent[k] = parent[parent[k]];
-    return k;
-  }
-  void join(int a, int b)
-  {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent[std::max(a, b)] = std::min(a, b);
-  }
-};
-
 struct Label {
   uint64_t node;
   int set, rank;
 };
+
+/** The set of a rank, among those of all. */
+uint64_t set_of(const Label &label)
+{
+  return (uint64_t) label.rank << 32 | (uint64_t) label.set;
+}
 
 }    // namespace
 
@@ -69,9 +53,7 @@ struct Label {
 int MPMImplicit::find_bodies(std::vector<int> &body)
 {
   const MPMStencil stencil(field);
-  Sets mine;
-  mine.parent.resize(mass.size());
-  std::iota(mine.parent.begin(), mine.parent.end(), 0);
+  Sets mine(mass.size());
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       int64_t first = -1;
@@ -87,31 +69,28 @@ int MPMImplicit::find_bodies(std::vector<int> &body)
     grid.node_index(n, at);
     LatticeIndex index{0, 0, 0};
     for (int d = 0; d < width; d++) index[d] = grid.lattice.wrap(d, at[d]);
-    labels.push_back({lattice_key(index), mine.find((int) n), lmp->comm->me});
+    labels.push_back({lattice_key(index), mine.root((int) n), lmp->comm->me});
   }
   const auto all = ranks.gather(labels);
 
   // nodes of several ranks, and periodic images, join what these have
 
-  Sets sets;
   std::unordered_map<uint64_t, int> of_node, of_set;
-  std::vector<int> number(all.size());
+  std::vector<int> number;
+  for (const auto &label : all)
+    number.push_back(of_set.emplace(set_of(label), (int) of_set.size()).first->second);
+  Sets sets(of_set.size());
   for (std::size_t k = 0; k < all.size(); k++) {
-    const uint64_t key = (uint64_t) all[k].rank << 32 | (uint64_t) all[k].set;
-    const auto set = of_set.emplace(key, 0);
-    if (set.second) set.first->second = sets.add();
-    number[k] = set.first->second;
     const auto node = of_node.emplace(all[k].node, number[k]);
     if (!node.second) sets.join(node.first->second, number[k]);
   }
   std::unordered_map<int, int> place;
-  for (const int set : number) place.emplace(sets.find(set), (int) place.size());
+  for (const int set : number) place.emplace(sets.root(set), (int) place.size());
   body.assign(mass.size(), -1);
   std::size_t k = 0;
   for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
     if (!(mass[n] > 0.0)) continue;
-    const uint64_t key = (uint64_t) lmp->comm->me << 32 | (uint64_t) labels[k++].set;
-    body[n] = place.at(sets.find(of_set.at(key)));
+    body[n] = place.at(sets.root(of_set.at(set_of(labels[k++]))));
   }
   return (int) place.size();
 }
@@ -119,7 +98,8 @@ int MPMImplicit::find_bodies(std::vector<int> &body)
 /** Is there a body that nothing holds along the forces that it bears? Then the step has failed. Collective. */
 void MPMImplicit::find_free_bodies()
 {
-  if (!contacts.empty() || joint || tangent.has_loads()) return;
+  // elements hold nodes together that have no point in common
+  if (!contacts.empty() || joint || tangent.has_loads() || !field.elements.empty()) return;
   std::vector<int> body;
   const int nbodies = find_bodies(body), w = width, first = field.options.axisymmetric ? 1 : 0;
 
