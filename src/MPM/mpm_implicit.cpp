@@ -236,12 +236,20 @@ bool MPMImplicit::meet_walls(std::vector<double> &u, double share)
   return true;
 }
 
-/** Sum of forces that are rounding errors: those of a strain, and of its part that comes from large motions of a node spacing. */
+/** Sum of forces that are rounding errors: those of a strain, and of its part that comes from large motions of a node spacing. The mean
+ *  motion of the mass: nodes at the very end of the functions of points have next to none, and go far. */
 double MPMImplicit::negligible_forces(const std::vector<double> &u, double stiffness) const
 {
-  double most = 0.0, way;
-  for (const double d : u) most = std::max(most, std::fabs(d));
-  MPI_Allreduce(&most, &way, 1, MPI_DOUBLE, MPI_MAX, lmp->world);
+  double mine[2] = {0.0, 0.0}, all[2];
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
+    if (!(mass[n] > 0.0) || !grid.owns(n)) continue;
+    double square = 0.0;
+    for (int d = 0; d < width; d++) square += u[width * n + d] * u[width * n + d];
+    mine[0] += mass[n] * square;
+    mine[1] += mass[n];
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, lmp->world);
+  const double way = all[1] > 0.0 ? std::sqrt(all[0] / all[1]) : 0.0;
   return ROUND_OFF * stiffness * std::max(1.0, 4.0 * way / field.lattice.h);
 }
 
