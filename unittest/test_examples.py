@@ -65,6 +65,8 @@ CHAOTIC = {"levee": {"v_in": (0.05, FILLING), "v_out": (0.05, FILLING), "v_toe":
 STEPS = r"^run\s+(?!\s|0\b).*"    # a command that takes steps
 
 UNIMPORTANT = ["CPU", "S/CPU", "CPULeft", "Part"]
+# iterations of a solver: rounding errors decide whether one more is needed, which other instruction sets do not do alike
+ITERATIONS = re.compile(r"f_solve\[[12]\]")
 
 
 def inputs():
@@ -216,8 +218,10 @@ def compare(found, expected, tolerance, what, which="all", special=None):
             scale = max(max(values) - min(values), 1.0e-3 * largest)
             limit = (special or {}).get(name, (tolerance,))[0]
             printed = resolution(words)
+            counts = ITERATIONS.fullmatch(name)
             for row, n in pairs:
-                difference = max(0.0, abs(float(row[k]) - values[n]) - 1.01 * printed[n]) / scale
+                may_be_off = max(1.0, 0.1 * values[n]) if counts else 1.01 * printed[n]
+                difference = max(0.0, abs(float(row[k]) - values[n]) - may_be_off) / scale
                 assert difference <= limit, "%s: at step %s, %s is %s, not %s: %.2g of its range" % (
                     what, row[step], name, row[k], words[n], difference)
                 most = max(most, difference)
