@@ -66,7 +66,7 @@ STEPS = r"^run\s+(?!\s|0\b).*"    # a command that takes steps
 
 UNIMPORTANT = ["CPU", "S/CPU", "CPULeft", "Part"]
 # iterations of a solver: rounding errors decide whether one more is needed, which other instruction sets do not do alike
-ITERATIONS = re.compile(r"f_solve\[[12]\]")
+ITERATIONS = re.compile(r"f_(solve\[[12]\]|flow\[1\])")
 
 
 def inputs():
