@@ -533,6 +533,7 @@ PARAMETER_TEST(Column, SettlementAndPeriod, std::string,
                       "transfer flip 1.0 scheme musl origin 0.025 -0.025",
                       "transfer flip 1.0 shape linear origin 0.025 0.025"))
 {
+  if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
   Scene run(column_scene(GetParam(), "fix w all mpm/boundary xlo xhi ylo slip", 0.2) + "run 0\n");
   const double M = 1.0e6 * 0.7 / (1.3 * 0.4), c = std::sqrt(M / 1000.0);
   const double period = 4.0 / c, y0 = run.variable("y");
@@ -729,6 +730,7 @@ TEST(Motion, Displacement)
 // a bar is twisted by the motion of its end, given in three ways: the same torque, that of the theory, and its work is what the bar stores
 TEST(Torsion, ReactionAndWork)
 {
+  if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
   // 8 long with a section of 2 x 2, G = 1: G J angle/length with J = 0.1406 a^4
   const double angle = 0.2, theory = 0.1406 * 16.0 * angle / 8.0;
   const struct {
@@ -898,6 +900,7 @@ TEST(Motion, FlipTakesFromTheOldVelocityAtACutFace)
 // at the wall)
 TEST(Rebound, FlipKeepsTheEnergy)
 {
+  if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
   for (const char *kind : {"stick", "slip", "slip friction 0.1"}) {
     Scene run(
         replaced(plane("si", "p f", "0 0.2 0 1 -0.1 0.1", 1, 0.02) +
@@ -916,6 +919,7 @@ TEST(Rebound, FlipKeepsTheEnergy)
 // down, and it splashed higher than it came from.
 TEST(Arrival, WaterFallsAndCalmsDown)
 {
+  if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
   Scene run(plane("si", "f f", "0 2 0 12 -0.1 0.1", 1, 0.02) +
             body("block 0 0.5 0.5 1.0 -0.1 0.1",
                  "density 1000 eos tait 1e5 7 viscosity newtonian 1.0",

@@ -115,7 +115,7 @@ SERIAL_TEST(Steady, Weight)
 }
 
 // water is kept, also while the flow changes
-TEST(Water, IsKept)
+SERIAL_TEST(Water, IsKept)
 {
   for (const char *form : {"u-p", "u-v-p"})
     expect_water_is_kept(column(10,
