@@ -225,7 +225,7 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   if (heat.heats()) heating = std::make_unique<MPMFrictionHeat>(lmp, heat);
 
   scalar_flag = vector_flag = 1;
-  size_vector = region_id.empty() ? 3 : 6;
+  size_vector = 6;
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
@@ -1408,7 +1408,6 @@ void FixMPMBoundary::push_by_water(Grid &grid, int64_t node, const double *norma
   double v[3] = {0.0, 0.0, 0.0}, along = 0.0;
   for (int d = 0; d < 3; d++) along += water[3 * node + d] * normal[d];
   for (int d = 0; d < grid.lattice.dim; d++) v[d] = record[d] - along * normal[d] / record[3];
-  count_moment(grid, node, record, v);
   set_velocity(grid, node, v, v, nullptr);
 }
 
@@ -1430,16 +1429,18 @@ void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *V, con
   for (int d = 0; d < dim; d++) change[d] = v[d] - record[d];
   if (now.normal) more = slip_work(grid, node, V, change, v, whole ? whole : v);
   if (now.counting && grid.owns(node)) {
-    double moved = more, driven = 0.0, gained = 0.0, change_old[3] = {0.0};
+    double moved = more, driven = 0.0, gained = 0.0, change_old[3] = {0.0}, push[3] = {0.0};
     for (int d = 0; d < dim; d++) {
       if (old) change_old[d] = old[d] - record[4 + d];
-      const double push = change[d] - now.old_share * change_old[d];
-      impulse[d] += record[3] * push;
-      moved += push * (whole ? whole : v)[d];
-      driven += push * V[d];
+      const double given = change[d] - now.old_share * change_old[d];
+      push[d] = record[3] * given;
+      impulse[d] += push[d];
+      moved += given * (whole ? whole : v)[d];
+      driven += given * V[d];
       if (now.ledger)
         gained += 0.5 * (change[d] - change_old[d]) * (v[d] + (old ? old[d] : record[4 + d]));
     }
+    add_moment(grid, node, push);
     if (now.ledger) now.ledger->note_push(record, change, change_old);
     past.work += record[3] * moved;
     now.kinetic += record[3] * moved;
@@ -1646,24 +1647,11 @@ void FixMPMBoundary::act_on_single(const FieldNodes &list, Single &single)
   }
   const double whole[3] = {v[0], v[1], v[2]};
   for (int d = 0; d < dim && single.share < 1.0; d++) v[d] = r[d] + single.share * (v[d] - r[d]);
-  count_moment(grid, single.node, r, v);
   set_velocity(grid, single.node, V, v, nullptr, whole);
   now.normal = nullptr;
 }
 
-/* ----------------------------------------------------------------------
-   moment about the origin of what gives the node of this record the velocity v
-------------------------------------------------------------------------- */
-
-void FixMPMBoundary::count_moment(const Grid &grid, int64_t node, const double *record,
-                                  const double *v)
-{
-  if (!now.counting || !grid.owns(node)) return;
-  double push[3] = {0.0, 0.0, 0.0};
-  for (int d = 0; d < grid.lattice.dim; d++) push[d] = record[3] * (v[d] - record[d]);
-  add_moment(grid, node, push);
-}
-
+/** Moment about the origin of an impulse on a node. */
 void FixMPMBoundary::add_moment(const Grid &grid, int64_t node, const double *push)
 {
   double X[3], x[3], moment[3];

@@ -282,7 +282,7 @@ class FixMPMBoundary :
   bool warned = false;         // of a region that is too fast
   bigint steps = 0;            // of this fix in this run
   MPMFirstNote<5> too_thin;    // region: step, index of the field, place
-  double reaction[6] = {};     // force and, of regions, torque
+  double reaction[6] = {};     // force and torque
 
   // contact of which a solver decides, see mpm_trial_contact.h: one for each line, crossing, single, and approach, in this order
   struct Touch {
@@ -393,7 +393,6 @@ class FixMPMBoundary :
   void heat_if_sliding(Contact, const double *normal);
   double slip_work(MPM_NS::Grid &, int64_t node, const double *V, const double *change,
                    const double *v, const double *counted);
-  void count_moment(const MPM_NS::Grid &, int64_t node, const double *record, const double *v);
   void add_moment(const MPM_NS::Grid &, int64_t node, const double *push);
   static bool is_constrained(MPM_NS::Grid &, const Member *, int n, bool fixed);
   void project(MPM_NS::Grid &, const Member *, int n, bool fixed, const Prescribed &);

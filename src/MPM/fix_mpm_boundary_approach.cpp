@@ -312,7 +312,6 @@ void FixMPMBoundary::act_on_approach(const FieldNodes &list, const Approach &lin
       v[d] = chain.r[k][d] + (sticks ? all[d][k] : change[k] * n[d]);
       whole[d] = v[d] + closing * n[d];
     }
-    if (region) count_moment(grid, chain.node[k], chain.r[k], v);
     set_velocity(grid, chain.node[k], chain.V[k], v, nullptr, whole);
   }
 }

@@ -270,7 +270,6 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
     for (int d = 0; d < dim; d++) along += change[d][k] * n[d];
     for (int d = 0; d < dim; d++)
       v[d] = chain.r[k][d] + along * n[d] + share * (change[d][k] - along * n[d]);
-    count_moment(grid, chain.node[k], chain.r[k], v);
     set_velocity(grid, chain.node[k], chain.V[k], v, nullptr);
   }
   now.normal = nullptr;

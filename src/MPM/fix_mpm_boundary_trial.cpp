@@ -370,7 +370,6 @@ void FixMPMBoundary::rub_nodes(Grid &grid)
         v[d] = record[d] + trial_dt * held[j].share * touch.rubs[d] / record[3];
         whole[d] = motion[dim * node + d];
       }
-      if (region) count_moment(grid, node, record, v);
       set_velocity(grid, node, V, v, nullptr, whole);
     }
   });
