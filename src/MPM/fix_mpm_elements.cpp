@@ -63,9 +63,18 @@ static bool bends(const double *row)
 // axes must have at least this part of their length along an element
 static constexpr double LEAST_AXIS = 0.1;
 
+// bending: error of a slope in parts of what the curvature makes of it, and part of all triangles that is many
+static constexpr double ROUGH = 0.05, MANY_ROUGH = 0.1;
+
 static const ElementRule &rule_of(const double *row)
 {
   return ElementRule::of(type_of(row));
+}
+
+// nodes from which the owner of an element is chosen
+static int number_of_corners(const MeshElement &element)
+{
+  return element.type == ElementType::PATCH ? 3 : element_nodes(element.type);
 }
 
 /* ----------------------------------------------------------------------
@@ -164,7 +173,9 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   material = find_material();
   variables = names_of_history();
   nhistory = material->nhistory;
-  stride = 2 + maxnode * (1 + dim) + maxpoint * point_size();
+  stride = 2 + maxnode * (1 + dim) +
+      std::max(maxpoint * point_size(),
+               bending && along == 2 ? (int) (sizeof(BentTriangle) / sizeof(double)) : 0);
   width = 18 + nhistory;
   comm_reverse = width;
   work->history.resize((std::size_t) std::max(1, nhistory) * BATCH);
@@ -320,7 +331,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
   for (int e = 0; e < (int) mesh.elements.size(); e++) {
     const auto &element = mesh.elements[e];
     int owner = element.node[0];
-    for (int k = 1; k < element_nodes(element.type); k++)
+    for (int k = 1; k < number_of_corners(element); k++)
       if (owned[element.node[k]] < owned[owner]) owner = element.node[k];
     max_of_node = std::max(max_of_node, ++owned[owner]);
     if (local[owner] >= 0) here.emplace_back(local[owner], e);
@@ -328,13 +339,14 @@ void FixMPMElements::make_elements(const Mesh &mesh)
   std::sort(here.begin(), here.end());
   pool.assign(here.size() * stride, 0.0);
   double least = std::numeric_limits<double>::max(), volume[2] = {0.0, 0.0}, volumes[2];
+  bigint rough = 0, all_rough;
   for (std::size_t k = 0; k < here.size(); k++) {
     const auto &element = mesh.elements[here[k].second];
     double *const r = row(k);
     r[0] = (double) element.label;
     r[1] = (double) static_cast<int>(element.type);
     const auto &rule = rule_of(r);
-    double X[MAX_ELEMENT_NODES][3];
+    double X[PATCH_NODES][3];
     for (int m = 0; m < rule.nnode; m++) {
       MathExtra::sub3(&x[3 * (std::size_t) element.node[m]], &x[3 * (std::size_t) element.node[0]],
                       X[m]);
@@ -343,7 +355,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
       for (int d = 0; d < dim; d++) r[2 + maxnode + m * dim + d] = X[m][d];
     }
     if (bends(r)) {
-      define_bending(r, X);
+      define_bending(r, X, rough);
       continue;
     }
     double frequency = 0.0, size = 0.0;
@@ -372,6 +384,13 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     least = std::min(least, 2.0 * sqrt(size / frequency));
   }
   MPI_Allreduce(&least, &shortest, 1, MPI_DOUBLE, MPI_MIN, world);
+  MPI_Allreduce(&rough, &all_rough, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (comm->me == 0 && (double) all_rough > MANY_ROUGH * (double) nelements)
+    error->warning(FLERR,
+                   "Fix mpm/elements {} bending: {} of {} triangles know too few nodes around them "
+                   "to tell curvatures apart, and are too stiff: use a mesh whose inner nodes have "
+                   "five to seven triangles each",
+                   id, all_rough, nelements);
 
   // pressure of an equation of state
 
@@ -524,13 +543,14 @@ void FixMPMElements::check_fields() const
 
 double FixMPMElements::largest_extent() const
 {
-  double largest = 0.0, all;
+  double largest = 0.0, widest = 0.0, most = 0.0, all;
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
     double *const r = row(e);
     const auto &rule = rule_of(r);
     const double *const X = r + 2 + maxnode;
     double square = 0.0, stretch = 0.0;
-    for (int k = 0; k < rule.nnode; k++)
+    const int nnode = nodes_of(r);
+    for (int k = 0; k < nnode; k++)
       for (int j = 0; j < k; j++) {
         double s = 0.0;
         for (int d = 0; d < dim; d++)
@@ -543,9 +563,15 @@ double FixMPMElements::largest_extent() const
       for (int c = 0; c < (dim == 3 ? 9 : 5); c++) s += F[c] * F[c];
       stretch = std::max(stretch, s);
     }
+    if (bends(r)) widest = std::max(widest, square);
+    most = std::max(most, stretch);
     largest = std::max(largest, sqrt(square * stretch));
   }
-  if (bending) largest *= 2.0;    // which are nodes of two elements
+  double mine[2] = {widest, most}, all_of[2];
+  if (bending) {
+    MPI_Allreduce(mine, all_of, 2, MPI_DOUBLE, MPI_MAX, world);
+    largest = std::max(largest, sqrt(all_of[0] * all_of[1]));
+  }
   MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
 }
@@ -567,7 +593,8 @@ void FixMPMElements::find_nodes()
     sorted.insert(sorted.end(), r, r + (int) count[i] * stride);
     for (int k = 0; k < count[i]; k++, r += stride) {
       nodes.emplace_back();
-      for (int m = 0; m < rule_of(r).nnode; m++) {
+      const int nnode = nodes_of(r);
+      for (int m = 0; m < nnode; m++) {
         const int j = atom->map((tagint) r[2 + m]);
         if (j < 0)
           error->one(
@@ -655,9 +682,12 @@ void FixMPMElements::for_trial_batches(const std::function<void(Work &)> &visit)
   for_batches(true, visit);
 }
 
-int FixMPMElements::nodes_of(std::size_t e) const
+int FixMPMElements::nodes_of(const double *r) const
 {
-  return rule_of(row(e)).nnode;
+  if (type_of(r) != ElementType::PATCH) return rule_of(r).nnode;
+  BentTriangle bent;
+  memcpy(&bent.n, state_of(const_cast<double *>(r), 0), sizeof(bent.n));
+  return bent.n;
 }
 
 /* ----------------------------------------------------------------------
@@ -1034,16 +1064,23 @@ void FixMPMElements::add_pressure(bool starting)
    bending: a row has what mesh/bending.h knows of the patch or corner
 ------------------------------------------------------------------------- */
 
-void FixMPMElements::define_bending(double *r, const double (*X)[3]) const
+void FixMPMElements::define_bending(double *r, const double (*X)[3], bigint &rough) const
 {
   double *const to = state_of(r, 0);
   if (type_of(r) == ElementType::PATCH) {
-    static_assert(sizeof(BentTriangle) <= 24 * sizeof(double), "does not fit into a point");
+    static_assert(sizeof(BentTriangle) % sizeof(double) == 0, "does not fit into a row");
     BentTriangle bent;
-    bool has[3];
-    for (int k = 0; k < 3; k++) has[k] = r[2 + 3 + k] != r[2];
-    bent.define(X, has);
+    bool has[PATCH_NODES - 3];
+    int slots[PATCH_NODES];
+    double nodes_of_all[PATCH_NODES];
+    for (int k = 0; k < PATCH_NODES - 3; k++) has[k] = r[2 + 3 + k] != r[2];
+    rough += bent.define(X, has, slots) > ROUGH;
     memcpy(to, &bent, sizeof(bent));
+    std::copy_n(r + 2, PATCH_NODES, nodes_of_all);
+    for (int m = 0; m < bent.n; m++) {
+      r[2 + m] = nodes_of_all[slots[m]];
+      std::copy_n(X[slots[m]], 3, r + 2 + maxnode + 3 * m);
+    }
   } else {
     BentLine bent;
     bent.define(dim, X);
@@ -1077,8 +1114,8 @@ template <class Visit> void FixMPMElements::for_bending(Visit visit) const
   for (std::size_t e = 0; e < nodes.size(); e++) {
     const double *const r = row(e);
     if (!bends(r)) continue;
-    const int nnode = rule_of(r).nnode;
-    double x[MAX_ELEMENT_NODES][3], f[MAX_ELEMENT_NODES][3] = {{0.0}};
+    const int nnode = nodes_of(r);
+    double x[PATCH_NODES][3], f[PATCH_NODES][3] = {{0.0}};
     for (int m = 0; m < nnode; m++)
       MathExtra::sub3(atom->x[nodes[e][m]], atom->x[nodes[e][0]], x[m]);
     const double energy = bend(r, x, f);
@@ -1100,7 +1137,7 @@ double FixMPMElements::largest_bending_frequency() const
 {
   std::vector<double> sum(ids.n, 0.0), all(ids.n);
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
-    double *const r = row(e), mine[6];
+    double *const r = row(e), mine[PATCH_NODES];
     if (!bends(r)) continue;
     if (type_of(r) == ElementType::PATCH) {
       BentTriangle bent;
@@ -1111,8 +1148,7 @@ double FixMPMElements::largest_bending_frequency() const
       memcpy(&bent, state_of(r, 0), sizeof(bent));
       bent.stiffness_sums(mine);
     }
-    for (int m = 0; m < rule_of(r).nnode; m++)
-      sum[(bigint) r[2 + m] - ids.low] += stiffness * mine[m];
+    for (int m = 0; m < nodes_of(r); m++) sum[(bigint) r[2 + m] - ids.low] += stiffness * mine[m];
   }
   MPI_Allreduce(sum.data(), all.data(), (int) ids.n, MPI_DOUBLE, MPI_SUM, world);
   double largest = 0.0, square;

@@ -17,6 +17,7 @@ FixStyle(mpm/elements,FixMPMElements);
 
 #include "declare/option.h"
 #include "material/plane_stress.h"
+#include "mesh/bending.h"
 #include "mesh/gmsh.h"
 #include "mesh/near_nodes.h"
 #include "mpm_state.h"
@@ -178,9 +179,9 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
 
   double *first, *count;    // of an atom: its elements in the pool
   std::vector<double> pool;
-  std::vector<std::array<int, 8>> nodes;    // local indices, after find_nodes()
-  int width;                                // of rows of sums
-  std::vector<double> sums;                 // forces and averages of nodes
+  std::vector<std::array<int, MPM_NS::PATCH_NODES>> nodes;    // local indices, after find_nodes()
+  int width;                                                  // of rows of sums
+  std::vector<double> sums;                                   // forces and averages of nodes
   std::vector<double> force_on;
   // trial motions: [local and ghost][3] displacements, and what other ranks get; a component of one node of each element that has moved;
   // [element][maxnode dim][maxnode dim] forces by a motion of each
@@ -220,14 +221,14 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void material_update(Work &, bool starting);
   void find_forces(const Work &, int start, const MPM_NS::ElementRule &, double (*f)[3]) const;
   void for_trial_batches(const std::function<void(Work &)> &) const;
-  int nodes_of(std::size_t e) const;
+  int nodes_of(const double *row) const;
   void take_motion(const double *u);
   void bring_home(double *to);
   template <class Use> bool try_elements(const Use &use);
   void add_sums(Work &);
   void add_pressure(bool starting);
   template <class Visit> void for_faces(Visit) const;
-  void define_bending(double *row, const double (*X)[3]) const;
+  void define_bending(double *row, const double (*X)[3], bigint &rough) const;
   template <class Visit> void for_bending(Visit) const;
   double bend(const double *row, const double (*x)[3], double (*f)[3]) const;
   void add_bending();

@@ -132,7 +132,7 @@ void FixMPMElements::add_change(const double *du, double *dforce)
   const int size = maxnode * dim;
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
     const double *K = &tangents[e * size * size];
-    const int nnode = nodes_of(e);
+    const int nnode = nodes_of(row(e));
     for (int a = 0; a < nnode; a++)
       for (int b = 0; b < dim; b++, K += size) {
         const double moved = motion[3 * (std::size_t) nodes[e][a] + b];
@@ -152,7 +152,7 @@ void FixMPMElements::add_blocks(double *blocks)
   for (int b = 0; b < dim; b++) {
     sent.assign(3 * nall, 0.0);
     for (std::size_t e = 0; e < pool.size() / stride; e++)
-      for (int m = 0; m < nodes_of(e); m++)
+      for (int m = 0; m < nodes_of(row(e)); m++)
         for (int d = 0; d < dim; d++)
           sent[3 * (std::size_t) nodes[e][m] + d] -=
               tangents[e * size * size + (std::size_t) size * (dim * m + b) + dim * m + d];

@@ -24,8 +24,8 @@ namespace {
 
 using Place = std::array<double, 3>;
 
-/** n x n pairs of triangles in a square of edge 1, some pairs with the other diagonal, nodes moved by up to a part of the spacing. */
-Mesh sheet(int n, double disorder)
+/** n x n pairs of triangles in a square of edge 1, every other pair with the other diagonal if alternate, inner nodes moved by up to a part of the spacing. */
+Mesh sheet(int n, double disorder, bool alternate = true)
 {
   Mesh mesh;
   for (int j = 0; j <= n; j++)
@@ -38,7 +38,7 @@ Mesh sheet(int n, double disorder)
   for (int j = 0; j < n; j++)
     for (int i = 0; i < n; i++) {
       const int a = j * (n + 1) + i, b = a + n + 1;
-      const bool other = disorder > 0.0 && (i + j) % 2;
+      const bool other = alternate && (i + j) % 2;
       MeshElement first = {ElementType::TRIANGLE, 0, 1, {a, a + 1, other ? b + 1 : b}},
                   second = {ElementType::TRIANGLE, 0, 2, {other ? a : a + 1, b + 1, b}};
       mesh.elements.push_back(first);
@@ -68,13 +68,16 @@ double energy(const Mesh &mesh, double nu, const std::function<Place(const Place
   double sum = 0.0;
   for (const auto &e : mesh.elements) {
     if (e.type != ElementType::PATCH) continue;
-    double X[6][3], x[6][3], f[6][3] = {{0.0}};
+    double X[PATCH_NODES][3], x[PATCH_NODES][3], f[PATCH_NODES][3] = {{0.0}};
     places(mesh, e, same, X);
-    places(mesh, e, motion, x);
-    bool has[3];
-    for (int k = 0; k < 3; k++) has[k] = e.node[3 + k] != e.node[0];
+    bool has[PATCH_NODES - 3];
+    for (int k = 3; k < PATCH_NODES; k++) has[k - 3] = e.node[k] != e.node[0];
+    int slots[PATCH_NODES];
     BentTriangle bent;
-    bent.define(X, has);
+    bent.define(X, has, slots);
+    MeshElement own = e;
+    for (int k = 0; k < bent.n; k++) own.node[k] = e.node[slots[k]];
+    places(mesh, own, motion, x);
     sum += bent.bend(1.0, nu, x, f);
   }
   return sum;
@@ -89,79 +92,150 @@ Place turned(const Place &x)
 
 }    // namespace
 
-// a square that is rolled to a cylinder of radius 2, along and across the mesh: D/2 k^2 per area, whatever Poisson's ratio. The rims, which are free,
-// have no curvature across themselves, so that the error is of the size of a triangle
+// a square that is rolled to a cylinder of radius 2, along and across the mesh: D/2 k^2 per area, whatever Poisson's ratio, on regular and on
+// irregular meshes with diagonals that change direction. Chords are shorter than arcs, by second order
 TEST(Bending, Cylinders)
 {
   const double k = 0.5;
-  for (const int axis : {0, 1}) {
-    const auto roll = [&](const Place &x) {
-      Place y = x;
-      y[axis] = std::sin(k * x[axis]) / k;
-      y[2] = (1.0 - std::cos(k * x[axis])) / k;
-      return turned(y);
-    };
-    const auto error = [&](int n, double disorder) {
-      return std::fabs(energy(sheet(n, disorder), 0.3, roll) / (0.5 * k * k) - 1.0);
-    };
-    const double coarse = error(16, 0.0), fine = error(32, 0.0);
-    EXPECT_LT(fine, 0.05) << axis;
-    EXPECT_LT(fine, 0.55 * coarse) << axis;
-    EXPECT_LT(error(32, 0.15), 0.1) << axis;    // does not converge, see the manual
-    for (const double disorder : {0.0, 0.15})
+  for (const int axis : {0, 1})
+    for (const double disorder : {0.0, 0.15}) {
+      const auto roll = [&](const Place &x) {
+        Place y = x;
+        y[axis] = std::sin(k * x[axis]) / k;
+        y[2] = (1.0 - std::cos(k * x[axis])) / k;
+        return turned(y);
+      };
+      const auto error = [&](int n) {
+        return std::fabs(energy(sheet(n, disorder), 0.3, roll) / (0.5 * k * k) - 1.0);
+      };
+      const double fine = error(16);
+      EXPECT_LT(fine, 2e-3) << axis;
+      EXPECT_LT(fine, 0.3 * error(8)) << axis;
       EXPECT_NEAR(energy(sheet(8, disorder), 0.3, turned), 0.0, 1e-20);
-  }
+    }
 }
 
-// curvature along both axes and a saddle: D (1 + nu) k^2 and D (1 - nu) k^2
+// curvature along both axes, a saddle, and twist: D (1 + nu) k^2, D (1 - nu) k^2, and the latter, and what a plate between free rims does, exact also where nodes are
+// moved, and where diagonals change direction; with both, some nodes lie near a conic, and tell less
 TEST(Bending, PoissonsRatio)
 {
-  const double k = 1e-3, nu = 0.3;
-  for (const int sign : {1, -1}) {
-    const auto bend = [&](const Place &x) {
-      return turned({x[0], x[1], 0.5 * k * (x[0] * x[0] + sign * x[1] * x[1])});
-    };
-    const auto twist = [&](const Place &x) {
-      return turned({x[0], x[1], k * x[0] * x[1]});
-    };
-    const double exact = (1.0 + sign * nu) * k * k;
-    const double coarse = energy(sheet(20, 0.0), nu, bend) / exact - 1.0,
-                 fine = energy(sheet(40, 0.0), nu, bend) / exact - 1.0;
-    EXPECT_LT(std::fabs(fine), 0.06);
-    EXPECT_LT(std::fabs(fine), 0.6 * std::fabs(coarse));
-    if (sign < 0) EXPECT_NEAR(energy(sheet(40, 0.0), nu, twist) / exact, 1.0, 0.06);
-  }
+  const double k = 1e-6, nu = 0.3;
+  const struct {
+    double xx, yy, xy;
+  } cases[] = {{1, 1, 0}, {1, -1, 0}, {0, 0, 1}, {1, -nu, 0}, {1, 0, 0}, {0.4, -0.3, 0.8}};
+  for (const auto &c : cases)
+    for (const bool alternate : {false, true})
+      for (const double disorder : {0.0, 0.15}) {
+        const auto bend = [&](const Place &x) {
+          return turned(
+              {x[0], x[1],
+               0.5 * k * (c.xx * x[0] * x[0] + c.yy * x[1] * x[1]) + k * c.xy * x[0] * x[1]});
+        };
+        const double exact = 0.5 * k * k *
+            (c.xx * c.xx + c.yy * c.yy + 2.0 * nu * c.xx * c.yy + 2.0 * (1.0 - nu) * c.xy * c.xy);
+        EXPECT_NEAR(energy(sheet(6, disorder, alternate), nu, bend) / exact, 1.0,
+                    alternate && disorder > 0.0 ? 2e-4 : 1e-8)
+            << c.xx << " " << c.xy;
+      }
 }
 
-// forces are minus the gradient of the energy, of a patch that is curved at rest, one without a neighbor, and of lines
+// a plate one square wide, whose nodes do not tell how it bends across, has no moment there, so that its stiffness is E I, not D
+TEST(Bending, NarrowStrip)
+{
+  const double k = 1e-6, nu = 0.3;
+  const auto of_length = [&](int n) {
+    Mesh mesh;
+    for (int i = 0; i <= n; i++)
+      for (int j = 0; j < 2; j++) mesh.nodes.push_back({(double) i, (double) j, 0.0});
+    for (int i = 0; i < 2 * n; i += 2) {
+      mesh.elements.push_back({ElementType::TRIANGLE, 0, 1, {i, i + 2, i + 3}});
+      mesh.elements.push_back({ElementType::TRIANGLE, 0, 2, {i, i + 3, i + 1}});
+    }
+    mesh.add_bending();
+    return energy(mesh, nu, [&](const Place &x) {
+      return turned({x[0], x[1], 0.5 * k * x[0] * x[0]});
+    });
+  };
+  EXPECT_NEAR((of_length(10) - of_length(6)) / (0.5 * k * k * (1.0 - nu * nu) * 4.0), 1.0, 1e-6);
+}
+
+// beyond a crease is another surface: what stretches that bends no triangle that has no edge there
+TEST(Bending, Creases)
+{
+  Mesh mesh = sheet(8, 0.0);
+  for (auto &x : mesh.nodes)
+    if (x[0] > 0.5) x = {0.5, x[1], x[0] - 0.5};
+  double near = 0.0, far = 0.0;
+  for (const auto &e : mesh.elements) {
+    int flat = 0, at = 0;
+    for (int k = 0; k < 3; k++) {
+      flat += mesh.nodes[e.node[k]][2] == 0.0;
+      at += mesh.nodes[e.node[k]][0] == 0.5;
+    }
+    if (e.type != ElementType::PATCH || flat < 3) continue;
+    Mesh one;
+    one.nodes = mesh.nodes;
+    one.elements.push_back(e);
+    (at == 2 ? near : far) += energy(one, 0.3, [](const Place &x) {
+      return Place{x[0], x[1], 1.1 * x[2]};
+    });
+  }
+  EXPECT_GT(near, 1e-3);
+  EXPECT_LT(far, 1e-28);
+}
+
+// forces are minus the gradient of the energy, of a patch that is curved at rest, with rims of which slopes are known and without, and of lines
 TEST(Bending, ForcesAreTheGradientOfEnergy)
 {
-  const double X[6][3] = {{0, 0, 0},     {1, 0.1, 0},      {0.2, 1, 0.1},
-                          {1.1, 1, 0.3}, {-0.7, 0.6, 0.2}, {0.6, -0.8, -0.1}};
-  for (const bool full : {true, false}) {
-    const bool has[3] = {true, full, true};
+  const double X[PATCH_NODES][3] = {{0, 0, 0},         {1, 0.1, 0},        {0.2, 1, 0.1},
+                                    {1.1, 1, 0.3},     {-0.7, 0.6, 0.2},   {0.6, -0.8, -0.1},
+                                    {1.9, 0.4, 0.2},   {0.9, 1.8, 0.3},    {-0.6, 1.5, 0.4},
+                                    {-1.1, -0.4, 0.1}, {-0.4, -0.9, -0.1}, {1.5, -0.7, -0.2}};
+  const struct {
+    std::array<bool, 9> has;
+    int nodes, nfree;
+  } cases[] = {{{1, 1, 1, 1, 1, 1, 1, 1, 1}, 12, 0},
+               {{1, 0, 1, 1, 1, 0, 0, 1, 1}, 9, 0},
+               {{1, 0, 1, 0, 0, 0, 0, 0, 0}, 5, 1},
+               {{1, 0, 0, 0, 0, 0, 0, 0, 0}, 4, 2},
+               {{0, 0, 0, 0, 0, 0, 0, 0, 0}, 3, 2}};
+  for (const auto &c : cases) {
     BentTriangle bent;
-    bent.define(X, has);
-    double x[6][3], f[6][3] = {{0.0}}, none[6][3], total[3] = {0.0};
-    EXPECT_NEAR(bent.bend(1.0, 0.3, X, f), 0.0, 1e-28);
-    for (int k = 0; k < 6; k++)
+    int slots[PATCH_NODES];
+    bent.define(X, c.has.data(), slots);
+    EXPECT_EQ(bent.n, c.nodes);
+    EXPECT_EQ(bent.nfree, c.nfree);
+    double x[PATCH_NODES][3], f[PATCH_NODES][3] = {{0.0}}, none[PATCH_NODES][3], total[3] = {0.0},
+                              turn[3] = {0.0};
+    for (int k = 0; k < bent.n; k++) std::copy_n(X[slots[k]], 3, x[k]);
+    EXPECT_NEAR(bent.bend(1.0, 0.3, x, f), 0.0, 1e-28);
+    for (int k = 0; k < bent.n; k++)
       for (int d = 0; d < 3; d++) {
-        x[k][d] = X[k][d] + 0.2 * std::sin(3.0 * k + d);
+        x[k][d] += 0.2 * std::sin(3.0 * slots[k] + d);
         f[k][d] = 0.0;
       }
-    bent.bend(2.0, 0.3, x, f);
-    for (int k = 0; k < 6; k++)
+    const double energy = bent.bend(2.0, 0.3, x, f);
+    if (c.nodes > 3)
+      EXPECT_GT(energy, 1e-3);
+    else
+      EXPECT_EQ(energy, 0.0);
+    for (int k = 0; k < bent.n; k++) {
+      double torque[3];
+      cross(x[k], f[k], torque);
       for (int d = 0; d < 3; d++) {
         total[d] += f[k][d];
+        turn[d] += torque[d];
         double side[2];
         for (int s = 0; s < 2; s++) {
           x[k][d] += s ? 2e-6 : -1e-6;
           side[s] = bent.bend(2.0, 0.3, x, none);
         }
         x[k][d] -= 1e-6;
-        EXPECT_NEAR(f[k][d], -(side[1] - side[0]) / 2e-6, 1e-7);
+        EXPECT_NEAR(f[k][d], -(side[1] - side[0]) / 2e-6, 1e-6);
       }
-    for (const double sum : total) EXPECT_NEAR(sum, 0.0, 1e-14);
+    }
+    for (const double sum : total) EXPECT_NEAR(sum, 0.0, 1e-13);
+    for (const double sum : turn) EXPECT_NEAR(sum, 0.0, 1e-13);
   }
   for (const int dim : {2, 3}) {
     double line[3][3] = {{0, 0, 0}, {1, 0.2, 0}, {2.2, 0.44, 0}}, f[3][3] = {{0.0}}, none[3][3];

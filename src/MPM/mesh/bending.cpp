@@ -32,19 +32,6 @@ double norm(const double *a)
   return std::sqrt(dot(a, a));
 }
 
-/** Gradients of the linear functions of a triangle in the plane; returns its area. */
-double plane_gradients(const double (*p)[2], double (*g)[2])
-{
-  const double twice =
-      (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
-  for (int k = 0; k < 3; k++) {
-    const double *const a = p[(k + 1) % 3], *const b = p[(k + 2) % 3];
-    g[k][0] = (a[1] - b[1]) / twice;
-    g[k][1] = (b[0] - a[0]) / twice;
-  }
-  return 0.5 * twice;
-}
-
 /** Unit normal of the first three nodes, and with g also the gradients of their functions; returns the area. */
 double normal_of(const double (*x)[3], double *n, double (*g)[3] = nullptr)
 {
@@ -65,90 +52,59 @@ double normal_of(const double (*x)[3], double *n, double (*g)[3] = nullptr)
 
 }    // namespace
 
-/* ----------------------------------------------------------------------
-   With the outward normal m_i and length l_i of edge i, and the mean of the gradients on its sides, the theorem of Gauss gives
-   b A = sum_i l_i m_i x (grad_i + grad)/2
-------------------------------------------------------------------------- */
-
-void BentTriangle::define(const double (*X)[3], const bool *has)
+/** Take the curvature across rims without moment that makes it none: the energy is least for that. */
+void BentTriangle::relax(double nu, double *change) const
 {
-  std::fill_n(h[0], 18, 0.0);
-  double axis[2][3], n[3];
-  area = normal_of(X, n);
-  difference(X[1], X[0], axis[0]);
-  const double first = norm(axis[0]);
-  for (double &c : axis[0]) c /= first;
-  cross(n, axis[0], axis[1]);
-  double p[3][2], own[3][2];
-  for (int k = 0; k < 3; k++) {
-    double from[3];
-    difference(X[k], X[0], from);
-    for (int a = 0; a < 2; a++) p[k][a] = dot(from, axis[a]);
+  double M[2] = {0.0, 0.0}, coupling = 0.0;
+  for (int r = 0; r < nfree; r++) {
+    const double xx = m[r][0] * m[r][0], yy = m[r][1] * m[r][1], xy = m[r][0] * m[r][1];
+    M[r] =
+        (xx + nu * yy) * change[0] + (yy + nu * xx) * change[1] + 2.0 * (1.0 - nu) * xy * change[2];
   }
-  plane_gradients(p, own);
-  for (int i = 0; i < 3; i++) {
-    if (!has[i]) continue;
-    const int j = (i + 1) % 3, k = (i + 2) % 3;    // of the edge
-    double edge[3], other[3];
-    difference(X[k], X[j], edge);
-    difference(X[3 + i], X[j], other);
-    const double l = norm(edge), along = dot(other, edge) / l,
-                 away = std::sqrt(std::max(0.0, dot(other, other) - along * along));
-    const double u[2] = {(p[k][0] - p[j][0]) / l, (p[k][1] - p[j][1]) / l}, m[2] = {u[1], -u[0]};
-    const double unfolded[3][2] = {
-        {p[k][0], p[k][1]},
-        {p[j][0], p[j][1]},
-        {p[j][0] + along * u[0] + away * m[0], p[j][1] + along * u[1] + away * m[1]}};
-    double g[3][2];
-    plane_gradients(unfolded, g);
-    const int node[3] = {k, j, 3 + i};
-    const double factor = 0.5 * l / area;
-    const auto add = [&](int at, double sign, const double *slope) {
-      h[at][0] += sign * factor * m[0] * slope[0];
-      h[at][1] += sign * factor * m[1] * slope[1];
-      h[at][2] += sign * factor * 0.5 * (m[0] * slope[1] + m[1] * slope[0]);
-    };
-    for (int c = 0; c < 3; c++) {
-      add(node[c], 1.0, g[c]);
-      add(c, -1.0, own[c]);
-    }
+  if (nfree == 2) {
+    const double c = m[0][0] * m[1][0] + m[0][1] * m[1][1];
+    coupling = c * c + nu * (1.0 - c * c);
   }
-  for (int c = 0; c < 3; c++) {
-    rest[c] = 0.0;
-    for (int k = 0; k < 6; k++) rest[c] += h[k][c] * dot(X[k], n);
+  const double factor = 1.0 / (1.0 - coupling * coupling);
+  for (int r = 0; r < nfree; r++) {
+    const double k = factor * (M[r] - coupling * M[1 - r]);
+    change[0] -= k * m[r][0] * m[r][0];
+    change[1] -= k * m[r][1] * m[r][1];
+    change[2] -= k * m[r][0] * m[r][1];
   }
 }
 
 double BentTriangle::bend(double D, double nu, const double (*x)[3], double (*f)[3]) const
 {
-  double n[3], g[3][3], B[3][3] = {{0.0}}, change[3];
-  normal_of(x, n, g);
+  double normal[3], g[3][3], B[3][3] = {{0.0}}, change[3];
+  normal_of(x, normal, g);
   for (int c = 0; c < 3; c++) {
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < n; k++)
       for (int d = 0; d < 3; d++) B[c][d] += h[k][c] * x[k][d];
-    change[c] = dot(B[c], n) - rest[c];
+    change[c] = dot(B[c], normal) - rest[c];
   }
+  if (nfree) relax(nu, change);
   const double moment[3] = {D * (change[0] + nu * change[1]), D * (change[1] + nu * change[0]),
                             2.0 * D * (1.0 - nu) * change[2]};
-  for (int k = 0; k < 6; k++) {
+  for (int k = 0; k < n; k++) {
     double factor = 0.0;
     for (int c = 0; c < 3; c++) {
       factor += moment[c] * h[k][c];
       if (k < 3) factor -= moment[c] * dot(B[c], g[k]);    // turns the normal
     }
-    for (int d = 0; d < 3; d++) f[k][d] -= area * factor * n[d];
+    for (int d = 0; d < 3; d++) f[k][d] -= area * factor * normal[d];
   }
   return 0.5 * area * (moment[0] * change[0] + moment[1] * change[1] + moment[2] * change[2]);
 }
 
 void BentTriangle::stiffness_sums(double nu, double *sum) const
 {
-  double size[6], all = 0.0;
-  for (int k = 0; k < 6; k++) {
+  double size[PATCH_NODES], all = 0.0;
+  for (int k = 0; k < n; k++) {
     size[k] = std::sqrt(h[k][0] * h[k][0] + h[k][1] * h[k][1] + 2.0 * h[k][2] * h[k][2]);
     all += size[k];
   }
-  for (int k = 0; k < 6; k++) sum[k] = (1.0 + std::fabs(nu)) * area * size[k] * all;
+  for (int k = 0; k < n; k++) sum[k] = (1.0 + std::fabs(nu)) * area * size[k] * all;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -236,11 +192,23 @@ void Mesh::add_bending()
     if (element.type == ElementType::LINE) continue;
     MeshElement patch = element;
     patch.type = ElementType::PATCH;
+    std::fill(patch.node + 3, patch.node + PATCH_NODES, patch.node[0]);
+    // node across the edge of a triangle, node 0 if there is none
+    const auto across = [&](std::size_t from, int a, int b, std::size_t *to = nullptr) {
+      for (const auto &[other, opposite] : rims[std::minmax(a, b)])
+        if (other != from) {
+          if (to) *to = other;
+          return elements[other].node[opposite];
+        }
+      return patch.node[0];
+    };
     for (int k = 0; k < 3; k++) {
-      patch.node[3 + k] = patch.node[0];
-      const auto &parts = rims[std::minmax(element.node[(k + 1) % 3], element.node[(k + 2) % 3])];
-      for (const auto &[other, opposite] : parts)
-        if (other != e) patch.node[3 + k] = elements[other].node[opposite];
+      const int a = element.node[(k + 1) % 3], b = element.node[(k + 2) % 3];
+      std::size_t next = e;
+      patch.node[3 + k] = across(e, a, b, &next);
+      if (next == e) continue;
+      patch.node[6 + 2 * k] = across(next, a, patch.node[3 + k]);
+      patch.node[7 + 2 * k] = across(next, patch.node[3 + k], b);
     }
     elements.push_back(patch);
   }

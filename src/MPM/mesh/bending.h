@@ -13,26 +13,39 @@
 
 namespace MPM_NS {
 
-/** Curvature of a triangle by those next to it: the change of the normal along each axis is the mean, over the edges, of what the triangles
- *  on the other side have, unfolded to the plane of this one (basic shell triangle: E. Onate, F. Zarate, Int. J. Numer. Methods Eng. 47
- *  (2000) 557). With coefficients h_k it is b = n . sum_k h_k x_k, where n is the present normal, which is zero for a plane, and does not
- *  change by rotations. Nodes are 0 1 2 of the triangle, and 3 4 5 of its neighbors across the edges opposite to these; an edge
- *  without a neighbor is free, and node 0 takes the place of its node. */
+/** Nodes of a triangle and of those around it: 0 1 2 of the triangle, 3 + i of its neighbor across the edge opposite to node i, which goes from
+ *  i + 1 to i + 2, and 6 + 2i and 7 + 2i of the neighbors of that one, across its edges from i + 1 to 3 + i and from 3 + i to i + 2. */
+constexpr int PATCH_NODES = 12;
+
+/** Curvature of a triangle from slopes across its edges, of which triangles on both sides have the same: the theorem of Gauss gives
+ *  b A = sum_i l_i m_i x slope_i, with the length l_i and the outward normal m_i of edge i (Morley's triangle: L.S.D. Morley, Aeronaut. Q. 19
+ *  (1968) 149, without slopes as unknowns). A slope is the mean of those of the two triangles at the edge (basic shell triangle: E. Onate, F.
+ *  Zarate, Int. J. Numer. Methods Eng. 47 (2000) 557) plus the smallest sum over the nodes around that makes it exact for
+ *  all surfaces of second order; at a rim it is that of the triangle, plus such a sum. Triangles are unfolded to the plane of this one for that. Where no sum
+ *  is exact at a rim, there is no moment across it. With coefficients h_k the curvature is b = n . sum_k h_k x_k, where n is the present normal, which is zero for a
+ *  plane, and does not change by rotations. */
 struct BentTriangle {
+  int n;        ///< nodes with a part
+  int nfree;    ///< rims without moment
   double h
-      [6]
+      [PATCH_NODES]
       [3];    ///< coefficients of curvatures xx, yy, xy along axes in the plane of the triangle [1/length^2]
+  double m[2][2];    ///< normals of those rims
   double rest[3];    ///< curvatures without moment
   double area;
 
-  /** From the positions without moment; has: is there a neighbor across the edge opposite to node k? */
-  void define(const double (*X)[3], const bool *has);
+  /** From the positions X[PATCH_NODES] without moment; has: is there a node 3, 4 ... 11? slots: which nodes have a part, the first three of them those of
+   *  the triangle; these are the nodes of what follows. Returns the largest error of a slope inside, in parts of what the curvature makes of it over the size of the patch. */
+  double define(const double (*X)[3], const bool *has, int *slots);
 
-  /** Energy of bending of a plate with stiffness D and Poisson's ratio nu; adds forces on the nodes to f[6]. */
+  /** Energy of bending of a plate with stiffness D and Poisson's ratio nu; adds forces on the nodes to f[n]. */
   double bend(double D, double nu, const double (*x)[3], double (*f)[3]) const;
 
   /** Bounds of the sums, for each node, of the absolute second derivatives of the energy, without moment and for D = 1. */
   void stiffness_sums(double nu, double *sum) const;
+
+ private:
+  void relax(double nu, double *change) const;
 };
 
 /** Bending of two lines that meet: the angle between them, over their mean length (M. Bergou et al., ACM Trans. Graph. 27 (2008)

@@ -43,7 +43,7 @@ constexpr int element_nodes(ElementType t)
     case ElementType::CORNER:
       return 3;
     case ElementType::PATCH:
-      return 6;
+      return 12;
     case ElementType::HEXAHEDRON:
       return 8;
     default:
@@ -61,7 +61,7 @@ struct MeshElement {
   ElementType type;
   int physical;     ///< tag of its physical group, 0 for none (the first one of several)
   int64_t label;    ///< its number in the file
-  int node[8];      ///< places in Mesh::nodes
+  int node[12];     ///< places in Mesh::nodes
 };
 
 /** Elements that have a name together. */

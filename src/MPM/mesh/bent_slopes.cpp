@@ -1,0 +1,263 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Slopes across the edges of a triangle, and the curvature that follows from them.
+
+#include "math/matrix.h"
+#include "mesh/bending.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace MPM_NS;
+
+namespace {
+
+// cosine of the angle between triangles that are not of one smooth surface; error of slopes that needs no correction; eigenvalue below which nodes do not
+// tell surfaces apart
+constexpr double CREASE = 0.7, EXACT = 1.0e-6, DEGENERATE = 0.005;
+
+struct Place {
+  double x, y;
+};
+
+double length(const Place &a, const Place &b)
+{
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+/** Gradients of the linear functions of a triangle in the plane, in the direction m. */
+void slopes_of(const Place *p, const Place &m, double *slope)
+{
+  const double twice =
+      (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+  for (int k = 0; k < 3; k++) {
+    const Place &a = p[(k + 1) % 3], &b = p[(k + 2) % 3];
+    slope[k] = (m.x * (a.y - b.y) + m.y * (b.x - a.x)) / twice;
+  }
+}
+
+/** Unit normal of a triangle. */
+void normal_of(const double *a, const double *b, const double *c, double *n)
+{
+  double u[3], v[3];
+  for (int d = 0; d < 3; d++) {
+    u[d] = b[d] - a[d];
+    v[d] = c[d] - a[d];
+  }
+  cross(u, v, n);
+  const double size = std::sqrt(dot(n, n));
+  for (int d = 0; d < 3; d++) n[d] /= size;
+}
+
+/** Eigenvalues w and vectors v[.][k] of a symmetric matrix (Jacobi's rotations). */
+void eigenvectors(double (*a)[3], double *w, double (*v)[3])
+{
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) v[i][j] = i == j;
+  for (int sweep = 0; sweep < 20; sweep++)
+    for (int p = 0; p < 2; p++)
+      for (int q = p + 1; q < 3; q++) {
+        if (a[p][q] == 0.0) continue;
+        const double angle = 0.5 * std::atan2(2.0 * a[p][q], a[q][q] - a[p][p]),
+                     c = std::cos(angle), s = std::sin(angle);
+        const auto turn = [&](double &first, double &second) {
+          const double old = first;
+          first = c * old - s * second;
+          second = s * old + c * second;
+        };
+        for (int k = 0; k < 3; k++) turn(a[k][p], a[k][q]);
+        for (int k = 0; k < 3; k++) turn(a[p][k], a[q][k]);
+        for (int k = 0; k < 3; k++) turn(v[k][p], v[k][q]);
+        a[p][q] = a[q][p] = 0.0;
+      }
+  for (int k = 0; k < 3; k++) w[k] = a[k][k];
+}
+
+/** Nodes of a patch in the plane of its triangle. */
+struct Unfolded {
+  Place p[PATCH_NODES] = {};
+  bool has[PATCH_NODES], smooth[PATCH_NODES] = {true, true, true};
+  const double (*X)[3];
+
+  Unfolded(const double (*X)[3], const bool *neighbors);
+
+ private:
+  void unfold(int a, int b, int c, const double *n, double *normal);
+};
+
+/** Node c of a triangle beyond the edge from a to b, which has the rest on its left, with the normal n. */
+void Unfolded::unfold(int a, int b, int c, const double *n, double *normal)
+{
+  double edge[3], other[3];
+  for (int d = 0; d < 3; d++) {
+    edge[d] = X[b][d] - X[a][d];
+    other[d] = X[c][d] - X[a][d];
+  }
+  const double l = std::sqrt(dot(edge, edge)), along = dot(other, edge) / l,
+               away = std::sqrt(std::max(0.0, dot(other, other) - along * along)),
+               x = (p[b].x - p[a].x) / l, y = (p[b].y - p[a].y) / l;
+  p[c] = {p[a].x + along * x + away * y, p[a].y + along * y - away * x};
+  normal_of(X[b], X[a], X[c], normal);
+  smooth[c] = dot(n, normal) > CREASE;
+}
+
+Unfolded::Unfolded(const double (*places)[3], const bool *neighbors) : X(places)
+{
+  double n[3], first[3], second[3], edge[3], across[3];
+  for (int k = 0; k < PATCH_NODES; k++) has[k] = k < 3 || neighbors[k - 3];
+  normal_of(X[0], X[1], X[2], n);
+  for (int d = 0; d < 3; d++) edge[d] = X[1][d] - X[0][d];
+  const double l = std::sqrt(dot(edge, edge));
+  cross(n, edge, across);
+  for (int k = 1; k < 3; k++) {
+    double from[3];
+    for (int d = 0; d < 3; d++) from[d] = X[k][d] - X[0][d];
+    p[k] = {dot(from, edge) / l, dot(from, across) / l};
+  }
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3, beyond[2] = {6 + 2 * i, 7 + 2 * i};
+    if (!has[3 + i]) continue;
+    unfold(j, k, 3 + i, n, first);
+    if (has[beyond[0]]) unfold(j, 3 + i, beyond[0], first, second);
+    if (has[beyond[1]]) unfold(3 + i, k, beyond[1], first, second);
+    for (const int b : beyond) smooth[b] = smooth[b] && smooth[3 + i];
+  }
+}
+
+/** The smallest change of the sum of values at nodes that makes the slope along y at 0 exact for all surfaces of second order, and stays exact for planes. Returns
+ *  the error that is left. */
+double correct(const Place *at, const int *node, int n, double *c)
+{
+  double size[2] = {0.0, 0.0};
+  for (int k = 0; k < n; k++) {
+    size[0] += at[k].x * at[k].x / n;
+    size[1] += at[k].y * at[k].y / n;
+  }
+  for (double &s : size) s = std::sqrt(s);
+
+  // values of 1 x y, made orthogonal, and of xx xy yy, without their parts of these
+
+  double P[6][PATCH_NODES], error[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < n; k++) {
+    const double x = at[k].x / size[0], y = at[k].y / size[1];
+    const double values[6] = {1.0, x, y, x * x, x * y, y * y};
+    for (int f = 0; f < 6; f++) P[f][k] = values[f];
+    for (int f = 0; f < 3; f++) error[f] -= size[1] * c[node[k]] * P[3 + f][k];
+  }
+  const auto largest = [&] {
+    return std::max({std::fabs(error[0]), std::fabs(error[1]), std::fabs(error[2])});
+  };
+  if (largest() < EXACT || n < 6) return largest() < EXACT ? 0.0 : largest();
+  const auto product = [&](const double *a, const double *b) {
+    double sum = 0.0;
+    for (int k = 0; k < n; k++) sum += a[k] * b[k];
+    return sum;
+  };
+  for (int f = 0; f < 6; f++) {
+    for (int again = 0; again < 2; again++)
+      for (int g = 0; g < std::min(f, 3); g++) {
+        const double part = product(P[f], P[g]);
+        for (int k = 0; k < n; k++) P[f][k] -= part * P[g][k];
+      }
+    const double inverse = f < 3 ? 1.0 / std::sqrt(product(P[f], P[f])) : 1.0;
+    for (int k = 0; k < n; k++) P[f][k] *= inverse;
+  }
+
+  double G[3][3], w[3], v[3][3];
+  for (int f = 0; f < 3; f++)
+    for (int g = 0; g < 3; g++) G[f][g] = product(P[3 + f], P[3 + g]);
+  eigenvectors(G, w, v);
+  double left = 0.0;
+  for (int e = 0; e < 3; e++) {
+    const double part = v[0][e] * error[0] + v[1][e] * error[1] + v[2][e] * error[2];
+    if (w[e] < DEGENERATE) {
+      left = std::max(left, std::fabs(part));
+      continue;
+    }
+    for (int k = 0; k < n; k++)
+      for (int f = 0; f < 3; f++) c[node[k]] += part / (w[e] * size[1]) * v[f][e] * P[3 + f][k];
+  }
+  return left < EXACT ? 0.0 : left;
+}
+
+}    // namespace
+
+/* ---------------------------------------------------------------------- */
+
+double BentTriangle::define(const double (*X)[3], const bool *neighbors, int *slots)
+{
+  const Unfolded all(X, neighbors);
+  const Place *const p = all.p;
+  double coefficients[PATCH_NODES][3] = {{0.0}}, worst = 0.0;
+  area = 0.5 * (p[1].x * p[2].y - p[2].x * p[1].y);
+  nfree = 0;
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double l = length(p[j], p[k]);
+    const Place u = {(p[k].x - p[j].x) / l, (p[k].y - p[j].y) / l}, normal = {u.y, -u.x};
+    double own[3], c[PATCH_NODES] = {0.0};
+    slopes_of(p, normal, own);
+    const bool inside = all.has[3 + i];
+    for (int a = 0; a < 3; a++) c[a] = (inside ? 0.5 : 1.0) * own[a];
+    if (inside) {
+      const int corners[3] = {k, j, 3 + i};
+      const Place other[3] = {p[k], p[j], p[3 + i]};
+      double slope[3];
+      slopes_of(other, normal, slope);
+      for (int a = 0; a < 3; a++) c[corners[a]] += 0.5 * slope[a];
+    }
+
+    // the nodes of triangles at both sides of the edge and of their neighbors, and at a rim of those beyond, without creases
+
+    int node[PATCH_NODES], nnode = 0;
+    Place at[PATCH_NODES];
+    const auto use = [&](int a) {
+      if (!all.has[a] || !all.smooth[a]) return;
+      const double x = p[a].x - 0.5 * (p[j].x + p[k].x), y = p[a].y - 0.5 * (p[j].y + p[k].y);
+      at[nnode] = {x * u.x + y * u.y, x * normal.x + y * normal.y};
+      node[nnode++] = a;
+    };
+    for (int a = 0; a < 6; a++) use(a);
+    for (int a = 6; a < PATCH_NODES; a++)
+      if (!inside || (a - 6) / 2 == i) use(a);
+    if (!inside || all.smooth[3 + i]) {
+      const double error = correct(at, node, nnode, c);
+      if (inside)
+        worst = std::max(worst, error);
+      else if (error > 0.0) {
+        if (nfree < 2) {
+          m[nfree][0] = normal.x;
+          m[nfree++][1] = normal.y;
+        }
+        continue;
+      }
+    }
+    for (int a = 0; a < 3; a++) c[a] -= own[a];
+    for (int a = 0; a < PATCH_NODES; a++) {
+      coefficients[a][0] += l / area * normal.x * normal.x * c[a];
+      coefficients[a][1] += l / area * normal.y * normal.y * c[a];
+      coefficients[a][2] += l / area * normal.x * normal.y * c[a];
+    }
+  }
+
+  n = 0;
+  for (int a = 0; a < PATCH_NODES; a++) {
+    const double *const from = coefficients[a];
+    if (a >= 3 && from[0] == 0.0 && from[1] == 0.0 && from[2] == 0.0) continue;
+    std::copy_n(from, 3, h[n]);
+    slots[n++] = a;
+  }
+  double normal[3];
+  normal_of(X[0], X[1], X[2], normal);
+  for (int c = 0; c < 3; c++) {
+    rest[c] = 0.0;
+    for (int k = 0; k < n; k++) rest[c] += h[k][c] * dot(X[slots[k]], normal);
+  }
+  return worst;
+}
