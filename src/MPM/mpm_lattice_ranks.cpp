@@ -18,6 +18,16 @@
 
 using namespace LAMMPS_NS;
 
+int MPMLatticeRanks::number() const
+{
+  return lmp->comm->nprocs;
+}
+
+int MPMLatticeRanks::me() const
+{
+  return lmp->comm->me;
+}
+
 void MPMLatticeRanks::sum(double *values, int width)
 {
   grid.fold_aliases(values, width, 0, width);

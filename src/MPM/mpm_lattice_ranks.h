@@ -23,6 +23,8 @@ class MPMLatticeRanks : public MPM_NS::LatticeRanks {
   {
   }
 
+  int number() const override;
+  int me() const override;
   void sum(double *values, int width) override;
   /** Stops with an error where it is more than an int can count. */
   const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) override;

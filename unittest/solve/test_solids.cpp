@@ -15,8 +15,13 @@
 
 #include <Eigen/Dense>
 
+#include <array>
+#include <condition_variable>
 #include <cstdlib>
 #include <limits>
+#include <mutex>
+#include <string>
+#include <thread>
 
 using namespace MPM_NS;
 
@@ -321,6 +326,117 @@ TEST(EnvelopeFactors, SolveLikeDenseOnes)
       A(n / 2, n / 2) = -1.0;
       EXPECT_FALSE(factors.compute(A.sparseView())) << isa << ' ' << n;
     }
+}
+
+/** Ranks of a LAMMPS that are threads: what they give is put together in their order. */
+struct Threads {
+  std::mutex mutex;
+  std::condition_variable all_have_come;
+  std::vector<std::string> given;
+  int count = 0, turn = 0;
+  explicit Threads(int n) : given(n) {}
+
+  void meet()
+  {
+    std::unique_lock<std::mutex> lock(mutex);
+    const int now = turn;
+    if (++count == (int) given.size()) {
+      count = 0;
+      turn++;
+      all_have_come.notify_all();
+    } else
+      all_have_come.wait(lock, [&] {
+        return turn != now;
+      });
+  }
+};
+
+struct ThreadRank : LatticeRanks {
+  Threads &team;
+  const int mine;
+  std::vector<char> all;
+  ThreadRank(Threads &team, int mine) : team(team), mine(mine) {}
+  int number() const override { return team.given.size(); }
+  int me() const override { return mine; }
+  void sum(double *, int) override {}
+  const std::vector<char> &gather_bytes(const void *of, std::size_t bytes) override
+  {
+    team.given[mine].assign(static_cast<const char *>(of), bytes);
+    team.meet();
+    all.clear();
+    for (const auto &text : team.given) all.insert(all.end(), text.begin(), text.end());
+    team.meet();
+    return all;
+  }
+};
+
+/** A matrix on a lattice of n by m points in pieces of so many columns, a shift apart from singular. */
+Eigen::SparseMatrix<double> springs(int n, int m, int piece)
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto join = [&](int a, int b, double k) {
+    for (const auto &[i, j, sign] :
+         {std::array<int, 3>{a, a, 1}, {b, b, 1}, {a, b, -1}, {b, a, -1}})
+      entries.emplace_back(i, j, sign * k);
+  };
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < m; j++) {
+      entries.emplace_back(i * m + j, i * m + j, 0.01);
+      if (j + 1 < m) join(i * m + j, i * m + j + 1, 1.0 + 0.5 * std::sin(i + 2.0 * j));
+      if (i + 1 < n && (i + 1) % piece) join(i * m + j, (i + 1) * m + (j + 1) % m, 1.0);
+    }
+  Eigen::SparseMatrix<double> A(n * m, n * m);
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
+// Halves that are eliminated towards the middle: the same on any number of ranks, bit by bit, each of which has a half of the factors, and
+// right in one piece, in pieces, and where hardly anything is in the halves.
+TEST(EnvelopeFactors, HalvesOnRanks)
+{
+  for (const auto &[n, m, piece] : {std::array<int, 3>{60, 9, 1000},
+                                    {60, 9, 7},
+                                    {40, 3, 1},
+                                    {1, 1, 1},
+                                    {2, 1, 5},
+                                    {25, 25, 30}}) {
+    const auto A = springs(n, m, piece);
+    Eigen::VectorXd b(n * m), x(n * m);
+    for (int k = 0; k < n * m; k++) b[k] = std::cos(3.0 * k);
+    EnvelopeFactors one(nullptr, 0);
+    ASSERT_TRUE(one.compute(A));
+    ASSERT_TRUE(one.has_halves());
+    one.solve(b.data(), x.data());
+    EXPECT_LT((A * x - b).norm(), 1e-13 * b.norm()) << n << ' ' << m << ' ' << piece;
+    auto other = A;
+    other.coeffRef(n * m / 2, n * m / 2) = -1.0;
+    EXPECT_FALSE(EnvelopeFactors(nullptr, 0).compute(other));
+    EXPECT_FALSE(EnvelopeFactors(nullptr, 1000000).compute(other));
+
+    for (const int nranks : {1, 2, 3}) {
+      Threads team(nranks);
+      std::vector<Eigen::VectorXd> of_ranks(nranks, b);
+      std::vector<double> bytes(nranks);
+      std::vector<char> good(nranks, 0);
+      std::vector<std::thread> threads;
+      for (int me = 0; me < nranks; me++)
+        threads.emplace_back([&, me] {
+          ThreadRank rank(team, me);
+          EnvelopeFactors factors(&rank, 0);
+          good[me] = factors.compute(A);
+          bytes[me] = factors.memory_usage();
+          // in place, and again
+          factors.solve(of_ranks[me].data(), of_ranks[me].data());
+          good[me] = good[me] && factors.compute_again(A) && !factors.compute_again(other);
+        });
+      for (auto &thread : threads) thread.join();
+      for (int me = 0; me < nranks; me++) {
+        EXPECT_TRUE(good[me]) << me << " of " << nranks;
+        EXPECT_EQ((of_ranks[me] - x).norm(), 0.0) << me << " of " << nranks;
+        if (nranks > 1 && n > 20) EXPECT_LT(bytes[me], 0.8 * one.memory_usage());
+      }
+    }
+  }
 }
 
 // Matrices that are not positive definite have factors with a shift, if they are not far from it.

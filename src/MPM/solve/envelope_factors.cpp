@@ -9,102 +9,153 @@
 #include "solve/envelope_factors.h"
 
 #include <algorithm>
-#include <cmath>
 
 using namespace MPM_NS;
 
-static constexpr int B = FACTOR_BLOCK, BB = B * B;
+static constexpr int B = FACTOR_BLOCK;
+
+/** So many places in whole blocks. */
+static int padded(int n)
+{
+  return (n + B - 1) / B * B;
+}
 
 /* ----------------------------------------------------------------------
    Unknowns in layers: those that are as many entries away from the first one. That is one that is far from another one
 ------------------------------------------------------------------------- */
 
-void EnvelopeFactors::put_in_order(const Sparse &A)
+void EnvelopeFactors::put_in_layers(const Sparse &A)
 {
   const int n = unknowns;
-  std::vector<int> queue;
+  queue.clear();
   queue.reserve(n);
-  number.assign(n, -1);
+  layer.assign(n, -1);
   // from a given one: the queue has all that are joined to it, in layers, behind those that it has already
   const auto visit = [&](int seed) {
     std::size_t next = queue.size();
     queue.push_back(seed);
-    number[seed] = 0;
+    layer[seed] = 0;
     for (; next < queue.size(); next++)
       for (Sparse::InnerIterator it(A, queue[next]); it; ++it)
-        if (const int to = (int) it.row(); number[to] < 0) {
-          number[to] = 0;
+        if (const int to = (int) it.row(); layer[to] < 0) {
+          layer[to] = layer[queue[next]] + 1;
           queue.push_back(to);
         }
   };
   for (int seed = 0; seed < n; seed++) {
-    if (number[seed] >= 0) continue;
+    if (layer[seed] >= 0) continue;
     const std::size_t begin = queue.size();
     int from = seed;
     for (int turn = 0; turn < 3; turn++) {
-      for (std::size_t k = begin; k < queue.size(); k++) number[queue[k]] = -1;
+      for (std::size_t k = begin; k < queue.size(); k++) layer[queue[k]] = -1;
       queue.resize(begin);
       visit(from);
       from = queue.back();
     }
   }
+}
+
+/** Places of unknowns in one piece. */
+void EnvelopeFactors::put_in_order()
+{
+  const int n = unknowns;
+  number.resize(n);
   // backwards, as the envelope then is smaller (A. George, Stanford report STAN-CS-71-208, 1971)
   for (int k = 0; k < n; k++) number[queue[k]] = n - 1 - k;
+  unused.clear();
+  for (int place = n; place < padded(n); place++) unused.push_back(place);
+  part[0] = part[1] = part[2] = padded(n);
 }
 
-/** The places of all blocks. */
-void EnvelopeFactors::find_envelope(const Sparse &A)
+/** Halves on both sides of the layer that has this one of the queue. Each is put in layers again, from the middle on, and backwards. */
+void EnvelopeFactors::cut(const Sparse &A, int at)
 {
-  const int rows = (unknowns + B - 1) / B;
-  first.resize(rows);
-  start.resize(rows + 1);
-  for (int i = 0; i < rows; i++) first[i] = i;
-  for (int c = 0; c < unknowns; c++)
-    for (Sparse::InnerIterator it(A, c); it; ++it) {
-      int &low = first[number[it.row()] / B];
-      low = std::min(low, number[c] / B);
-    }
-  start[0] = 0;
-  for (int i = 0; i < rows; i++) start[i + 1] = start[i] + (int64_t) BB * (i - first[i] + 1);
+  const int n = unknowns;
+  int low = at, high = at;
+  while (low > 0 && layer[queue[low - 1]] == layer[queue[at]]) low--;
+  while (high < n && layer[queue[high]] == layer[queue[at]]) high++;
+  enum { FREE = -1, MIDDLE = -2 };
+  number.assign(n, FREE);
+  for (int k = low; k < high; k++) number[queue[k]] = MIDDLE;
+  const int from[2] = {0, high}, to[2] = {low, n};
+  unused.clear();
+  int place = 0;
+  std::vector<int> list;
+  std::vector<char> mine(n), listed(n, 0);
+  for (int which = 0; which < 2; which++) {
+    std::fill(mine.begin(), mine.end(), 0);
+    for (int k = from[which]; k < to[which]; k++) mine[queue[k]] = 1;
+    list.clear();
+    const auto take = [&](int of) {
+      for (Sparse::InnerIterator it(A, of); it; ++it)
+        if (const int k = (int) it.row(); mine[k] && !listed[k]) {
+          listed[k] = 1;
+          list.push_back(k);
+        }
+    };
+    for (int k = low; k < high; k++) take(queue[k]);
+    for (std::size_t next = 0; next < list.size(); next++) take(list[next]);
+    // what is not joined to the middle
+    for (int k = from[which]; k < to[which]; k++)
+      if (!listed[queue[k]]) list.push_back(queue[k]);
+    for (std::size_t k = list.size(); k-- > 0;) number[list[k]] = place++;
+    for (; place % B; place++) unused.push_back(place);
+    part[which] = place;
+  }
+  for (int k = low; k < high; k++) number[queue[k]] = place++;
+  for (; place % B; place++) unused.push_back(place);
+  part[2] = place;
 }
 
-/** The entries of the matrix in the blocks; behind the last row, unity. */
-void EnvelopeFactors::fill(const Sparse &A)
+bool EnvelopeFactors::is_mine(int which) const
 {
-  const int rows = (int) first.size();
-  values.assign(start[rows], 0.0);
-  for (int c = 0; c < unknowns; c++)
-    for (Sparse::InnerIterator it(A, c); it; ++it) {
-      const int row = number[it.row()], column = number[c];
-      if (column / B > row / B) continue;
-      const int i = row / B;
-      values[start[i] + (int64_t) B * (column - B * first[i]) + row % B] = it.value();
-    }
-  for (int k = unknowns; k < B * rows; k++)
-    values[start[rows] - BB + (B + 1) * (int64_t) (k % B)] = 1.0;
+  return !has_halves() || !ranks || ranks->number() == 1 || ranks->me() == which;
 }
 
-/** The inverse of the factor L of A = L L^T, in place of A, columns; false: it has none. */
-bool EnvelopeFactors::factorize_block(double *A)
+/** The place in the envelope of a half, -1: it is in the other one. */
+int EnvelopeFactors::place_in(int which, int place) const
 {
-  double L[B][B];
-  for (int i = 0; i < B; i++)
-    for (int j = 0; j <= i; j++) {
-      double sum = A[B * j + i];
-      for (int k = 0; k < j; k++) sum -= L[i][k] * L[j][k];
-      if (i == j && !(sum > 0.0 && std::isfinite(sum))) return false;
-      L[i][j] = i == j ? std::sqrt(sum) : sum / L[j][j];
-    }
-  for (int c = 0; c < B; c++) {
-    double *const column = A + B * c;
-    for (int i = 0; i < c; i++) column[i] = 0.0;
-    for (int i = c; i < B; i++) {
-      double sum = i == c;
-      for (int k = c; k < i; k++) sum -= L[i][k] * column[k];
-      column[i] = sum / L[i][i];
+  const int begin = begin_of(which), end = part[which];
+  if (place >= part[1]) return place - part[1] + end - begin;
+  return place >= begin && place < end ? place - begin : -1;
+}
+
+void EnvelopeFactors::find_envelopes(const Sparse &A)
+{
+  const int between = (part[2] - part[1]) / B;
+  for (int which = 0; which < 2; which++) {
+    half[which].start(0, 0);
+    if (!is_mine(which)) continue;
+    half[which].start((part[which] - begin_of(which)) / B, between);
+    for (int c = 0; c < unknowns; c++) {
+      const int column = place_in(which, number[c]);
+      if (column < 0) continue;
+      for (Sparse::InnerIterator it(A, c); it; ++it)
+        if (const int row = place_in(which, number[it.row()]); row >= column)
+          half[which].reach(row, column);
     }
   }
-  return true;
+  middle.start(between, 0);
+  for (int i = 0; i < between; i++) middle.reach(B * i, 0);
+}
+
+/** The entries of the matrix in the envelopes; in places of no unknown, unity. */
+void EnvelopeFactors::fill(const Sparse &A)
+{
+  middle.clear();
+  for (int which = 0; which < 2; which++) half[which].clear();
+  const auto put = [&](int row, int column, double value) {
+    if (column / B > row / B) return;
+    if (column >= part[1]) {
+      middle.at(row - part[1], column - part[1]) = value;
+      return;
+    }
+    const int which = column >= part[0];
+    if (is_mine(which)) half[which].at(place_in(which, row), place_in(which, column)) = value;
+  };
+  for (int c = 0; c < unknowns; c++)
+    for (Sparse::InnerIterator it(A, c); it; ++it) put(number[it.row()], number[c], it.value());
+  for (const int place : unused) put(place, place, 1.0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -112,10 +163,14 @@ bool EnvelopeFactors::factorize_block(double *A)
 bool EnvelopeFactors::compute(const Sparse &A)
 {
   unknowns = (int) A.rows();
-  put_in_order(A);
-  find_envelope(A);
-  fill(A);
-  return factorize();
+  put_in_layers(A);
+  put_in_order();
+  find_envelopes(A);
+  if (half[0].count() > split) {
+    cut(A, std::max(0, unknowns - 1 - half[0].place_of_half()));
+    find_envelopes(A);
+  }
+  return compute_again(A);
 }
 
 bool EnvelopeFactors::compute_again(const Sparse &A)
@@ -124,61 +179,86 @@ bool EnvelopeFactors::compute_again(const Sparse &A)
   return factorize();
 }
 
+/** What all ranks have sent, in their order. */
+void EnvelopeFactors::gather()
+{
+  if (ranks)
+    ranks->gather(sent, of_ranks);
+  else
+    of_ranks = sent;
+}
+
 bool EnvelopeFactors::factorize()
 {
-  double S[BB];
-  for (int i = 0; i < (int) first.size(); i++) {
-    double *const row = values.data() + start[i];
-    for (int j = first[i]; j <= i; j++) {
-      double *const block = row + (int64_t) BB * (j - first[i]);
-      const double *const other = values.data() + start[j];
-      const int from = std::max(first[i], first[j]);
-      kernels.subtract(block, row + (int64_t) BB * (from - first[i]),
-                       other + (int64_t) BB * (from - first[j]), (int64_t) B * (j - from));
-      if (j == i) {
-        if (!factorize_block(block)) return false;
-      } else {
-        // times the transposed inverse of the block at the diagonal
-        for (int k = 0; k < BB; k++) S[k] = -block[k];
-        std::fill_n(block, BB, 0.0);
-        kernels.subtract(block, S, other + (int64_t) BB * (j - first[j]), B);
-      }
-    }
+  bool good = true;
+  for (int which = 0; which < 2; which++)
+    if (is_mine(which) && !half[which].factorize()) good = false;
+  if (!has_halves()) return good;
+  sent.clear();
+  for (int which = 0; which < 2; which++) {
+    if (!is_mine(which)) continue;
+    sent.push_back(good);
+    half[which].give_rest(sent);
   }
-  return true;
+  gather();
+  const double *of = of_ranks.data();
+  for (int which = 0; which < 2; which++) {
+    good = good && *of++ == 1.0;
+    middle.add(of);
+    of += middle.size();
+  }
+  return good && middle.factorize();
 }
 
 void EnvelopeFactors::solve(const double *b, double *x)
 {
-  const int rows = (int) first.size();
-  solution.assign((std::size_t) B * rows, 0.0);
+  solution.assign(part[2], 0.0);
   double *const y = solution.data();
   for (int k = 0; k < unknowns; k++) y[number[k]] = b[k];
-  double rest[B];
-  const auto diagonal = [this](int i) {
-    return values.data() + start[i + 1] - BB;
+  if (!has_halves()) {
+    half[0].solve_forward(y);
+    half[0].solve_backward(y);
+    for (int k = 0; k < unknowns; k++) x[k] = y[number[k]];
+    return;
+  }
+  const int between = part[2] - part[1];
+  const auto end_of = [this](int which) {
+    return part[which] - begin_of(which);
   };
-  for (int i = 0; i < rows; i++) {
-    double *const mine = y + B * i;
-    kernels.subtract_from_rows(mine, values.data() + start[i], y + B * first[i],
-                               (int64_t) B * (i - first[i]));
-    for (int k = 0; k < B; k++) rest[k] = -mine[k];
-    std::fill_n(mine, B, 0.0);
-    kernels.subtract_from_rows(mine, diagonal(i), rest, B);
+  sent.clear();
+  for (int which = 0; which < 2; which++) {
+    if (!is_mine(which)) continue;
+    auto &own = of_half[which];
+    own.assign(y + begin_of(which), y + part[which]);
+    own.resize(end_of(which) + between, 0.0);
+    half[which].solve_forward(own.data());
+    sent.insert(sent.end(), own.begin() + end_of(which), own.end());
   }
-  for (int i = rows - 1; i >= 0; i--) {
-    double *const mine = y + B * i;
-    for (int k = 0; k < B; k++) rest[k] = -mine[k];
-    std::fill_n(mine, B, 0.0);
-    kernels.subtract_from_columns(mine, diagonal(i), rest, B);
-    kernels.subtract_from_columns(y + B * first[i], values.data() + start[i], mine,
-                                  (int64_t) B * (i - first[i]));
+  gather();
+  double *const inner = y + part[1];
+  for (int which = 0; which < 2; which++)
+    for (int k = 0; k < between; k++) inner[k] += of_ranks[(std::size_t) between * which + k];
+  middle.solve_forward(inner);
+  middle.solve_backward(inner);
+  sent.clear();
+  for (int which = 0; which < 2; which++) {
+    if (!is_mine(which)) continue;
+    auto &own = of_half[which];
+    std::copy_n(inner, between, own.begin() + end_of(which));
+    half[which].solve_backward(own.data());
+    sent.insert(sent.end(), own.begin(), own.begin() + end_of(which));
   }
-  for (int k = 0; k < unknowns; k++) x[k] = y[number[k]];
+  gather();
+  for (int k = 0; k < unknowns; k++)
+    x[k] = number[k] < part[1] ? of_ranks[number[k]] : y[number[k]];
 }
 
 double EnvelopeFactors::memory_usage() const
 {
-  return (values.capacity() + solution.capacity()) * sizeof(double) +
-      start.capacity() * sizeof(int64_t) + (number.capacity() + first.capacity()) * sizeof(int);
+  double bytes = half[0].memory_usage() + half[1].memory_usage() + middle.memory_usage();
+  for (const auto *list : {&number, &queue, &layer, &unused})
+    bytes += list->capacity() * sizeof(int);
+  for (const auto *list : {&solution, &sent, &of_ranks, &of_half[0], &of_half[1]})
+    bytes += list->capacity() * sizeof(double);
+  return bytes;
 }

@@ -21,6 +21,9 @@ class LatticeRanks {
  public:
   virtual ~LatticeRanks() = default;
 
+  virtual int number() const { return 1; }
+  virtual int me() const { return 0; }    ///< from 0 on
+
   /** values: [node][width].  At each node of the Grid: the sum of what its images, and the same node on all ranks, have.  All of
    *  them have the same sum afterwards, bit by bit.  Collective. */
   virtual void sum(double *values, int width) = 0;

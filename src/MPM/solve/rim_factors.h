@@ -55,6 +55,8 @@ bool factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &, bool again = fa
  *  single nodes are no smoother.  Chunks of the surface, which overlap, are factorized, and their solutions added. */
 class RimFactors {
  public:
+  /** ranks: which share the work, and all call each function with the same. Null: this one does it. */
+  explicit RimFactors(LatticeRanks *ranks = nullptr) : factors(ranks) {}
   /** Nodes at the surface; width: values of each. */
   void start(const std::vector<LatticeIndex> &nodes, int dim, int width);
   int size() const { return first.empty() ? 0 : first.size() - 1; }

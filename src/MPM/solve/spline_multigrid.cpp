@@ -230,7 +230,7 @@ struct SplineMultigrid::Levels {
 
   Levels(const Grid &grid, LatticeRanks &ranks, int width, int order, int few, int all) :
       grid(grid), ranks(ranks), width(width), order(order), dim(grid.lattice.dim), few(few),
-      all(all)
+      all(all), rim_factors(&ranks), factors(&ranks)
   {
   }
 
@@ -687,7 +687,7 @@ void SplineMultigrid::Levels::smoother_of(Level &level, const LatticeNodes &node
     if (D.trace() > 0.0)
       Eigen::Map<Matrix>(level.inverse.data() + (std::size_t) node * w * w, w, w) = inverse_of(D);
   }
-  level.rim_factors.reset(new RimFactors);
+  level.rim_factors.reset(new RimFactors(&ranks));
   level.rim_factors->start(rim_nodes, dim, w);
   for (std::size_t k = 0; k < level.rim.size(); k += w) {
     // blocks of the lower triangle: the columns of all rows of a node are the same but for zeros
