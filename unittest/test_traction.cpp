@@ -397,6 +397,33 @@ SERIAL_TEST(Free, WaterAtRest)
   EXPECT_LT(measured("error of the stress", most / 9810), 0.02);
 }
 
+// a straight side around an axis of symmetry is a cylinder, whose deeper layers are rings of another length: a tube under pressure
+// inside has the resultant of its side, and the displacements of Lame (plane stress)
+SERIAL_TEST(Tube, AroundAnAxis)
+{
+  for (const char *options : {"stress gradient", "frame total"}) {
+    Scene run(plane("si", "f f", "0 1.2 0 0.4", 1, 0.03) +
+              "fix grid all mpm 0.1 axisymmetric yes " + options +
+              "\nregion tube block 0.4 1 0 0.2 INF INF\ncreate_points 1 region tube ppc 2\n" +
+              "fix m all mpm/material density 1000 linear 1e6 0.3\nfix walls all mpm/boundary xlo "
+              "ylo slip\n"
+              "region bore plane 0.4 0 0 1 0 0\n");
+    run.set_reference();
+    run.commands(replaced(at_rest(1000.0, 1e-5), "run 1000",
+                          "fix load all mpm/traction region bore pressure v_T\nrun 1000"));
+    const double *const load = run.fix_vector("load", 7), side = 2.0 * PI * 0.4 * 0.2;
+    EXPECT_NEAR(load[0] / (1000.0 * side), 1.0, 2.5e-3);    // the bore grows by 0.16 %
+    EXPECT_NEAR(load[3] / side, 1.0, 2.5e-3);
+    const double a = 160.0 / 0.84, b = a;    // stress a -+ b/r^2
+    double most = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double R = run.reference(i)[0], exact = ((1.0 - NU) * a * R + (1.0 + NU) * b / R) / E;
+      most = std::max(most, std::fabs((run.x()[i][0] - R) / exact - 1.0));
+    }
+    EXPECT_LT(measured(std::string(options) + ": error of the displacement", most), 0.02);
+  }
+}
+
 // a hollow sphere under pressure around an axis of symmetry: displacements next to the bore by Lame's solution, to 1 % in the mean
 SERIAL_TEST(Sphere, Widens)
 {

@@ -103,6 +103,7 @@ void MPMFace::find(const MPMField &field, int groupbit,
     sums[1] += share.area * depth;
     sums[2] += volume;
     for (int d = 0; d < 3; d++) sums[3 + d] += volume * share.normal[d];
+    if (field.options.axisymmetric) sums[8] += volume * std::fabs(share.normal[0]);
     for (int k = 0; k < 2; k++) sums[6 + k] += hat(depth - 1 - k) * volume / apart;
     f(i, share);
   }
@@ -110,10 +111,11 @@ void MPMFace::find(const MPMField &field, int groupbit,
 
 MPMFace::Judgement MPMFace::judge() const
 {
-  double all[8];
-  MPI_Allreduce(sums, all, 8, MPI_DOUBLE, MPI_SUM, world);
+  double all[9];
+  MPI_Allreduce(sums, all, 9, MPI_DOUBLE, MPI_SUM, world);
   const double *const n = all + 3, area = all[0] != 0.0 ? all[0] : 1.0;
-  return {std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) > (1.0 - 1.0e-6) * all[2],
+  const bool cylinder = all[8] > 1.0e-6 * all[2];    // or a cone
+  return {!cylinder && std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) > (1.0 - 1.0e-6) * all[2],
           all[1] / area, std::fabs((all[6] - all[7]) / area)};
 }
 
