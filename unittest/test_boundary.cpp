@@ -1015,7 +1015,8 @@ TEST(Motion, BallThatMovesAndGrows)
   }
 }
 
-/* ------------------------------ regions: velocity of the nodes inside, against the known normal */
+/* ------------------------------ regions: velocity of the nodes inside, against the known normal. Material is in them
+   as in a grip: there nodes act, and lines where it is in front */
 
 TEST(Regions, SlipNormals)
 {
@@ -1057,7 +1058,7 @@ TEST(Regions, SlipNormals)
                         {"cylinder y 5.3 4.8 2.1 INF INF", cylinder}};
   for (const auto &c : cases) {
     Scene run(space("lj", "f f f", "0 10 0 10 0 10") +
-              body("block 2 8 2 8 2 8", "density 1.0 neohookean 10.0 0.3") +
+              body("block 0.5 9.5 0.5 9.5 0.5 9.5", "density 1.0 neohookean 10.0 0.3") +
               "velocity all set 0.3 -0.2 0.15\ntimestep 0.01\n" + std::string("region obstacle ") +
               c.region + "\nfix w all mpm/boundary region obstacle slip\nrun 1\n");
     int checked = 0;
@@ -1079,6 +1080,85 @@ TEST(Regions, SlipNormals)
     });
     EXPECT_GT(over_ranks(checked), 20) << c.region;
   }
+}
+
+namespace {
+/** A block, 1 x 1, whose side is at a wall that is this many node spacings from a node, pulled normal to or along the wall. */
+struct Pulled {
+  std::vector<Scene::State> points;
+  double force;
+};
+Pulled pull_at_wall(bool face, double h, double off, bool along, const std::string &options,
+                    const std::string &solve)
+{
+  const double s = off * h, d = 0.5 * h;    // points are in the same places
+  Scene run(
+      "units si\ndimension 2\nboundary f f p\natom_style mpm\n" +
+      strprintf("neighbor %.17g bin\nregion box block %.17g 2 -1 2 -0.5 0.5\ncreate_box 1 box\n", d,
+                face ? s : s - 1.0) +
+      strprintf("region body block %.17g %.17g 0 1 INF INF\n", s, s + 1.0) +
+      strprintf("create_points 1 region body spacing %.17g\n", d) +
+      strprintf("fix grid all mpm %.17g origin 0 0 ", h) + options +
+      "\nfix m all mpm/material density 1 linear 1000 0.3\n" +
+      (face ? "fix w all mpm/boundary xlo slip\n"
+            : strprintf("region wall block -9 %.17g -9 9 INF INF\n", s) +
+               "fix w all mpm/boundary region wall slip\n") +
+      (along ? strprintf("region top block INF INF %.17g 9 INF INF\ngroup top region top\n"
+                         "region low block INF INF -9 %.17g INF INF\ngroup low region low\n",
+                         1.0 - 0.6 * d, 0.6 * d) +
+               "fix top top addforce 0 $(1/count(top)) 0\nfix low low addforce 0 $(-1/count(top)) "
+               "0\n"
+             : strprintf("region end block %.17g 9 -9 9 INF INF\ngroup end region end\n",
+                         s + 1.0 - 0.6 * d) +
+               "fix end end addforce $(1/count(end)) 0 0\n") +
+      solve);
+  return {run.gather(), run.evaluate("f_w[1]")};
+}
+}    // namespace
+
+// A region with slip holds the surface of a body as a face of the box does, wherever both are between nodes: stresses were wrong by up
+// to seven times the pull when nodes inside the region acted one by one
+SERIAL_TEST(Regions, SlipIsThatOfFaces)
+{
+  const std::string at_rest = "fix solve all mpm/implicit static\ntimestep 1\nrun 2\n",
+                    in_motion = "fix v all viscous $(20*mass(all)/count(all))\n"
+                                "fix dt all mpm/dt 0.5\nrun 40\n";
+  struct Case {
+    const char *options;
+    const std::string &solve;
+  };
+  const Case cases[] = {{"shape quadratic", at_rest},
+                        {"shape cubic", at_rest},
+                        {"shape quadratic frame total", at_rest},
+                        {"shape quadratic transfer flip 1.0", in_motion},
+                        {"shape quadratic transfer apic scheme musl", in_motion},
+                        {"shape gimp transfer flip 1.0 scheme musl", in_motion},
+                        {"shape linear transfer flip 0.9 scheme musl", in_motion}};
+  for (const auto &c : cases)
+    for (const bool along : {false, true})
+      for (const double off : {0.0, 0.1, 0.27, 0.5, 0.75, 0.9}) {
+        SCOPED_TRACE(strprintf("%s along %d off %g", c.options, along, off));
+        const auto face = pull_at_wall(true, 0.2, off, along, c.options, c.solve),
+                   region = pull_at_wall(false, 0.2, off, along, c.options, c.solve);
+        ASSERT_EQ(face.points.size(), region.points.size());
+        double largest = 0.0, different = 0.0;
+        for (std::size_t k = 0; k < face.points.size(); k++)
+          for (int d = 0; d < 2; d++) {
+            const double one = face.points[k].stress[d];
+            largest = std::max(largest, std::fabs(one));
+            different = std::max(different, std::fabs(one - region.points[k].stress[d]));
+          }
+        EXPECT_GT(largest, 0.5);
+        EXPECT_LT(different, 1e-6);
+        EXPECT_NEAR(region.force, face.force, 1e-6);
+        // the sum of forces times places is volume times mean stress: that of the wall has no lever arm about its surface
+        double sum = 0.0;
+        for (const auto &point : region.points) sum += point.stress[along] / region.points.size();
+        if (c.solve == at_rest) {
+          EXPECT_NEAR(sum, along ? 0.9 : 0.95, 2e-3);
+          EXPECT_NEAR(region.force, along ? 0.0 : 1.0, 1e-6);
+        }
+      }
 }
 
 // a region that passes over nodes within a step is reported once

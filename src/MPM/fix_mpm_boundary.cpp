@@ -58,7 +58,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "fix_mpm_elements.h"
 #include "force.h"
 #include "math_extra.h"
 #include "math_special.h"
@@ -239,29 +238,27 @@ bool FixMPMBoundary::region_moves() const
 }
 
 /* ----------------------------------------------------------------------
-   Nodes inside hold points of a body that lies in front of the surface by the tails of their functions, and
-   by its other points. A node of an element can be in the surface itself, and alone in its cells: then nodes outside, which
-   see an eighth of it, let it creep into the wall until its elements have no stress. Lines hold it where it is
+   Nodes inside hold only those points of a body in front of the surface that they reach: it creeps into the wall, and stresses next to
+   it are wrong, by how much depends on where the surface is in a cell. Lines hold the surface. Material that is inside of a region, as in a
+   grip, is held by nodes, see act_on_crossing(): it has no surface there
 ------------------------------------------------------------------------- */
 
-bool FixMPMBoundary::acts_across(const MPMField &field) const
+bool FixMPMBoundary::acts_across() const
 {
   if (region->varshape) return false;
-  if (follows) return true;
-  return decides() ||
-      (kind == SLIP && !region_moves() &&
-       std::count(of_elements.begin(), of_elements.end(), &field));
+  return follows || decides() || holds_surface();
 }
 
-/** Collective. */
-void FixMPMBoundary::find_fields_of_elements()
+/** Does the wall hold material that is near, whether that has reached it or not? */
+bool FixMPMBoundary::keeps_distance() const
 {
-  of_elements.clear();
-  for (const auto *fix : modify->get_fix_by_style("^mpm/elements$")) {
-    const char *const name = dynamic_cast<const FixMPMElements *>(fix)->field_of_nodes();
-    for (const auto &list : nodes)
-      if (name && strcmp(list.field->id(), name) == 0) of_elements.push_back(list.field);
-  }
+  return region ? holds_surface() : !decides();
+}
+
+/** Slip on a region at rest: lines act where material is in front of it, and nodes where it is inside. */
+bool FixMPMBoundary::holds_surface() const
+{
+  return kind == SLIP && friction == 0.0 && !region_moves();
 }
 
 bool FixMPMBoundary::acts_on(const MPMField &field) const
@@ -325,7 +322,6 @@ void FixMPMBoundary::init()
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/boundary field {} is not the ID of a fix mpm",
                field_id);
 
-  find_fields_of_elements();
   for (auto &v : velocity) find_variable(lmp, v, "fix mpm/boundary velocity");
   find_variable(lmp, rate, "fix mpm/boundary rotate");
 
@@ -499,7 +495,7 @@ bool FixMPMBoundary::looks_at_all(const MPMField &field, const Grid::Block &bloc
 
 void FixMPMBoundary::extend_across(MPMField &field) const
 {
-  const bool known = !region_moves() && region->nregion == 1, across = acts_across(field);
+  const bool known = !region_moves() && region->nregion == 1, across = acts_across();
   if (comm->nprocs == 1 || !(across || known)) return;
   Grid &grid = field.grid;
   const int dim = field.lattice.dim;
@@ -717,8 +713,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
-  const bool moves = region_moves(), hands_over = moves && kind != SEPARATE,
-             across = acts_across(field);
+  const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
   const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
   const bool looks = across ||
       (!too_thin.told() && !region->varshape && (!moves || looks_at_width()));
@@ -774,7 +769,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
     return;
   }
   list_crossings(list, outside);
-  if (!hands_over || follows) take_off_lines(list);
+  if ((!hands_over || follows) && !holds_surface()) take_off_lines(list);
 }
 
 /* ----------------------------------------------------------------------
@@ -955,11 +950,17 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
     if (ahead > 0 && region->match(place[0], place[1], place[2])) return false;
     if (!is_outside && ahead < 0 && !(region->match(place[0], place[1], place[2]) && along(place)))
       return false;
+    const int at_place = node[a];
     node[a] = field.lattice.wrap(a, node[a]);
+    // regions have no periodic images: this node has material at the other end of the box
+    if (ahead <= 0 && node[a] != at_place) return false;
     c.node[k] = grid.locate(node);
     c.weight[k] = weight[from];
     if (ahead <= 0) c.inside = k + 1;
   }
+  int behind[3] = {index[0], index[1], index[2]};
+  behind[a] = field.lattice.wrap(a, outward > 0 ? first - 1 : first + c.n);
+  c.behind = grid.locate(behind);
   c.base = single.node;
   c.surface = at[a];
   const double cosine = fabs(c.normal[a]);
@@ -1232,9 +1233,8 @@ void FixMPMBoundary::update_motion(double dt)
           s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
         }
     for (int k = 0; k < 4; k++) old[k] = *motion[k];
-    if (kind == SLIP && !follows)
-      for (auto &list : nodes)
-        if (acts_across(*list.field)) take_off_lines(list);
+    if (kind == SLIP && !follows && acts_across())
+      for (auto &list : nodes) take_off_lines(list);
   }
   if (!past.acted) MathExtra::copy3(wall.shift, wall.before);
   MathExtra::copy3(wall.shift, past.shift);

@@ -176,6 +176,7 @@ class FixMPMBoundary :
     int axis, n;
     int64_t node[4];    // -1: out of reach of points
     int64_t base;       // of these, from which the line was found
+    int64_t behind;     // the next one in the region, which only material inside reaches
     double surface;     // place on the line
     double weight[4];
     double normal[3];    // of the surface, where the line goes through it
@@ -221,6 +222,7 @@ class FixMPMBoundary :
   // nodes of a line that have points, from outside of the material to inside, see fix_mpm_boundary_cut.cpp
   struct Chain {
     int m = 0;
+    int inner = 0;    // of them, whose old velocity FLIP takes as that near the wall
     int64_t node[4];
     const double *r[4];    // records
     double A[4], B[4] = {0.0, 0.0, 0.0, 0.0}, V[4][3], total = 0.0;
@@ -268,9 +270,8 @@ class FixMPMBoundary :
   Region *region = nullptr;
   std::unique_ptr<MPMRegionSurface> surface;    // its surface
 
-  std::vector<FieldNodes> nodes;                // of the fields to act on
-  std::vector<const MPMField *> of_elements;    // of these, which have nodes of fix mpm/elements
-  Wall wall = {};                               // in this step
+  std::vector<FieldNodes> nodes;    // of the fields to act on
+  Wall wall = {};                   // in this step
   Past past = {};
   bigint motion_step = -1;    // step for which the motion of the wall is known
   double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
@@ -357,8 +358,9 @@ class FixMPMBoundary :
 
   bool region_moves() const;
   /** Does a region act on lines of nodes through its surface? Else on nodes inside, one by one. */
-  bool acts_across(const MPMField &) const;
-  void find_fields_of_elements();
+  bool acts_across() const;
+  bool holds_surface() const;
+  bool keeps_distance() const;
   bool is_foreseen() const;
   bool holds(const double *normal, int d) const;
   bool acts_on(const MPMField &) const;
@@ -374,6 +376,8 @@ class FixMPMBoundary :
   bool looks_at_blade(const MPMField &, const Single &, Crossing &) const;
   static bool is_in_front(MPM_NS::Grid &, const Crossing &);
   static bool is_behind(MPM_NS::Grid &, const Crossing &, double share);
+  static bool is_inside(MPM_NS::Grid &, const Crossing &);
+  bool holds_line(MPM_NS::Grid &, const Crossing &) const;
   bool looks_at_width() const;
   void check_width(const FieldNodes &);
   void report_width();

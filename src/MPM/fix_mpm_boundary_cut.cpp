@@ -38,6 +38,8 @@ using namespace MPM_NS;
 
 // of linear, quadratic and cubic functions
 static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
+static constexpr double OUTSIDE = 0.25;      // node spacings
+static constexpr double AT_NODE = 1.0e-6;    // node spacings
 
 /* ---------------------------------------------------------------------- */
 
@@ -73,18 +75,29 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
 {
   Grid &grid = list.field->grid;
   const int order = stencil_order(list.field->options.shape);
-  double extrapolated = 0.0;
+  const bool keeps = keeps_distance();
+  double
+      extrapolated = 0.0,
+      levers =
+          0.0;    // weights of outer nodes without mass, times spacings from the first one with mass
+  int first = 0;
+  double place = 0.0;    // of the wall, in nodes from the outermost one
   bool reached = false;
   for (int j = 0; j < n; j++) {
     const int k = inward > 0 ? j : n - 1 - j;
     const double *record = node[k] < 0 ? nullptr : grid.record(node[k]);
     const bool matters = weight[k] >= MIN_WEIGHT[order];
+    place += j * weight[k];
     if (!record || record[3] <= 0.0) {
-      if (!reached && matters) return false;
-      if (order == 1 && j == 0) extrapolated = weight[k];
+      if (!reached && matters && !keeps) return false;
+      if (c.m == 0 && (keeps || (order == 1 && j == 0))) {
+        extrapolated += weight[k];
+        levers -= j * weight[k];
+      }
       continue;
     }
     reached = reached || matters;
+    if (c.m == 0) first = j;
     c.node[c.m] = node[k];
     c.r[c.m] = record;
     c.A[c.m] = weight[k];
@@ -92,13 +105,23 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
     wall.velocity(*list.field, node[k], c.V[c.m]);
     c.m++;
   }
-  if (!reached) return false;
-  if (extrapolated > 0.0 && c.m == 2) {
-    c.A[0] += 2.0 * extrapolated;
-    c.A[1] -= extrapolated;
-    c.total += extrapolated;
+  if (keeps ? c.m == 0 || first - place > OUTSIDE : !reached) return false;
+  if (extrapolated > 0.0) {
+    levers += first * extrapolated;
+    if (keeps || c.m == 2) {
+      c.A[0] += extrapolated;
+      c.total += extrapolated;
+      if (c.m > 1) {
+        c.A[0] += levers;
+        c.A[1] -= levers;
+      }
+    }
   }
-  c.prepare(c.m == n);
+  // linear functions at a node tell nothing of the next ones, as at a mirror plane
+  const bool at_node = order == 1 && *std::max_element(weight, weight + n) > 1.0 - AT_NODE;
+  c.inner = c.m - 1;
+  if (at_node) c.inner = std::min(c.inner, (int) (std::max_element(c.A, c.A + c.m) - c.A) + 1);
+  c.prepare(c.m == n && !at_node);
   return true;
 }
 
@@ -184,7 +207,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
     for (int k = 0; k < m; k++) relative[k] = r[k][d] - V[k][d];
     lambda[d] = chain.solve(relative, change[d]);
     if (!hold || !(kind == STICK ? prescribed(d) : d == a)) continue;
-    const double limit = fabs(r[m - 1][4 + d] - wall.before[d]);
+    const double limit = fabs(r[chain.inner][4 + d] - wall.before[d]);
     for (int k = 0; k < m; k++) relative[k] = wall.old_relative(r[k], d, limit);
     lambda_old[d] = chain.solve(relative, change_old[d]);
   }
@@ -233,25 +256,39 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
   Grid &grid = list.field->grid;
   const int dim = grid.lattice.dim;
   const double *const n = crossing.normal;
-  if (crossing.front != Crossing::SOUND) {
-    if (!now.decided)
-      crossing.acts = crossing.front == Crossing::THIN_PLACE ? !is_behind(grid, crossing, 1.0)
-                                                             : is_in_front(grid, crossing);
+  const bool to_surface = holds_surface();
+  if (crossing.front != Crossing::SOUND || to_surface) {
+    if (!now.decided) crossing.acts = holds_line(grid, crossing);
     if (!crossing.acts) return;
-    if (crossing.front == Crossing::NEAR_OTHERS)
+    if (crossing.front == Crossing::NEAR_OTHERS || to_surface)
       held_by_lines.insert(held_by_lines.end(), crossing.node,
                            crossing.node + (follows ? crossing.n : crossing.inside));
   }
   Chain chain;
   if (!find_chain(list, crossing.node, crossing.weight, crossing.n, 1, chain)) return;
 
-  double lambda[3] = {0.0, 0.0, 0.0}, change[3][4], normal = 0.0;
+  double lambda[3] = {0.0, 0.0, 0.0}, change[3][4], normal = 0.0, relative[4];
   for (int d = 0; d < dim; d++) {
-    double relative[4];
     for (int k = 0; k < chain.m; k++) relative[k] = chain.r[k][d] - chain.V[k][d];
     lambda[d] = chain.solve(relative, change[d]);
     normal += lambda[d] * n[d];
   }
+
+  // what FLIP updates of old normal velocities, as at faces
+
+  const bool hold = now.old_share > 0.0 && to_surface;
+  double change_old[4] = {0.0, 0.0, 0.0, 0.0};
+  if (hold) {
+    double old[4];
+    for (int k = 0; k < chain.m; k++) {
+      old[k] = 0.0;
+      for (int d = 0; d < dim; d++) old[k] += n[d] * (chain.r[k][4 + d] - wall.before[d]);
+    }
+    const double limit = fabs(old[chain.inner]);
+    for (int k = 0; k < chain.m; k++) relative[k] = std::max(-limit, std::min(old[k], limit));
+    chain.solve(relative, change_old);
+  }
+
   double needed = 0.0;
   for (int d = 0; d < dim; d++) {
     const double slide = lambda[d] - normal * n[d];
@@ -266,11 +303,13 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
   }
   heat_if_sliding(crossing.contact, n);
   for (int k = 0; k < chain.m; k++) {
-    double v[3], along = 0.0;
+    double v[3], old[3], along = 0.0;
     for (int d = 0; d < dim; d++) along += change[d][k] * n[d];
-    for (int d = 0; d < dim; d++)
+    for (int d = 0; d < dim; d++) {
       v[d] = chain.r[k][d] + along * n[d] + share * (change[d][k] - along * n[d]);
-    set_velocity(grid, chain.node[k], chain.V[k], v, nullptr);
+      if (hold) old[d] = chain.r[k][4 + d] + change_old[k] * n[d];
+    }
+    set_velocity(grid, chain.node[k], chain.V[k], v, hold ? old : nullptr);
   }
   now.normal = nullptr;
 }

@@ -69,6 +69,33 @@ bool FixMPMBoundary::is_behind(Grid &grid, const Crossing &c, double share)
   return in_front <= share * behind;
 }
 
+/** Has the node behind the line so much mass that there is material in the region, about a spacing below the surface or deeper? What is in
+ *  front reaches it with the tails of functions across an inclined line at most. */
+bool FixMPMBoundary::is_inside(Grid &grid, const Crossing &c)
+{
+  constexpr double MUCH = 0.1;
+  const double there = mass(grid, c.behind);
+  if (there <= 0.0) return false;
+  double most = 0.0;
+  for (int k = 0; k < c.n; k++) most = std::max(most, mass(grid, c.node[k]));
+  return there > MUCH * most;
+}
+
+/** Is it the line that acts, by what the masses of nodes tell of the material? */
+bool FixMPMBoundary::holds_line(Grid &grid, const Crossing &c) const
+{
+  constexpr double AS_MUCH = 1.01;
+  switch (c.front) {
+    case Crossing::SOUND:
+      return !is_inside(grid, c);
+    case Crossing::THIN_PLACE:
+      // nodes act in material that fills the plate
+      return !is_behind(grid, c, holds_surface() ? AS_MUCH : 1.0);
+    default:
+      return is_in_front(grid, c);
+  }
+}
+
 /** Is this a step in which lists of regions that move have what check_width() needs, and ranks compare notes? */
 bool FixMPMBoundary::looks_at_width() const
 {
