@@ -235,8 +235,9 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
   const double *const n = crossing.normal;
   if (crossing.front != Crossing::SOUND) {
     if (!now.decided)
-      crossing.acts = crossing.front == Crossing::THIN_PLACE ? !is_behind(grid, crossing, 1.0)
-                                                             : is_in_front(grid, crossing);
+      crossing.acts = crossing.front == Crossing::THIN_PLACE
+          ? !is_behind(grid, crossing, 1.0)
+          : is_in_front(grid, crossing) || (carrying && goes_through(grid, crossing));
     if (!crossing.acts) return;
     if (crossing.front == Crossing::NEAR_OTHERS)
       held_by_lines.insert(held_by_lines.end(), crossing.node,
