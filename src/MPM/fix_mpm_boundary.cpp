@@ -817,6 +817,7 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
                      const bool up[2] = {a.normal[a.axis] > 0.0, b.normal[b.axis] > 0.0};
                      return std::tie(up[0], a.place) < std::tie(up[1], b.place);
                    });
+  if (follows && kind == STICK) find_lines_alone(list);
 }
 
 /* ----------------------------------------------------------------------

@@ -190,6 +190,7 @@ class FixMPMBoundary :
     // nearer to another face, or beyond it: when the material is in front
     enum Front { SOUND, THIN_PLACE, NEAR_OTHERS } front = SOUND;
     bool acts = true, in_plate = false;    // in_plate: of less than RESOLVED
+    bool alone = false;                    // grips: no other line has nodes of this one
   };
   // a line of nodes through the surface of material that is not at the wall yet, in trials, see
   // fix_mpm_boundary_approach.cpp; from the wall to the material
@@ -318,9 +319,10 @@ class FixMPMBoundary :
   MPMField *tried = nullptr;
   const double *motion = nullptr;    // velocities of nodes at the end of the step
   double trial_dt = 0.0, eps = 0.0, soft = 0.0;
-  int rounds = 0;          // of decisions in this step
-  bool seeks = false;      // material that comes to the wall in implicit steps
-  bool follows = false;    // a region that moves and holds: by lines in implicit steps
+  int rounds = 0;           // of decisions in this step
+  bool seeks = false;       // material that comes to the wall in implicit steps
+  bool follows = false;     // a region that moves and holds: by lines in implicit steps
+  bool carrying = false;    // it is a grip for the material inside, see fix_mpm_boundary_carry.cpp
   bool closes =
       false;    // lines that are held go to the wall now, else they are at rest relative to it
   std::vector<double> clear;    // [point][face] its distance from the wall at the start of the step
@@ -328,6 +330,10 @@ class FixMPMBoundary :
   void begin_trials(MPMField &, double dt, double eps, bool rests) override;
   bool close_gaps(bool yes) override;
   void check_arrival() override;
+  bool find_carried(MPMField &, std::vector<double> &) override;
+  void bear_carried(MPMField &, double *force) override;
+  void find_lines_alone(FieldNodes &) const;
+  static bool goes_through(MPM_NS::Grid &, const Crossing &);
   bool has_friction() const override { return friction > 0.0; }
   void forget_pushes() override;
   void take_base() override;

@@ -92,7 +92,7 @@ bool FixMPMBoundary::holds_line(Grid &grid, const Crossing &c) const
       // nodes act in material that fills the plate
       return !is_behind(grid, c, holds_surface() ? AS_MUCH : 1.0);
     default:
-      return is_in_front(grid, c);
+      return is_in_front(grid, c) || (carrying && goes_through(grid, c));
   }
 }
 

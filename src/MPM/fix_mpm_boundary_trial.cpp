@@ -50,7 +50,7 @@ void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular, bo
   update_motion(dt);
   FieldNodes &list = tried_nodes();
   const bool separates = kind == SEPARATE;
-  closes = false;
+  closes = carrying = false;
   rounds = 0;
   touches.clear();
   list.approaches.clear();

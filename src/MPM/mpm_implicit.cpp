@@ -281,6 +281,34 @@ bool MPMImplicit::close(std::vector<double> &u, const std::vector<double> &du, d
   return false;
 }
 
+/** Points that walls carry as a whole: whether there may be any, on any rank. Averages of stress, a pressure of nodes, and the forces of the start of the
+ *  step know nothing of them. */
+bool MPMImplicit::find_carried()
+{
+  std::vector<MPMTangent::Part> parts;
+  bool any = false;
+  if (!joint && !field.options.averages_stress() &&
+      (options.time == MPMImplicitOptions::STATIC || options.time == MPMImplicitOptions::EULER)) {
+    std::vector<double> left;
+    for (auto *contact : contacts)
+      if (contact->find_carried(field, left)) any = true;
+    for (std::size_t i = 0; i < left.size(); i++)
+      if (left[i] < 1.0) parts.push_back({(bigint) i, left[i]});
+  }
+  tangent.set_parts(std::move(parts));
+  return any;
+}
+
+/** Loads on them. Collective. */
+void MPMImplicit::bear_carried()
+{
+  std::vector<double> on_them(nreals());
+  tangent.forces_on_rest(on_them.data());
+  for (int64_t k = 0; k < nreals(); k++) outer[k] -= on_them[k];
+  for (auto *contact : contacts) contact->bear_carried(field, on_them.data());
+  for (int64_t k = 0; k < nreals(); k++) outer[k] += on_them[k];
+}
+
 void MPMImplicit::check_contacts()
 {
   for (auto *contact : contacts) contact->check_arrival();
@@ -773,9 +801,11 @@ double MPMImplicit::step(double step_dt)
       all_hold = all_hold && action->is_projection();
       rubs = rubs || contact->has_friction();
     }
+  const bool carries = find_carried();
   find_constraints();
   if (joint) joint->begin_step();
   tangent.external_forces(outer.data());
+  if (carries) bear_carried();
   if (options.time == MPMImplicitOptions::STATIC && now.failure.empty()) find_free_bodies();
   if (!now.failure.empty()) return 0.0;
 

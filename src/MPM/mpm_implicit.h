@@ -207,6 +207,8 @@ class MPMImplicit : private MPMNodeSystem {
   void act(double *velocities);
   void project(double *x);
   void find_friction(const std::vector<double> &u);
+  bool find_carried();
+  void bear_carried();
   bool decide_contact(std::vector<double> &u);
   void find_closing();
   bool meet_walls(std::vector<double> &u, double share);

@@ -274,6 +274,26 @@ void MPMTangent::external_forces(double *force)
   scatter(f, force);
 }
 
+void MPMTangent::forces_on_rest(double *force)
+{
+  std::vector<double> forces(no_force.size(), 0.0);
+  const double *const f = field.rows().f;
+  for (const auto &[i, share] : parts)
+    for (int d = 0; d < 3; d++) forces[3 * i + d] = (1.0 - share) * f[3 * i + d];
+  std::fill(P.begin(), P.end(), 0.0);
+  std::fill(hoop_stress.begin(), hoop_stress.end(), 0.0);
+  scatter(forces.data(), force);
+}
+
+void MPMTangent::take_parts()
+{
+  for (const auto &[i, share] : parts) {
+    for (int k = 0; k < nL; k++) P[nL * i + k] *= share;
+    if (nH > nL) hoop_stress[i] *= share;
+    for (int d = 0; d < 3 && loaded; d++) load_forces[3 * i + d] *= share;
+  }
+}
+
 bool MPMTangent::forces(const double *u, double dt, double *force, double &carried)
 {
   int bad = 0, any;
@@ -312,6 +332,7 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
       for (bigint i = run.first; i < run.last; i++) added[i] = -pressure[i];
     add_to_stress(u);
   }
+  take_parts();
   scatter(!between.empty() ? sum_forces.data()
               : loaded     ? load_forces.data()
                            : no_force.data(),
@@ -528,6 +549,10 @@ double MPMTangent::linearize(const double *u, double dt)
     if (adds()) differentiate_added(first, n, H);
     if (follows(first, n)) differentiate_loads(first, n, H);
   });
+  for (const auto &[i, share] : parts) {
+    for (int k = 0; k < nH * nH; k++) tangents[nH * nH * i + k] *= share;
+    for (int k = 0; k < 3 * nH && loaded; k++) load_tangents[3 * nH * i + k] *= share;
+  }
   sum *= field.step_data().stress_scale / field.lattice.h;
   if (!between.empty()) move_points(u);
   for (auto *forces : between)

@@ -44,6 +44,14 @@ class MPMTangent : protected Pointers {
 
   /** Of all points in this step, from atom->f. To be called first in each step. Collective. */
   void external_forces(double *force);
+  /** A point of which only a share has stress, and loads that follow: walls carry the rest in this step. */
+  struct Part {
+    bigint point;
+    double share;
+  };
+  void set_parts(std::vector<Part> list) { parts = std::move(list); }
+  /** Of the rest of these points, from atom->f. Collective. */
+  void forces_on_rest(double *force);
   /** Forces of the stress after the motion u; carried: sum of V |P| / h over the points of this rank, the size of the
    *  forces that cancel in equilibrium [mass acceleration]. Returns false, on all ranks, where a point is turned inside
    *  out or has a stress that is not finite. Collective. */
@@ -101,6 +109,8 @@ class MPMTangent : protected Pointers {
   bool mls = false;                            // gradients are those of moving least squares
   std::vector<double> nodes, history, P, hoop_stress, tangents, no_force, forces_on_points,
       deformations;
+  std::vector<Part> parts;
+  void take_parts();
   bool loaded = false;    // some points have loads that follow them
   // [point][3] forces of these loads besides atom->f, and [point][nH][3] derivatives by H, if there are any
   std::vector<double> load_forces, load_tangents;

@@ -26,6 +26,12 @@ class MPMTrialContact {
  public:
   /** The start of a step of duration dt, in statics (rests) or dynamics; eps [distance]. Collective. */
   virtual void begin_trials(MPMField &, double dt, double eps, bool rests) = 0;
+  /** Points that a wall takes with it as a whole in this step, as those in a grip: left[point] becomes the share of its volume that is left outside, if there
+   *  are any; else it stays empty. Those inside have no part in the balance of forces, which the wall makes use of from now on. Returns whether there may be such, the
+   *  same on all ranks. Not called where a solver cannot leave them out. */
+  virtual bool find_carried(MPMField &, std::vector<double> &left) = 0;
+  /** Forces on nodes by loads on the shares inside, [node][dim], which the wall bears: they must not work on what it leaves free. */
+  virtual void bear_carried(MPMField &, double *force) = 0;
   /** From now on, is what is held that was not at the wall at the start of the step brought to it by acts? Else it is held at rest relative to the wall, as
    *  all the rest. Returns whether there is such, on this rank. */
   virtual bool close_gaps(bool yes) = 0;
