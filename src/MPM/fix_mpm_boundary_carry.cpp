@@ -54,7 +54,7 @@ bool FixMPMBoundary::goes_through(Grid &grid, const Crossing &c)
 /** Points that the surface cuts are inside by the part of their width that is. */
 bool FixMPMBoundary::find_carried(MPMField &field, std::vector<double> &left)
 {
-  carrying = follows && kind == STICK && acts_across(field);
+  carrying = follows && kind == STICK && acts_across();
   if (!carrying) return false;
   left.resize(atom->nmax, 1.0);
   const int dim = field.lattice.dim;

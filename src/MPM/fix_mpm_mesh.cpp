@@ -78,7 +78,8 @@ Options MPMMeshOptions::declare(int dim)
   const auto condition = [&](const std::string &keyword, MPMMeshCondition::Kind kind,
                              const std::string &names, const std::string &unit,
                              const std::string &meaning, int n, bool null) {
-    std::vector<OptionValue> values = {text(next.group, "name", meaning)};
+    std::vector<OptionValue> values;
+    values.push_back(text(next.group, "name", meaning));
     if (n)
       values.push_back(variables(next.value, n, names, unit,
                                  null ? "can be variables; NULL: free" : "can be a variable",

@@ -294,7 +294,7 @@ template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt,
     for (int i = run.first; i < run.last; i++) {
       if (!holds(i)) continue;
       const auto &block = cells.grid.blocks[run.slot];
-      double t[3], u[3];
+      double t[3] = {}, u[3];
       place.find(atom->x[i], atom->vfrac[i], t);
       interpolate<dim>(cells, block, t, velocity, u);
       const double start[3] = {t[0], t[1], t[2]};
