@@ -759,6 +759,8 @@ SERIAL_TEST(BadInput, IsRefused)
        {water + soil + "xlo pressure v_none", "does not exist"},
        {water + soil + "initial v_none", "does not exist"},
        {water + soil + "stages 0", "stages"},
+       {water + soil + "bodies shut", "must be one of open closed"},
+       {water + soil + "bodies closed", "needs a free surface that is open elsewhere"},
        {"group a type 1\nfix water a mpm/pore 2e7 1000 9810 " + soil, "use group all"},
        {water + soil + "\nfix more all mpm/pore 2e7 1000 9810 " + soil, "more than one"},
        {"group a type 1\nfix g a gravity 9.81 vector 0 -1 0\n" + water + soil, "of group all"}},

@@ -82,26 +82,118 @@ SERIAL_TEST(Plate, BearsTheTotalStress)
     }
 }
 
-// friction is that of the total stress, and said to be so; without friction nothing is said
-SERIAL_TEST(Plate, FrictionIsThatOfTheTotalStress)
+/** Friction over that of the whole load, of a plate that slides on the column from 60 ms on. */
+double friction(const std::string &water, double offset)
 {
   const ScratchFile file("plate.stl", text_of(plate()));
-  const auto scene = [&](const char *friction) {
-    return under_plate(file.name, "2.2e7 1000 9810 soil m 0.4 constant 1e-9",
-                       strprintf("slip %svelocity 2 0 0 force 0 0 v_f hold y rx ry rz", friction),
-                       0.25) +
-        strprintf("variable f equal -%g*v_q\n", 1e4 * AREA);
-  };
-  EXPECT_EQ(
-      lines_that_say(scene("friction 0.3 ") + "timestep 1e-6\nrun 0\n", "that of the total stress")
-          .size(),
-      1u);
-  EXPECT_EQ(lines_that_say(scene("") + "timestep 1e-6\nrun 0\n", "that of the total stress").size(),
-            0u);
-  Scene run(scene("friction 0.3 "));
-  run_to(run, 0.06);
-  const double *const tool = run.fix_vector("tool", 24);
-  EXPECT_NEAR(measured("friction over force", -tool[9] / tool[11]) / 0.3, 1.0, 1e-9);
+  Scene run(replaced(under_plate(file.name, water,
+                                 "slip friction 0.3 velocity 4 0 0 force 0 0 v_f hold y rx ry rz",
+                                 offset),
+                     "zlo slip", "zlo stick") +
+            strprintf("variable f equal -%g*v_q\n", 1e4 * AREA));
+  double along = 0.0, down = 0.0;
+  run.each_step([&](double **) {
+    if (run.time() < 0.06) return;
+    along -= run.fix("tool")->compute_vector(9);
+    down += run.fix("tool")->compute_vector(11);
+  });
+  run_to(run, 0.08);
+  return along / down / 0.3;
+}
+
+// friction is that of grains: of the effective stress where the surface is closed, of all where it is open to air
+SERIAL_TEST(Plate, FrictionIsThatOfGrains)
+{
+  for (const double K : {2.2e7, 2.2e8})
+    for (const double offset : {0.0, 0.25, 0.6})
+      EXPECT_NEAR(measured(strprintf("K %g, offset %g, friction", K, offset),
+                           friction(strprintf("%g 1000 9810 soil m 0.4 constant 1e-9", K), offset)),
+                  1.0 - share_of_water(K), 0.1);
+  EXPECT_NEAR(measured("drained",
+                       friction("2.2e7 1000 9810 soil m 0.4 constant 1e-9 free pressure 0", 0.25)),
+              1.0, 1e-9);
+}
+
+// consolidation under a plate that lets water through, or one that does not, on a floor that does
+SERIAL_TEST(Plate, ConsolidatesTheSoil)
+{
+  const ScratchFile file("plate.stl", text_of(plate()));
+  const double K = 2.2e7, c = 2e-3 / 9810.0 / (1.0 / MODULUS + 0.4 / K), ramp = 0.02, h = 0.1;
+  for (const char *surface : {"free pressure 0", "free pressure 0 bodies closed zlo pressure 0"}) {
+    Scene run(
+        space("si", "p p f", strprintf("0 %g 0 %g 0 1.6", 2 * h, 2 * h), 1, 0.3 * h) +
+        "region soil block INF INF INF INF 0 1\n" +
+        strprintf("fix grid all mpm %g\ncreate_points 1 region soil spacing %g\n", h, 0.5 * h) +
+        "fix m all mpm/material density 200 linear 1e7 0.3\n"
+        "fix floor all mpm/boundary zlo slip\nregion shape mpm/mesh " +
+        file.name + " 1.0 -0.8 -0.8 1.0\n" +
+        strprintf("variable q equal 0.5*(1-cos(PI*((time<%g)*time/%g+(time>=%g))))\n", ramp, ramp,
+                  ramp) +
+        strprintf("variable f equal -%g*v_q\n", 1e4 * 4 * h * h) +
+        strprintf("fix water all mpm/pore %g 100 9810 soil m 0.4 constant 2e-3 %s\n", K, surface) +
+        strprintf("fix tool all mpm/rigid shape mass %g separate force 0 0 v_f hold x y rx ry "
+                  "rz\n",
+                  4 * h * h));
+    Water water(run);
+    for (const double T : {0.1, 0.5}) {
+      run_to(run, T / c + 0.5 * ramp);
+      double left = 0.0, exact = 1.0;
+      for (int i = 0; i < run.n(); i++) left += water.pressures()[i] / run.n();
+      for (int m = 0; m < 200; m++) {
+        const double M = (2 * m + 1) * PI2;
+        exact -= 2.0 / (M * M) * std::exp(-M * M * T);
+      }
+      EXPECT_NEAR(
+          measured(strprintf("%s, T %g, U", surface, T), 1.0 - left / (1e4 * share_of_water(K))),
+          exact, T < 0.2 ? 0.02 : 0.005);
+    }
+  }
+}
+
+// no water leaves a column that a plate closes, though its free surface would be open
+SERIAL_TEST(Plate, ClosesTheSurface)
+{
+  const ScratchFile file("plate.stl", text_of(plate()));
+  for (const char *bodies : {"open", "closed"}) {
+    Scene run(under_plate(file.name,
+                          std::string("2.2e7 1000 9810 soil m 0.4 constant 1e-3 free pressure 0 "
+                                      "bodies ") +
+                              bodies,
+                          "separate force 0 0 v_f hold x y rx ry rz", 0.3) +
+              strprintf("variable f equal -%g*v_q\n", 1e4 * AREA));
+    run_to(run, 0.06);
+    const double came = measured(bodies, run.fix("water")->compute_scalar());
+    if (bodies[0] == 'o')
+      EXPECT_LT(came, -1e-6);
+    else
+      EXPECT_EQ(came, 0.0);
+  }
+  Scene other(under_plate(file.name,
+                          "2.2e7 1000 9810 soil m 0.4 constant 1e-3 free pressure 0 bodies closed",
+                          "separate", 0.0));
+  other.commands("unfix tool\n");
+  expect_error(other, "timestep 1e-6\nrun 0\n", "there is no fix mpm/rigid");
+}
+
+// pair styles do not know what water bears, which is told where they have friction
+SERIAL_TEST(Pairs, HaveFrictionOfTheTotalStress)
+{
+  for (const char *friction : {"", " friction 0.3 0.01"})
+    EXPECT_EQ(
+        lines_that_say(
+            plane("si", "p f", "0 0.4 -0.4 1", 2, 0.03) +
+                "region soil block INF INF 0 1 INF INF\nregion base block INF INF -0.4 0 INF INF\n"
+                "group soil empty\ngroup base empty\nfix grid soil mpm 0.1\nfix lower base mpm "
+                "0.1\n"
+                "create_points 1 region soil spacing 0.05 fix grid group soil\n"
+                "create_points 2 region base spacing 0.05 fix lower group base\n"
+                "fix m all mpm/material density 1990 linear 1e7 0.3\n"
+                "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 1e-9\n"
+                "comm_modify vel yes\npair_style mpm/penalty\npair_coeff * * 1e6" +
+                friction + "\ntimestep 1e-6\nrun 0\n",
+            "that of the total stress")
+            .size(),
+        friction[0] ? 1u : 0u);
 }
 
 // a ball that slides and turns on wet soil, on ranks and after a restart
@@ -114,7 +206,8 @@ TEST(Ball, IsTheSameOnRanksAndAfterARestart)
                     fixes = "fix m all mpm/material density 1990 linear 1e6 0.3\n"
                             "fix floor all mpm/boundary zlo slip\nregion shape mpm/mesh " +
       file.name +
-      " 1.0 0.75 0.4 0.77\nfix water all mpm/pore 2.2e6 1000 9810 soil m 0.4 constant 1e-3\n"
+      " 1.0 0.75 0.4 0.77\nfix water all mpm/pore 2.2e6 1000 9810 soil m 0.4 constant 1e-3 free "
+      "pressure 0 bodies closed\n"
       "fix tool all mpm/rigid shape density 3000 separate friction 0.4 velocity 1 0.5 -2 omega 1 2 "
       "3\ntimestep 1e-4\n";
   Twins run(head + fixes, 80, "fix grid all mpm 0.1\n" + fixes, 70, 1.0e-9);

@@ -89,6 +89,9 @@ class FixMPMBoundary :
   MPMTrialContact *trial_contact() override { return decides() || follows ? this : nullptr; }
   void act(double dt, Stage) override;
 
+  bool is_region() const { return !region_id.empty(); }
+  /** Of a place from the surface of the region, negative inside; far where it is more. During a run. */
+  double distance(const double *x, double far) const { return surface->distance(x, far); }
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
   bool holds_axis(const MPMField &) const;
 

@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm_boundary.h"
 #include "fix_mpm_implicit.h"
 #include "fix_mpm_material.h"
 #include "fix_mpm_rigid.h"
@@ -22,7 +23,9 @@
 #include "mpm_field.h"
 #include "mpm_geostatic.h"
 #include "mpm_options.h"
+#include "mpm_pair_styles.h"
 #include "mpm_points.h"
+#include "pair_mpm_penalty.h"
 #include "update.h"
 #include "variable.h"
 
@@ -205,6 +208,13 @@ Options MPMPoreOptions::declare(int dim)
                {"seepage", MPMPoreCondition::SEEPAGE,
                 "water leaves where its pressure is above that of the air, and none comes in"}})});
   }
+  o.add("bodies",
+        {word(seals,
+              {{"open", false, "the free surface stays what it is"},
+               {"closed", true, "no water goes through it"}})},
+        "free surfaces of the soil that a body of fix mpm/rigid, or a region of fix mpm/boundary, "
+        "touches")
+      .standard("open");
   o.add(
       "initial",
       {text(initial, "p",
@@ -385,20 +395,49 @@ void FixMPMPore::init()
   }
 }
 
-/** Rigid bodies bear the total stress. As they act on nodes inside of them alone, soil next to them is pressed together by more than
- *  the load where nodes are off their surface, and neither the stress of its grains nor the pressure of its water there is that of the
- *  soil further away: what grains bear at the surface cannot be told. */
+/** Between points, pair styles do not know what water bears. */
 void FixMPMPore::warn_of_contact() const
 {
   if (comm->me || wet.empty()) return;
-  for (const auto *fix : modify->get_fix_by_style("^mpm/rigid$"))
-    if (dynamic_cast<const FixMPMRigid *>(fix)->has_friction())
+  for (const auto &style : MPMPairStyle::all(*force)) {
+    const auto *const penalty = dynamic_cast<const PairMPMPenalty *>(style.pair);
+    if (penalty ? penalty->has_friction() : style.name.compare(0, 4, "gran") == 0)
       error->warning(
           FLERR,
-          "Fix mpm/rigid {}: friction on soils of fix mpm/pore {} is that of the total stress, "
-          "with the pressure of the water: use friction 0, or, for a body whose motion is "
-          "given, fix mpm/boundary with the region",
-          fix->id, id);
+          "Pair style {}: any friction on soils of fix mpm/pore {} is that of the total stress, "
+          "with "
+          "the pressure of the water: use fix mpm/contact, fix mpm/boundary with a region, or fix "
+          "mpm/rigid, which know what water bears",
+          style.name, id);
+  }
+}
+
+/** Bodies that close the free surface where they touch it. */
+void FixMPMPore::find_seals()
+{
+  rigid_bodies.clear();
+  walls.clear();
+  if (!seals) return;
+  if (conditions[MPMPoreSurface::FREE].kind == MPMPoreCondition::CLOSED)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/pore bodies closed needs a free surface that is open elsewhere: use free, "
+               "or leave it out");
+  for (const auto *body : find_fixes<FixMPMRigid>(lmp)) rigid_bodies.push_back(body);
+  for (const auto *wall : find_fixes<FixMPMBoundary>(lmp))
+    if (wall->is_region()) walls.push_back(wall);
+  if (rigid_bodies.empty() && walls.empty())
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/pore bodies closed: there is no fix mpm/rigid, and no fix mpm/boundary with "
+        "a region");
+}
+
+double FixMPMPore::distance_to_bodies(const double *x, double far) const
+{
+  double least = far;
+  for (const auto *body : rigid_bodies) least = std::min(least, body->distance(x, far));
+  for (const auto *wall : walls) least = std::min(least, wall->distance(x, far));
+  return least;
 }
 
 void FixMPMPore::init_physics(MPMPlan &plan)
@@ -407,10 +446,15 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   wet.clear();
   steps.clear();
   steps.add(in_step, present);
+  find_seals();
   for (auto *field : plan.fields) {
     fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax,
                                                formulation == U_V_P));
     auto &mine = *fields.back();
+    if (seals)
+      mine.surface.distance_to_seals = [this](const double *x, double far) {
+        return distance_to_bodies(x, far);
+      };
     mine.init(soils, content);
     if (!mine.has_water()) continue;
     wet.push_back(&mine);

@@ -37,6 +37,7 @@ struct MPMPoreOptions {
   MPMPoreWater water;
   std::vector<MPMPoreSoil> soils;
   MPMPoreSurface::Conditions conditions;
+  bool seals = false;              ///< do bodies close free surfaces that they touch?
   std::string initial = "0.0";     ///< pressure of points, a number or v_name
   bool geostatic = false;          ///< at rest under the weight at first
   double K0 = 0.0, table = 0.0;    ///< with this ratio of stresses, and height of the water table
@@ -104,6 +105,13 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
 
+  bool has_water(const MPMField &field) const { return of(field).has_water(); }
+  /** See MPMPore. */
+  void find_forces_below_surface(const MPMField &field, const std::vector<char> &near,
+                                 std::vector<double> &of_water, std::vector<double> &of_all) const
+  {
+    of(field).find_forces_below_surface(near, of_water, of_all);
+  }
   /** Has the water inertia of its own (formulation u-v-p)? */
   bool moves() const { return formulation == U_V_P; }
   /** Has it water in the pores of this material (ID of a fix mpm/material)? */
@@ -127,7 +135,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   MPMSuperStep steps;            // of the pressures of all fields together
   double gravity[3];             // force per mass
   MPMGravity weight;
-  std::vector<double> formula_values;    // [n] permeability by variables
+  std::vector<const class FixMPMRigid *> rigid_bodies;    // that seal what they touch
+  std::vector<const class FixMPMBoundary *> walls;        // the same of regions
+  std::vector<double> formula_values;                     // [n] permeability by variables
 
   // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this
   // rank's share: that has come in so far; that came in the last step, and comes in a stage of it for each
@@ -146,6 +156,8 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
   void warn_of_contact() const;
+  void find_seals();
+  double distance_to_bodies(const double *x, double far) const;
   void init_motion(MPMField &);
   void init_implicit() const;
   bool can_dry() const;

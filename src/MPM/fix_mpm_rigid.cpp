@@ -27,6 +27,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_incompressible.h"
+#include "fix_mpm_pore.h"
 #include "force.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
@@ -34,6 +35,7 @@
 #include "mpm_field.h"
 #include "mpm_image.h"
 #include "mpm_options.h"
+#include "mpm_patch_sums.h"
 #include "mpm_physics.h"
 #include "mpm_region_body.h"
 #include "region_mpm_mesh.h"
@@ -375,10 +377,8 @@ void FixMPMRigid::find_contacts()
         field->grid.node_position(first + n, c.r);
         for (int d = 0; d < 3; d++) c.r[d] -= x[d];
         nearest_image(*domain, c.r);
-        double local[3];
-        MathExtra::transpose_matvec(Q, c.r, local);
-        const SurfaceMesh::Point p = {mesh->center[0] + local[0], mesh->center[1] + local[1],
-                                      mesh->center[2] + local[2]};
+        SurfaceMesh::Point p;
+        place_in_body(c.r, p);
         // a node that sticks needs no normal: far from the surface there is nothing to search for
         if (kind == STICK ? !mesh->inside(p) : mesh->bound(p) > 0.0) continue;
         MathExtra::copy3(c.record, c.v);
@@ -393,11 +393,21 @@ void FixMPMRigid::find_contacts()
   }
 }
 
+/** In the frame of the mesh; r: from the center of the body. */
+void FixMPMRigid::place_in_body(const double *r, std::array<double, 3> &p) const
+{
+  double local[3];
+  MathExtra::transpose_matvec(Q, r, local);
+  for (int d = 0; d < 3; d++) p[d] = mesh->center[d] + local[d];
+}
+
 /** False: the point is outside, or has no normal. */
 bool FixMPMRigid::find_normal(const std::array<double, 3> &p, Contact &c) const
 {
   SurfaceMesh::Point out;
-  if (mesh->distance_and_normal(p, out) > 0.0) return false;
+  const double distance = mesh->distance_and_normal(p, out);
+  if (distance > 0.0) return false;
+  c.depth = -distance;
   MathExtra::matvec(Q, out.data(), c.n);
   if (MathExtra::lensq3(c.n) > 0.0) return true;
   // no way out is shorter: along the motion of the body
@@ -477,7 +487,8 @@ void FixMPMRigid::solve()
       c.relative_velocity(u.data(), w);
       const double normal = MathExtra::dot3(w, c.n);
       MathExtra::scaleadd3(-normal, c.n, w, slide);
-      const double length = MathExtra::len3(slide), most = friction * fabs(normal);
+      const double held = friction * (1.0 - c.of_water);    // by what is between grains and body
+      const double length = MathExtra::len3(slide), most = held * fabs(normal);
       const Contact before = c;
       MathExtra::zero3(c.pull);
       if (kind == SEPARATE && !(normal > 0.0))
@@ -487,8 +498,7 @@ void FixMPMRigid::solve()
       else {
         c.state = Contact::SLIDES;
         if (friction > 0.0)
-          for (int d = 0; d < 3; d++)
-            c.pull[d] = std::copysign(friction, normal) * slide[d] / length;
+          for (int d = 0; d < 3; d++) c.pull[d] = std::copysign(held, normal) * slide[d] / length;
       }
       if (c.state != before.state) changed = 1;
       for (int d = 0; d < 3; d++)
@@ -524,6 +534,86 @@ void FixMPMRigid::solve()
     }
     return;
   }
+}
+
+/* ----------------------------------------------------------------------
+   Water in pores bears a part of what pushes the body. Nodes outside of it are free, so that soil within a cell of its surface is
+   pressed together by more than the load where nodes are off that, grains and water alike. So the share is that in what crosses a
+   layer below it: with w = 1 next to the surface, and falling to 0 across the layer, minus the forces of points on nodes have the
+   sum w_i f_i = -int sigma grad w dV, the mean of the stress across the layer. What crosses it is what the body bears.
+------------------------------------------------------------------------- */
+
+static constexpr double PATCH = 2.5;    // radius of sums along the surface, in node spacings
+static constexpr double LAYER_FROM = 1.0, LAYER_TO = 3.0;    // of the surface, in node spacings
+
+void FixMPMRigid::find_water()
+{
+  const auto pores = find_fixes<FixMPMPore>(lmp);
+  if (pores.empty()) return;
+  std::vector<MPMPatchSums::Place> places;
+  std::vector<double> of_water, of_all;
+  double h = 0.0;
+  int part = -1;
+  for (auto *field : MPMField::all(lmp)) {
+    part++;
+    if (!pores[0]->has_water(*field)) continue;
+    const auto &grid = field->grid;
+    h = std::max(h, field->lattice.h);
+    const double half = 0.5 * (grid.side - 1) * field->lattice.h,
+                 reach = LAYER_TO * field->lattice.h;
+    std::vector<char> near(grid.blocks.size(), 0);
+    for (std::size_t slot = 0; slot < grid.blocks.size(); slot++) {
+      double at[3];
+      grid.node_position((int64_t) slot * NODES_PER_BLOCK, at);
+      for (int d = 0; d < 3; d++) at[d] += half - x[d];
+      nearest_image(*domain, at);
+      near[slot] = MathExtra::len3(at) <= farthest + reach + 1.8 * half;
+    }
+    pores[0]->find_forces_below_surface(*field, near, of_water, of_all);
+    for (std::size_t slot = 0; slot < near.size(); slot++)
+      for (int n = 0; near[slot] && n < NODES_PER_BLOCK; n++) {
+        const auto &block = grid.blocks[slot];
+        if ((block.alias >> n & 1) || !(block.owned >> n & 1)) continue;
+        const int64_t node = (int64_t) slot * NODES_PER_BLOCK + n;
+        const double *const of[2] = {&of_water[3 * node], &of_all[3 * node]};
+        if (!(MathExtra::lensq3(of[1]) > 0.0)) continue;
+        MPMPatchSums::Place place;
+        grid.node_position(node, place.at);
+        for (int d = 0; d < 3; d++) place.at[d] -= x[d];
+        nearest_image(*domain, place.at);
+        SurfaceMesh::Point p, out;
+        place_in_body(place.at, p);
+        if (mesh->bound(p) > reach) continue;
+        const double distance = mesh->distance_and_normal(p, out),
+                     depth = distance / field->lattice.h;
+        if (depth >= LAYER_TO) continue;
+        const double w = std::min(1.0, (LAYER_TO - depth) / (LAYER_TO - LAYER_FROM));
+        MathExtra::matvec(Q, out.data(), place.normal);
+        for (int d = 0; d < 3; d++) place.at[d] -= distance * place.normal[d];
+        place.part = part;
+        for (int k = 0; k < 2; k++) place.value[k] = -w * MathExtra::dot3(of[k], place.normal);
+        places.push_back(place);
+      }
+  }
+  if (h == 0.0) return;
+  MPMPatchSums sums(world, PATCH * h);
+  sums.gather(places);
+  for (auto &c : contacts) {
+    double at[3];
+    MathExtra::scaleadd3(c.depth, c.n, c.r, at);
+    const auto [water, all] = sums.around(c.place, at, c.n);
+    c.of_water = all > 0.0 ? std::min(1.0, water / all) : water > 0.0 ? 1.0 : 0.0;
+  }
+}
+
+double FixMPMRigid::distance(const double *at, double far) const
+{
+  double r[3];
+  MathExtra::sub3(at, x, r);
+  nearest_image(*domain, r);
+  SurfaceMesh::Point p, closest;
+  place_in_body(r, p);
+  return mesh->bound(p) > far ? far : mesh->distance(p, closest);
 }
 
 /* ----------------------------------------------------------------------
@@ -592,6 +682,7 @@ void FixMPMRigid::act(double dt, Stage stage)
     load_impulse(dt);
     hold();
     find_contacts();
+    if (friction > 0.0) find_water();
     if (heating) heating->begin_step();
     solve();
     move(dt);

@@ -81,7 +81,8 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   bool decides_contact(const MPMField &) const override { return kind == SEPARATE; }
   void act(double dt, Stage) override;
 
-  bool has_friction() const { return friction > 0.0; }
+  /** Of a place from the surface, negative inside; far where it is more. Not of bodies in a flow. */
+  double distance(const double *x, double far) const;
   /** Largest time step: no point of the body crosses a cell. */
   double stable_dt() const;
 
@@ -107,10 +108,12 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
     double *record;    // of the node: its velocity and mass
     bool owned;
     State state;
-    double r[3];            // from the center of the body
-    double n[3] = {};       // out of the body, where nodes do not just stick
-    double v[3];            // before the contact
-    double pull[3] = {};    // impulse of friction on the node, for an impulse of 1 along n
+    double r[3];              // from the center of the body
+    double n[3] = {};         // out of the body, where nodes do not just stick
+    double depth = 0.0;       // below its surface
+    double of_water = 0.0;    // share of the impulse along n that water in pores bears
+    double v[3];              // before the contact
+    double pull[3] = {};      // impulse of friction on the node, for an impulse of 1 along n
 
     /** Velocity of the body (u: its velocity and angular velocity) at the node, relative to v. */
     void relative_velocity(const double *u, double *w) const;
@@ -126,7 +129,9 @@ class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
   void load_impulse(double dt);
   void find_contacts();
   bool find_normal(const std::array<double, 3> &, Contact &) const;
+  void place_in_body(const double *r, std::array<double, 3> &) const;
   void solve();
+  void find_water();
   void heat_node(const Contact &, double normal_impulse, const double *u);
   void move(double dt);
   double speed() const;

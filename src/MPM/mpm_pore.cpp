@@ -443,6 +443,28 @@ void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &
       force);
 }
 
+void MPMPore::find_forces_below_surface(const std::vector<char> &near,
+                                        std::vector<double> &of_water,
+                                        std::vector<double> &of_all) const
+{
+  const auto map = [&](bool all, std::vector<double> &force) {
+    map_forces(
+        field, near,
+        [&](int i, double *tau, double *f) {
+          const MPMPoreSoil *const s = soil_of(i);
+          double p = in_forces[i];
+          if (!all && s)
+            surface.replace_by_outside(atom->x[i], s->biot * field.points->jacobian(i), p);
+          for (int c = 0; c < 6; c++)
+            tau[c] = (all ? field.points->tau[i][c] : 0.0) - (c < 3 ? p : 0.0);
+          for (int d = 0; d < 3; d++) f[d] = 0.0;
+        },
+        force);
+  };
+  map(false, of_water);
+  map(true, of_all);
+}
+
 /* ---------------------------------------------------------------------- */
 
 bool MPMPore::moves_first() const

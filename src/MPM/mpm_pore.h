@@ -60,6 +60,10 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   /** See MPMPhysics::surface_force(). */
   void find_surface_force(const MPMRows &state, const std::vector<char> &near,
                           std::vector<double> &force) const;
+  /** Forces of points on nodes, [node][3], where marked in near, of the water and of soil and water together. For the former the
+   *  water has the pressure outside where the free surface is open to one: it is that at the surface. Collective. */
+  void find_forces_below_surface(const std::vector<char> &near, std::vector<double> &of_water,
+                                 std::vector<double> &of_all) const;
   /** The velocities of the step are known. */
   void take_motion();
   /** Does that move and strain the points, too? Nothing in the flow of the step looks at their deformation after it then. */

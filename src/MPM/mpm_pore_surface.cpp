@@ -218,6 +218,23 @@ void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, doubl
   if (place.n && place.n_at) places.push_back(place);
 }
 
+/** What is left of the free surface at a place next to bodies that close it. */
+double MPMPoreSurface::open_part(const double *x) const
+{
+  if (!distance_to_seals) return 1.0;
+  const double h = field.lattice.h, gap = distance_to_seals(x, IS_APART * h) / h;
+  return std::clamp((gap - TOUCHES) / (IS_APART - TOUCHES), 0.0, 1.0);
+}
+
+/** Only next to bodies, which close it all if they do. */
+void MPMPoreSurface::replace_by_outside(const double *x, double factor, double &p) const
+{
+  const auto &c = conditions[FREE];
+  if (c.kind == MPMPoreCondition::CLOSED || c.kind == MPMPoreCondition::FLUX || distance_to_seals)
+    return;
+  p = factor * pressure_outside(c, x);
+}
+
 /** The nodes that a place reaches; returns their number, 0: not all of them are there. */
 int MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
 {
@@ -315,7 +332,9 @@ void MPMPoreSurface::find_places()
         normal[d] = g[d] / length;
         at[d] = x[d] + depth * h * normal[d];
       }
-      const double part = std::min(1.0, length / function(depth));
+      const double open = open_part(at);
+      if (!(open > 0.0)) continue;
+      const double part = open * std::min(1.0, length / function(depth));
       add_place(stencil, FREE, part * (1.0 - fabs(depth)) * side, 1.0, at, normal);
     }
   }

@@ -17,6 +17,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -66,6 +67,10 @@ class MPMPoreSurface : protected Pointers {
   void find_places();
   /** The pressure outside of a part where it is given and below that of the air; otherwise zero. */
   double suction_outside(int part) const;
+  /** Distance of bodies that close the free surface where they touch it: distance(x, far), far where it is more. */
+  std::function<double(const double *, double)> distance_to_seals;
+  /** Where the free surface is open to a pressure outside, and no body closes it, p is that, times a factor. */
+  void replace_by_outside(const double *x, double factor, double &p) const;
   /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest
    *  of a soil; wet: of soils that can dry, or null. Returns a bound of the rates of exchange at this rank's
    *  nodes [1/time]. Collective. */
@@ -127,6 +132,7 @@ class MPMPoreSurface : protected Pointers {
   void find_blocks_near();
   void map_volume();
   double function(double depth) const;
+  double open_part(const double *x) const;
   double end_off_face(const int *index, int face, double wall) const;
   double pressure_outside(const MPMPoreCondition &, const double *x) const;
   int add_nodes(class MPMStencil &, const double *x);

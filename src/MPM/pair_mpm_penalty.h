@@ -18,6 +18,7 @@ PairStyle(mpm/penalty,PairMPMPenalty);
 #include "declare/option.h"
 #include "pair.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -68,6 +69,14 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   double memory_usage() override;
+
+  /** Is there friction between any types? */
+  bool has_friction() const
+  {
+    return std::any_of(coeffs.begin(), coeffs.end(), [](const auto &c) {
+      return c.friction > 0.0;
+    });
+  }
 
  private:
   using Coeff = MPMPenaltyCoeff;

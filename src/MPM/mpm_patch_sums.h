@@ -1,0 +1,47 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_PATCH_SUMS_H
+#define LMP_MPM_PATCH_SUMS_H
+
+#include <array>
+#include <map>
+#include <mpi.h>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** Sums of two values over patches of a surface: of places that are nearer than a radius, and look the same way. All ranks have the
+ *  places of all of them. */
+class MPMPatchSums {
+ public:
+  struct Place {
+    double part;    ///< places of different parts are on different surfaces
+    double at[3], normal[3];
+    double value[2];
+  };
+
+  MPMPatchSums(MPI_Comm world, double radius) : world(world), radius(radius) {}
+
+  /** This rank's places. Collective. */
+  void gather(const std::vector<Place> &mine);
+  /** Sums over the patch around a place, with weights that fall from one to zero at the radius. */
+  std::array<double, 2> around(double part, const double *at, const double *normal) const;
+
+ private:
+  using Cell = std::array<int, 3>;
+
+  MPI_Comm world;
+  double radius;
+  std::map<Cell, std::vector<Place>> cells;
+
+  Cell cell_of(const double *at) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
