@@ -669,7 +669,7 @@ SERIAL_TEST(Implicit, BadInput)
   for (const char *options :
        {"frame total", "shape linear", "stress gradient", "transfer pic", "transfer flip 0.9"})
     expect_error(beam(4, options, 1.0, "midpoint") + "run 1\n", "use transfer flip 1.0");
-  for (const char *options : {"scheme musl", "transfer xpic 2", "locking fbar", "shape cpdi",
+  for (const char *options : {"scheme musl", "transfer xpic 2", "locking fbar", "locking both",
                               "every 2", "transfer flip 1.0", "transfer flip 0.99 edges modified"})
     expect_error(beam(4, options, 1.0, "static") + "run 1\n", "mpm/implicit");
 }

@@ -175,8 +175,6 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
         "flip "
         "1.0, in the updated frame also transfer apic with shape quadratic or cubic and stress "
         "mls"},
-       {has_domain(options.shape), "shape cpdi and cpdi2",
-        "their nodes are not reached by trial motions: use B-splines or gimp"},
        {options.averages_strain(), "locking fbar and both",
         "their motions of points are not those that forces belong to: use locking pressure"},
        {options.modified_edges, "edges modified", "use edges plain, the default"},

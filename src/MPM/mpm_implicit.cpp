@@ -14,6 +14,7 @@
 #include "mpm_node_action.h"
 #include "mpm_physics.h"
 #include "mpm_plan.h"
+#include "mpm_stencil.h"
 #include "mpm_trial_contact.h"
 
 #include <Eigen/Eigenvalues>
@@ -39,9 +40,10 @@ static constexpr double SOFT = 0.1, HARDER = 0.1;    // the same at first, and i
 static constexpr double NEARLY = 1.0e-3;             // of all forces, for that change
 static constexpr double MAY_GROW =
     100.0;    // forces that are not in balance, where lines of nodes begin to stick or slip
-static constexpr double AT_ONCE = 0.1;    // node spacings that walls move nodes alone
-static constexpr int ROUNDS = 2;          // of friction of walls that press on each other
-static constexpr double LOST = 1.0e12;    // times the first residual
+static constexpr double AT_ONCE = 0.1;       // node spacings that walls move nodes alone
+static constexpr int ROUNDS = 2;             // of friction of walls that press on each other
+static constexpr double LOST = 1.0e12;       // times the first residual
+static constexpr double REACHED = 1.0e-9;    // by domains, in points
 // unknowns of a system that is factorized as a whole, which is faster than levels, by dimension
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};
 
@@ -89,19 +91,43 @@ void MPMImplicit::init()
 void MPMImplicit::take_nodes()
 {
   const int64_t nnodes = grid.nnodes();
+  if (field.domains) find_reach();
   mass.resize(nnodes);
   for (auto *list : {&before, &explicit_velocity, &outer, &inner, &from, &residual, &free, &trial,
                      &change, &room})
     list->assign(nreals(), 0.0);
-  const double *record = field.grid.nodes();
+  double *record = field.grid.nodes();
   for (int64_t n = 0; n < nnodes; n++, record += 8) {
     mass[n] = record[3] > 0.0 ? record[3] : 0.0;
+    if (field.domains && reach[n] < REACHED) {    // as if no point came there
+      std::fill_n(record, 8, 0.0);
+      mass[n] = 0.0;
+    }
     if (mass[n] == 0.0) continue;
     for (int d = 0; d < width; d++) {
       explicit_velocity[width * n + d] = record[d];
       before[width * n + d] = record[4 + d];
     }
   }
+}
+
+/* ----------------------------------------------------------------------
+   A node that corners of domains come to by a share e of its cell has forces of the order e, and a stiffness of the order e^2: it moves by
+   1/e of what the corners do. Forces of nodes say how well those of corners are in balance when they are divided by e. Where e is round-off of
+   the places of corners, which may be on a plane of nodes, the node is left alone: corners then stand still by this share
+------------------------------------------------------------------------- */
+
+void MPMImplicit::find_reach()
+{
+  const MPMStencil stencil(field);
+  reach.assign(grid.nnodes(), 0.0);
+  for (const auto &run : field.map->runs)
+    for (bigint i = run.first; i < run.last; i++)
+      stencil.visit(grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+        reach[node.number] += node.weight;
+      });
+  field.nodes.sum(reach.data(), 1, 0, 1);
+  for (double &number : reach) number = std::min(number, 1.0);
 }
 
 /* ----------------------------------------------------------------------
@@ -314,15 +340,15 @@ void MPMImplicit::check_contacts()
   for (auto *contact : contacts) contact->check_arrival();
 }
 
-/** Of the vectors of all nodes. */
-double MPMImplicit::sum_of_sizes(const std::vector<double> &f)
+/** Of the vectors of all nodes; of_corners: of what these are for corners of domains, see find_reach(). */
+double MPMImplicit::sum_of_sizes(const std::vector<double> &f, bool of_corners)
 {
   double mine = 0.0, sum;
   for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
     if (!(mass[n] > 0.0) || !grid.owns(n)) continue;
     double square = 0.0;
     for (int d = 0; d < width; d++) square += f[width * n + d] * f[width * n + d];
-    mine += std::sqrt(square);
+    mine += std::sqrt(square) / (of_corners && field.domains ? reach[n] : 1.0);
   }
   sum_in_order(lmp, 1, &mine, of_ranks, &sum);
   return sum;
@@ -440,7 +466,7 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
   }
   project_forces(free.data());
   for (auto *contact : contacts) contact->take_forces(of_pushes);
-  now.unbalanced = sum_of_sizes(free);
+  now.unbalanced = sum_of_sizes(free, true);
   MPI_Allreduce(&carried, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
   if (joint) now.water = joint->find_residual(u, all);
   size = all + sum_of_sizes(outer) + sum_of_sizes(change);
@@ -692,6 +718,7 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     if (left > 0.0) goal.relative = std::max(accuracy, 0.1 * enough / left);
     goal.relative = std::min(goal.relative, options.least_accuracy);
     goal.most_iterations = (int) options.most_linear;
+    goal.natural = (bool) field.domains;
     const auto solved = joint ? joint->solve(u, goal) : solve(free.data(), change.data(), goal);
     std::vector<double> &du = change;
     now.linear += solved.iterations;
@@ -967,14 +994,12 @@ double MPMImplicit::memory_usage() const
   double bytes = tangent.memory_usage() + memory.memory_usage() + solver.memory_usage() +
       general.memory_usage() + (multigrid ? multigrid->memory_usage() : 0.0) +
       (joint ? joint->memory_usage() : 0.0);
-  for (const auto *list : {&mass,     &friction, &before,       &explicit_velocity,
-                           &outer,    &inner,    &from,         &wall,
-                           &held,     &start,    &acceleration, &push,
-                           &closing,  &velocity, &loads,        &more_loads,
-                           &residual, &partial,  &of_nodes,     &of_points,
-                           &early,    &next,     &free,         &change,
-                           &trial,    &blocks,   &room,         &allowed,
-                           &of_heavy})
+  for (const auto *list : {&mass,      &reach,        &friction, &before,  &explicit_velocity,
+                           &outer,     &inner,        &from,     &wall,    &held,
+                           &start,     &acceleration, &push,     &closing, &velocity,
+                           &loads,     &more_loads,   &residual, &partial, &of_nodes,
+                           &of_points, &early,        &next,     &free,    &change,
+                           &trial,     &blocks,       &room,     &allowed, &of_heavy})
     bytes += list->capacity() * sizeof(double);
   bytes += heavy.capacity() * sizeof(int64_t);
   return bytes;

@@ -149,8 +149,9 @@ class MPMImplicit : private MPMNodeSystem {
   double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of their way in this step
   std::vector<double> closing;    // what walls bring to them, displacements; empty: nothing
   std::vector<double> friction;
-  int repeats = 1;             // of node actions, until they are a projection
-  std::vector<double> mass;    // [node]
+  int repeats = 1;              // of node actions, until they are a projection
+  std::vector<double> mass;     // [node]
+  std::vector<double> reach;    // [node] number of points there, at most 1; empty: of no account
   std::vector<double> before, explicit_velocity, outer, inner, from, wall, held;
   std::vector<double> start, acceleration;    // with walls, for dynamics
   std::vector<double>
@@ -203,6 +204,7 @@ class MPMImplicit : private MPMNodeSystem {
 
   int64_t nreals() const { return (int64_t) mass.size() * width; }
   void take_nodes();
+  void find_reach();
   void find_constraints();
   void act(double *velocities);
   void project(double *x);
@@ -215,7 +217,7 @@ class MPMImplicit : private MPMNodeSystem {
   double negligible_forces(const std::vector<double> &u, double stiffness) const;
   bool close(std::vector<double> &u, const std::vector<double> &du, double &size, double &share);
   void project_forces(double *f);
-  double sum_of_sizes(const std::vector<double> &);
+  double sum_of_sizes(const std::vector<double> &, bool of_corners = false);
   bool find_residual(const std::vector<double> &u, double &size);
   bool search(std::vector<double> &u, double slope, double &size);
   void find_blocks();

@@ -673,11 +673,36 @@ double MPMTangent::mls_moment() const
   return mls ? shape_constants[field.options.shape].inv_moment / field.lattice.h : 0.0;
 }
 
+/** The nodes of point i, each of them once, by their numbers where corners of a domain see one of them together. */
+static void collect(const MPMStencil &stencil, const MPMField &field, int slot, int i,
+                    std::vector<MPMStencil::Node> &nodes)
+{
+  nodes.clear();
+  stencil.visit(field.grid.blocks[slot], i, [&](const MPMStencil::Node &node) {
+    nodes.push_back(node);
+  });
+  if (!field.domains) return;
+  std::sort(nodes.begin(), nodes.end(), [](const auto &a, const auto &b) {
+    return a.number < b.number;
+  });
+  std::size_t n = 0;
+  for (const auto &node : nodes) {
+    if (n == 0 || nodes[n - 1].number != node.number) {
+      nodes[n++] = node;
+      continue;
+    }
+    nodes[n - 1].weight += node.weight;
+    for (int d = 0; d < 3; d++) nodes[n - 1].gradient[d] += node.gradient[d];
+  }
+  nodes.resize(n);
+}
+
 void MPMTangent::each_point(const UsePoint &use) const
 {
   const MPMStencil stencil(field);
   const double scale = field.step_data().stress_scale, moment = mls_moment();
   const int ngrad = nH > nL ? dim + 1 : dim, size = dim * ngrad;
+  std::vector<MPMStencil::Node> reached;
   std::vector<int64_t> nodes;
   std::vector<double> gradients, stiffness((std::size_t) size * size, 0.0);
   for (const auto &run : field.map->runs)
@@ -687,12 +712,13 @@ void MPMTangent::each_point(const UsePoint &use) const
           nH > nL ? 1.0 / field.frame->radius((int) i, field.frame->places()[i][0]) : 0.0;
       nodes.clear();
       gradients.clear();
-      stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+      collect(stencil, field, run.slot, (int) i, reached);
+      for (const auto &node : reached) {
         nodes.push_back(node.number);
         for (int d = 0; d < dim; d++)
           gradients.push_back(mls ? -moment * node.weight * node.r[d] : node.gradient[d]);
         if (ngrad > dim) gradients.push_back(around * node.weight);
-      });
+      }
       for (int k = 0; k < nH; k++)
         for (int l = 0; l < nH; l++) stiffness[size * l + k] = V * K[nH * k + l];
       use((int) nodes.size(), nodes.data(), ngrad, gradients.data(), stiffness.data());
@@ -727,29 +753,32 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
   const double scale = field.step_data().stress_scale, moment = mls_moment();
   const double *const place = &field.frame->places()[0][0];
   blocks.assign(grid.nnodes() * nL, 0.0);
+  std::vector<MPMStencil::Node> reached;
   const auto add = nH > nL ? add_block<2, 5> : dim == 2 ? add_block<2, 4> : add_block<3, 9>;
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       const double *const K = &present()[i * nH * nH], V = scale * atom->vfrac[i];
       const double around = nH > nL ? 1.0 / field.frame->radius((int) i, place[3 * i]) : 0.0;
-      stencil.visit(grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+      collect(stencil, field, run.slot, (int) i, reached);
+      for (const auto &node : reached) {
         double g[3];
         for (int d = 0; d < dim; d++)
           g[d] = mls ? -moment * node.weight * node.r[d] : node.gradient[d];
         add(K, g, around * node.weight, V, &blocks[node.number * nL]);
-      });
+      }
     }
   if (!between.empty()) {    // points that elements join have no other part in this
     std::vector<double> of_points((std::size_t) atom->nmax * nL, 0.0);
     for (auto *forces : between) forces->add_blocks(of_points.data());
     const double unit = field.step_data().force_scale;
     for (const auto &run : field.map->runs)
-      for (bigint i = run.first; i < run.last; i++)
-        stencil.visit(grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+      for (bigint i = run.first; i < run.last; i++) {
+        collect(stencil, field, run.slot, (int) i, reached);
+        for (const auto &node : reached)
           for (int k = 0; k < nL; k++)
             blocks[node.number * nL + k] +=
                 unit * node.weight * node.weight * of_points[nL * (std::size_t) i + k];
-        });
+      }
   }
   field.nodes.sum(blocks.data(), nL, 0, nL);
 }

@@ -56,11 +56,13 @@ SolveReport ConjugateGradients::solve(LinearSystem &system, const double *b, dou
   };
 
   report.right_side = std::sqrt(system.product(b, b));
-  const double enough = goal.enough(report.right_side);
   double rz, rr;
   precondition(rz, rr);
+  if (goal.natural) report.right_side = std::sqrt(std::max(rz, 0.0));
+  const double enough = goal.enough(report.right_side);
   p = z;
   while (true) {
+    if (goal.natural && rr > 0.0 && rz > 0.0) rr = rz;
     report.residuals.push_back(std::sqrt(rr));
     if (!std::isfinite(rr) || !std::isfinite(rz))
       report.outcome = SolveReport::NOT_FINITE;

@@ -17,11 +17,14 @@
 
 namespace MPM_NS {
 
-/** When a solution is good enough: |b - A x| <= max(relative |b|, absolute), in the norm of LinearSystem::products(). */
+/** When a solution is good enough: |b - A x| <= max(relative |b|, absolute), in the norm of LinearSystem::products(). With
+ *  natural, for conjugate gradients that start at x = 0, in that of the preconditioner M, (r . M r)^1/2, which does not know of the units of
+ *  single unknowns. */
 struct SolveGoal {
   double relative = 1.0e-8;
   double absolute = 0.0;
   int most_iterations = 1000;
+  bool natural = false;
 
   /** The largest residual that is good enough for |b|. */
   double enough(double right_side) const { return std::max(relative * right_side, absolute); }

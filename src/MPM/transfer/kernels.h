@@ -214,7 +214,7 @@ struct MPMKernels {
   /** The same in the total frame: nodes are places of the reference configuration. C and L are
    *  gradients with respect to the reference position, internal forces are -V0 P grad N, and G2P
    *  moves a point from its row of from. G2P returns non-zero for positions that are not finite.
-   *  Fast kernels exist for PIC, FLIP and APIC with B-splines and BERNSTEIN only, null for others.
+   *  Fast kernels are for PIC, FLIP, APIC with B-splines and BERNSTEIN; domains (split) have p2g_force and g2p_gradient alone.
    *  The other table has those of the total frame for BERNSTEIN, too. */
   TransferKernels (*transfer_total)(int dim, Shape, Transfer, bool split);
 

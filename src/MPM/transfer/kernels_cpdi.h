@@ -380,8 +380,8 @@ template <int DIM> struct Stencil {
   }
 };
 
-/** P2G of what PARTS says; AFFINE: uses C. */
-template <int DIM, Shape SHAPE, bool AFFINE, int NREAL, int PARTS>
+/** P2G of what PARTS says; AFFINE: uses C; PIOLA: with P in the place of tau. */
+template <int DIM, Shape SHAPE, bool AFFINE, int NREAL, int PARTS, bool PIOLA = false>
 void p2g(const PointRows &rows, const TransferStep &transfer, int first, int last,
          const int base[3], double *tile, int box[6])
 {
@@ -434,11 +434,17 @@ void p2g(const PointRows &rows, const TransferStep &transfer, int first, int las
       }
       if constexpr (force) {
         fq = (scale * step.force_scale) * strided<DIM, 1>(points.f + 3 * i);
-        const double *t = points.tau + 6 * i;
         const double factor = -scale * step.stress_scale * points.vol0[i];
-        T[0] = factor * quad(t[0], t[3], DIM == 3 ? t[4] : 0.0, 0.0);
-        T[1] = factor * quad(t[3], t[1], DIM == 3 ? t[5] : 0.0, 0.0);
-        if constexpr (DIM == 3) T[2] = factor * quad(t[4], t[5], t[2], 0.0);
+        if constexpr (PIOLA) {
+          MPM_UNROLL
+          for (int a = 0; a < DIM; a++)
+            T[a] = factor * strided<DIM, 1>(points.P + DIM * (DIM * i + a));
+        } else {
+          const double *t = points.tau + 6 * i;
+          T[0] = factor * quad(t[0], t[3], DIM == 3 ? t[4] : 0.0, 0.0);
+          T[1] = factor * quad(t[3], t[1], DIM == 3 ? t[5] : 0.0, 0.0);
+          if constexpr (DIM == 3) T[2] = factor * quad(t[4], t[5], t[2], 0.0);
+        }
       }
       V value, A[DIM], S[DIM];
       if constexpr (both)
@@ -600,12 +606,23 @@ template <class C> TransferKernels domain_kernels()
   return k;
 }
 
+/** What trial motions need: forces by P, and gradients, with domains that stay as they are. */
+template <class C> TransferKernels domain_trial_kernels()
+{
+  TransferKernels k = table_with_tiles<C>();
+  k.p2g_force = p2g<C::dim, C::shape, false, C::nreal, FORCE, true>;
+  k.g2p_gradient = g2p<C::dim, C::shape, PIC, C::nreal, false>;
+  return k;
+}
+
 /** Those of a shape. */
 template <Shape SHAPE> TransferKernels domain_kernels_of_shape(const KernelChoice &choice)
 {
   return choose(choice, [](auto c) {
-    if constexpr (c.shape == SHAPE && c.fast())
+    if constexpr (c.shape == SHAPE && !c.total)
       return domain_kernels<decltype(c)>();
+    else if constexpr (c.shape == SHAPE && c.nreal == 8)
+      return domain_trial_kernels<decltype(c)>();
     else
       return TransferKernels();
   });

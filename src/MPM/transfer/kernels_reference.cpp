@@ -263,15 +263,18 @@ template <bool TOTAL>
 TransferKernels choose_plain(int dim, Shape shape, Transfer transfer, bool split)
 {
   return choose({dim, shape, transfer, split, TOTAL}, [](auto c) {
-    if constexpr (c.total && has_domain(c.shape)) {
+    constexpr bool trials = c.total && has_domain(c.shape);
+    if constexpr (trials && c.nreal == 4) {
       return TransferKernels();
     } else {
       using C = decltype(c);
       TransferKernels k = table_of<C>();
-      k.p2g = p2g<C, ALL>;
-      k.p2g_momentum = p2g<C, MOMENTUM>;
+      if constexpr (!trials) {
+        k.p2g = p2g<C, ALL>;
+        k.p2g_momentum = p2g<C, MOMENTUM>;
+        k.g2p = g2p<C, true>;
+      }
       k.p2g_force = p2g<C, FORCE>;
-      k.g2p = g2p<C, true>;
       k.g2p_gradient = g2p<C, false>;
       k.flush = move_box<C::dim, C::shape, C::nreal, FLUSH>;
       k.load = move_box<C::dim, C::shape, C::nreal, LOAD>;
