@@ -163,8 +163,11 @@ TEST(Bending, NarrowStrip)
 TEST(Bending, Creases)
 {
   Mesh mesh = sheet(8, 0.0);
-  for (auto &x : mesh.nodes)
+  for (auto &x : mesh.nodes) {
+    if (x[0] != 0.5) x[0] += 0.03 * std::sin(9.0 * x[1]) * x[0] * (1.0 - x[0]);
+    x[1] += 0.03 * std::sin(5.0 * x[0] + 7.0 * x[1]);
     if (x[0] > 0.5) x = {0.5, x[1], x[0] - 0.5};
+  }
   double near = 0.0, far = 0.0;
   for (const auto &e : mesh.elements) {
     int flat = 0, at = 0;
