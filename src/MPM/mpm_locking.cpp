@@ -157,18 +157,6 @@ void MPMLocking::strain(const double *L, double dt)
     }
 }
 
-void MPMLocking::average(std::vector<double> &values)
-{
-  const auto &mean = field.work.vectors, &volume = field.work.weights;
-  average_around_points([&](bigint i, double &q, double &V) {
-    q = values[i];
-    V = atom->vfrac[i] * field.points->jacobian((int) i);
-  });
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++)
-      if (volume[i] > 0.0) values[i] = mean[3 * i];
-}
-
 /* ----------------------------------------------------------------------
    the stress of internal forces, with averaged pressure. The points keep theirs, or else the
    pressure would spread further with every step.

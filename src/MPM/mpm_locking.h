@@ -24,9 +24,6 @@ class MPMLocking : protected Pointers {
    *  replaced by that of averages. */
   void strain(const double *L, double dt);
 
-  /** q <- S q for values q of all points, with their volumes at the start of the step. Collective. */
-  void average(std::vector<double> &q);
-
   /** Make the stress of internal forces, with averaged pressure. */
   void average_pressure();
   /** Kirchhoff stress with averaged pressure, [n][6]. */

@@ -22,7 +22,6 @@
 #include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
-#include "mpm_locking.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -39,16 +38,12 @@ using namespace MPM_NS;
 
 MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
     Pointers(lmp), field(field), with(), batch(new Batch()), tangent(new Tangent()),
-    dim(field.lattice.dim), nL(dim * dim), nH(nL + field.options.axisymmetric)
+    dim(field.lattice.dim), nL(dim * dim), nH(nL + field.options.axisymmetric),
+    averages(field.options.averages_stress()), means(field)
 {
 }
 
 MPMTangent::~MPMTangent() noexcept = default;
-
-bool MPMTangent::averages() const
-{
-  return field.options.averages_stress();
-}
 
 void MPMTangent::init()
 {
@@ -60,6 +55,7 @@ void MPMTangent::init()
   if (!with.p2g_force)
     with = MPMKernels::select("reference")->transfer_total(dim, options.shape, transfer, true);
   between.assign(field.elements.begin(), field.elements.end());
+  if (averages) means.init(false, false);
   *batch = {};
   batch->h = field.lattice.h;
   int nhistory = 1;
@@ -178,12 +174,14 @@ bool MPMTangent::add_between(const double *u, double &carried)
 
 void MPMTangent::lattice_F(int first, int n, const double *H, double *F) const
 {
-  for (int p = 0; p < n; p++) {
-    double before[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-    if (field.frame->is_total()) field.frame->lattice_F(first + p, before);
-    std::copy_n(&before[0][0], 9, F + 9 * p);
+  const bool total = field.frame->is_total();
+  for (int p = 0; p < n; p++, F += 9, H += nH) {
+    if (total)
+      field.frame->lattice_F(first + p, reinterpret_cast<double(*)[3]>(F));
+    else
+      for (int k = 0; k < 9; k++) F[k] = k % 4 == 0;
     for (int r = 0; r < dim; r++)
-      for (int c = 0; c < dim; c++) F[9 * p + 3 * r + c] += H[nH * p + dim * c + r];
+      for (int c = 0; c < dim; c++) F[3 * r + c] += H[dim * c + r];
   }
 }
 
@@ -253,7 +251,7 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
   }
   find_piola(first, n, H, tau, stress);
   for (int k = 0; k < nH * n; k++) good = good && std::isfinite(stress[k]);
-  if (averages())
+  if (averages)
     for (int p = 0; p < n; p++)
       mean_stress[first + p] = (b.stress[0][p] + b.stress[1][p] + b.stress[2][p]) / 3.0;
   return good;
@@ -268,7 +266,13 @@ void MPMTangent::external_forces(double *force)
   no_force.assign(3 * nmax, 0.0);
   if (nH > nL) hoop_stress.assign(nmax, 0.0);
   find_loads();
-  if (averages()) mean_stress.assign(nmax, 0.0);
+  if (averages) {
+    mean_stress.assign(nmax, 0.0);
+    volumes.resize(nmax);
+    for (const auto &run : field.map->runs)
+      for (bigint i = run.first; i < run.last; i++)
+        volumes[i] = atom->vfrac[i] * field.points->jacobian((int) i);
+  }
   if (adds()) added.assign(nmax, 0.0);
   const double *const f = field.rows().f;
   scatter(f, force);
@@ -326,7 +330,7 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
   }
   MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) return false;
-  if (averages()) add_averages(u);
+  if (averages) add_averages(u);
   if (pressure) {
     for (const auto &run : field.map->runs)
       for (bigint i = run.first; i < run.last; i++) added[i] = -pressure[i];
@@ -354,11 +358,30 @@ void MPMTangent::find_volume_gradient(const double *F, double *g) const
   if (nH > nL) g[nL] = cofactors[8];
 }
 
+/** Points of each material take the average S p of the mean stress, see MPMLocking. */
+void MPMTangent::average(const MPMNodeScalar::TakeValues &take)
+{
+  for (const auto *material : field.materials) {
+    means.points_to_nodes(
+        [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
+          if (run.material != material) return false;
+          for (int p = 0; p < n; p++) {
+            points.row[p][3] = mean_stress[first + p];
+            points.capacity[p] = volumes[first + p];
+          }
+          return true;
+        },
+        false);
+    means.values_to_points(take);
+  }
+}
+
 void MPMTangent::add_averages(const double *u)
 {
-  added = mean_stress;
-  field.locking->average(added);
-  for (std::size_t i = 0; i < added.size(); i++) added[i] -= mean_stress[i];
+  std::fill(added.begin(), added.end(), 0.0);
+  average([&](const MPMPointMap::Run &, int first, int n, const double *mean) {
+    for (int p = 0; p < n; p++) added[first + p] = mean[p] - mean_stress[first + p];
+  });
   add_to_stress(u);
 }
 
@@ -410,15 +433,14 @@ void MPMTangent::differentiate_added(int first, int n, const double *H)
 /** Of a change of motion whose changes of the mean stress are known. */
 void MPMTangent::average_changes()
 {
-  std::vector<double> &mean = added_changes;
-  mean = mean_stress;
-  field.locking->average(mean);
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      const double change = mean[i] - mean_stress[i], *const g = &volume_gradients[nH * i];
+  average([&](const MPMPointMap::Run &, int first, int n, const double *mean) {
+    for (int p = 0; p < n; p++) {
+      const bigint i = first + p;
+      const double change = mean[p] - mean_stress[i], *const g = &volume_gradients[nH * i];
       for (int k = 0; k < nL; k++) P[nL * i + k] += change * g[k];
       if (nH > nL) hoop_stress[i] += change * g[nL];
     }
+  });
 }
 
 /* ---------------------------------------------------------------------- */
@@ -451,7 +473,7 @@ void MPMTangent::take_differences(const MPMPointMap::Run &run, int first, int n,
     for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] - DIFFERENCE;
     stress(run, first, n, other, dt, low);
     double mean[BATCH];
-    if (averages()) std::copy_n(&mean_stress[first], n, mean);
+    if (averages) std::copy_n(&mean_stress[first], n, mean);
     for (int p = 0; p < n; p++) other[nH * p + k] = H[nH * p + k] + DIFFERENCE;
     stress(run, first, n, other, dt, high);
     for (int p = 0; p < n; p++) {
@@ -459,7 +481,7 @@ void MPMTangent::take_differences(const MPMPointMap::Run &run, int first, int n,
       const double step = (H[nH * p + k] + DIFFERENCE) - (H[nH * p + k] - DIFFERENCE);
       double *const column = &tangents[((bigint) first + p) * nH * nH + nH * k];
       for (int l = 0; l < nH; l++) column[l] = (high[nH * p + l] - low[nH * p + l]) / step;
-      if (averages())
+      if (averages)
         mean_tangents[nH * ((bigint) first + p) + k] = (mean_stress[first + p] - mean[p]) / step;
       other[nH * p + k] = H[nH * p + k];
     }
@@ -507,7 +529,7 @@ void MPMTangent::differentiate(const MPMPointMap::Run &run, int first, int n, co
           for (int p = 0; p < n && j == r; p++) sum[p] -= b.J[p] * stress[p] * l[s][p];
         }
       }
-    for (int p = 0; p < n && averages(); p++)
+    for (int p = 0; p < n && averages; p++)
       mean_tangents[nH * ((bigint) first + p) + k] =
           trace[p] / (3.0 * b.J[p]) - mean_stress[first + p] * l[r][p];
     for (int m = 0; m < nH; m++) {
@@ -526,7 +548,7 @@ double MPMTangent::linearize(const double *u, double dt)
 {
   tangents.resize((std::size_t) atom->nmax * nH * nH);
   if (keeps_stress) stress_tangents.resize(tangents.size());
-  if (averages()) mean_tangents.resize((std::size_t) atom->nmax * nH);
+  if (averages) mean_tangents.resize((std::size_t) atom->nmax * nH);
   if (adds()) volume_gradients.resize((std::size_t) atom->nmax * nH);
   double sum = 0.0, all;
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
@@ -596,9 +618,9 @@ void MPMTangent::change_of_forces(const double *du, double *dforce, const double
       dV[i] = atom->vfrac[i] * change;
       for (int k = 0; k < nL; k++) P[nL * i + k] -= dp[i] * g[k];
     }
-    for (int p = 0; p < n && (averages() || loaded); p++) {
+    for (int p = 0; p < n && (averages || loaded); p++) {
       const double *const h = H + nH * p;
-      if (averages()) {
+      if (averages) {
         double change = 0.0;
         for (int k = 0; k < nH; k++) change += mean_tangents[nH * ((bigint) first + p) + k] * h[k];
         mean_stress[first + p] = change;
@@ -611,7 +633,7 @@ void MPMTangent::change_of_forces(const double *du, double *dforce, const double
       }
     }
   });
-  if (averages()) average_changes();
+  if (averages) average_changes();
   if (!between.empty()) {
     sum_forces = loaded ? load_forces : no_force;
     move_points(du);
@@ -803,11 +825,11 @@ double MPMTangent::asymmetry() const
 
 double MPMTangent::memory_usage() const
 {
-  double bytes = sizeof(Batch);
+  double bytes = sizeof(Batch) + means.memory_usage();
   for (const auto *list :
        {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points, &load_forces,
         &load_tangents, &stress_tangents, &deformations, &mean_stress, &mean_tangents, &added,
-        &added_changes, &volume_gradients, &point_motion, &point_forces, &sum_forces})
+        &volumes, &volume_gradients, &point_motion, &point_forces, &sum_forces})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

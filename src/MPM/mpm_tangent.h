@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_TANGENT_H
 #define LMP_MPM_TANGENT_H
 
+#include "mpm_node_scalar.h"
 #include "mpm_point_map.h"
 #include "pointers.h"
 #include "transfer/kernels.h"
@@ -130,17 +131,20 @@ class MPMTangent : protected Pointers {
               MPM_NS::Tangent *tangent = nullptr);
   // with averages of the pressure: mean stress of points and, after linearize(), its derivatives by H [point][nH]; what averages, or a
   // pressure besides the stress, add to the mean stress; J G [point][nH] with G = F^-T of the places
-  std::vector<double> mean_stress, mean_tangents, added, added_changes, volume_gradients;
+  std::vector<double> mean_stress, mean_tangents, added, volume_gradients;
+  std::vector<double> volumes;    // of points at the start of the step, weights of averages
+  MPMNodeScalar means;
   const double *pressure = nullptr;
   bool keeps_stress = false, of_stress = false;
   std::vector<double> stress_tangents;    // without the pressure
   const std::vector<double> &present() const { return of_stress ? stress_tangents : tangents; }
-  bool averages() const;
-  bool adds() const { return averages() || pressure; }
+  const bool averages;
+  bool adds() const { return averages || pressure; }
   void find_volume_gradient(const double *F, double *g) const;
   void add_averages(const double *u);
   void add_to_stress(const double *u);
   void differentiate_added(int first, int n, const double *H);
+  void average(const MPMNodeScalar::TakeValues &take);
   void average_changes();
 
   void deform(int first, int n, const double *H);
