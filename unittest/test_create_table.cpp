@@ -167,6 +167,9 @@ TEST(Text, ManyWays)
       {"2\nProperties=species:S:1:pos:R:3:velo:R:3:volume:R:1 Time=0\n2 0.25 0.5 0 1 2 0 0.01\n2 "
        "0.75 0.5 0 3 -4 0 0.02\n",
        ""},
+      {"\xef\xbb\xbf\"x\",\"y\",\"vx\",\"vy\",\"volume0\",\"a, "
+       "b\"\r\n0.25,0.5,1,2,0.01,7\r\n0.75,0.5,3,-4,0.02,8\r\n",
+       "data \"a, b\" NULL"},
       {"2\ncomment\n2 0.25 0.5 0 1 2 0.01\n2 0.75 0.5 0 3 -4 0.02\n",
        "columns type,x,y,z,vx,vy,volume0"},
       {"x,y,vx,vy,mass,density\n0.25,0.5,1,2,10,1000\n0.75,0.5,3,-4,20,1000\n", "data mass mass"},

@@ -379,6 +379,23 @@ SERIAL_TEST(Inclined, ForceOnTheFace)
   EXPECT_NEAR((f[1] - f[0]) / (-2.0 * CS * scale * sqrt(2.0)), 1.0, 1e-3);
 }
 
+// the side of a tube around an axis of symmetry has the area of a cylinder, not that of the rings below it: force on one that moves
+// with the velocity 1, along the axis and away from it, in a step that is too short to slow it down
+SERIAL_TEST(Ring, ForceOnTheSide)
+{
+  for (const bool along : {true, false}) {
+    Scene run(
+        plane("si", "f f", "0 1.5 0 1", 1, 0.03) +
+        "fix grid all mpm 0.05 axisymmetric yes\nregion tube block 0.4 1 0.1 0.7 INF INF\n"
+        "create_points 1 region tube ppc 2\nfix m all mpm/material density 1000 linear 1e6 0.3\n"
+        "fix w all mpm/boundary xlo slip\nregion side plane 1 0 0 -1 0 0\n" +
+        (along ? "velocity all set 0 1 0\n" : "velocity all ramp vx 0.4 1 x 0.4 1\n") +
+        "fix load all mpm/dashpot region side 100 50\ntimestep 1e-8\nrun 1\n");
+    const double exact = -1000.0 * (along ? 50.0 : 100.0) * 2.0 * PI * 0.6;
+    EXPECT_NEAR(measured("force", run.fix_vector("load", 4)[along ? 1 : 0]) / exact, 1.0, 1e-3);
+  }
+}
+
 SERIAL_TEST(Dashpot, BadInput)
 {
   const auto plain = strip("", 0.0, 20, 4);

@@ -274,6 +274,12 @@ std::unique_ptr<ImageBody> LAMMPS_NS::read_image_body(LAMMPS *lmp,
     utils::logmesg(lmp, "Read image {}: {} columns, {} rows, {} slice{}{}\n", file, layout.n[0],
                    layout.n[1], layout.n[2], layout.n[2] > 1 ? "s" : "",
                    layout.channels == 3 ? " in color" : "");
+  if (mine && layout.turned && !options.given("axes"))
+    error->warning(
+        FLERR,
+        "Create_points image {}: the file says that its columns, rows, and slices do not "
+        "go along x, y, z; they do here: use the keyword axes, or displace_atoms rotate",
+        file);
   place(lmp, given, options, *body, file);
   set_types(lmp, given, options, type, *body);
 

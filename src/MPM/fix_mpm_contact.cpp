@@ -45,6 +45,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_boundary.h"
+#include "fix_mpm_elements.h"
 #include "fix_mpm_refine.h"
 #include "force.h"
 #include "math_extra.h"
@@ -618,6 +619,46 @@ void FixMPMContact::warn_overlap()
                    "instance points {} and {} near {:.6g} {:.6g} {:.6g}: contact keeps bodies from "
                    "approaching each other, but does not part them",
                    id, ids[0], ids[1], tags[0], tags[1], place[0], place[1], place[2]);
+}
+
+/* ----------------------------------------------------------------------
+   first step of a run: a body that is all surface or line, and another one that is not. The content of
+   a sheet has a gradient towards it on both of its sides. Below what lies on it the normal of the sheet is the wrong
+   one, and contact with the mean of both normals pulls the body through the sheet. With weights by volume the
+   normal is that of the body, at nodes that the body fills.
+------------------------------------------------------------------------- */
+
+void FixMPMContact::warn_thin()
+{
+  if (gap && normal_by != COLINEAR) return;
+  std::vector<const Fix *> thin;
+  for (Fix *ifix : modify->get_fix_list()) {
+    const auto *mesh = dynamic_cast<FixMPMElements *>(ifix);
+    if (mesh && mesh->is_thin()) thin.push_back(ifix);
+  }
+  if (thin.empty()) return;
+  std::vector<bigint> mine(2 * bodies.size(), 0),
+      all(mine.size());    // points of thin bodies, others
+  for (int i = 0; i < atom->nlocal; i++)
+    for (std::size_t k = 0; k < bodies.size(); k++) {
+      if (!bodies[k].field->is_point(i)) continue;
+      const bool is_thin = std::any_of(thin.begin(), thin.end(), [&](const Fix *mesh) {
+        return atom->mask[i] & mesh->groupbit;
+      });
+      mine[2 * k + (is_thin ? 0 : 1)]++;
+    }
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_LMP_BIGINT, MPI_SUM, world);
+  for (std::size_t a = 0; a < bodies.size(); a++)
+    for (std::size_t b = 0; b < bodies.size(); b++)
+      if (all[2 * a] > 0 && all[2 * a + 1] == 0 && all[2 * b + 1] > 0) {
+        if (comm->me == 0)
+          error->warning(FLERR,
+                         "Fix mpm/contact {}: {} is a surface or line of fix mpm/elements, and {} "
+                         "is not, which can pass through what is so thin: use gap yes 0.5 normal "
+                         "volume",
+                         id, bodies[a].field->id(), bodies[b].field->id());
+        return;
+      }
 }
 
 /* ----------------------------------------------------------------------
@@ -1311,7 +1352,10 @@ void FixMPMContact::act(double dt, Stage stage)
     nodes.clear();
     pairs.clear();
     if (may_touch && map_bodies()) {
-      if (look) warn_overlap();
+      if (look) {
+        warn_overlap();
+        warn_thin();
+      }
       find_contacts();
       if (normal_by == LOGISTIC) separate_points();
       if (heating) heating->begin_step();

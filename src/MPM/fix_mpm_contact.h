@@ -214,6 +214,7 @@ class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOption
   void foresee_walls(Body &);
   void gradient_at(const Body &, int slot, int n, double *g) const;
   void warn_overlap();
+  void warn_thin();
   void find_contacts();
   void separate_points();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);

@@ -98,13 +98,17 @@ void MPMFace::find(const MPMField &field, int groupbit,
     share.stress = stress_share(depth);
     share.depth = depth * apart;
     share.layer = depth;
-    share.covered = hat(depth - 1.0) * volume / apart;
+    // deeper layers of a straight side around an axis are rings of another length: take that at the surface
+    const double ring = field.options.axisymmetric
+        ? field.frame->circle(x[0] + share.normal[0] * share.depth) / field.frame->circle(x[0])
+        : 1.0;
+    share.covered = ring * hat(depth - 1.0) * volume / apart;
     sums[0] += share.area;
-    sums[1] += share.area * depth;
+    sums[1] += ring * share.area * depth;
     sums[2] += volume;
     for (int d = 0; d < 3; d++) sums[3 + d] += volume * share.normal[d];
-    if (field.options.axisymmetric) sums[8] += volume * std::fabs(share.normal[0]);
-    for (int k = 0; k < 2; k++) sums[6 + k] += hat(depth - 1 - k) * volume / apart;
+    for (int k = 0; k < 2; k++) sums[6 + k] += ring * hat(depth - 1 - k) * volume / apart;
+    sums[8] += ring * share.area;
     f(i, share);
   }
 }
@@ -113,9 +117,8 @@ MPMFace::Judgement MPMFace::judge() const
 {
   double all[9];
   MPI_Allreduce(sums, all, 9, MPI_DOUBLE, MPI_SUM, world);
-  const double *const n = all + 3, area = all[0] != 0.0 ? all[0] : 1.0;
-  const bool cylinder = all[8] > 1.0e-6 * all[2];    // or a cone
-  return {!cylinder && std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) > (1.0 - 1.0e-6) * all[2],
+  const double *const n = all + 3, area = all[8] != 0.0 ? all[8] : 1.0;
+  return {std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) > (1.0 - 1.0e-6) * all[2],
           all[1] / area, std::fabs((all[6] - all[7]) / area)};
 }
 

@@ -61,7 +61,7 @@ class MPMFace : protected Pointers {
 
   /** Of the points that were found on all ranks, whether they are in layers at the expected distance. */
   struct Judgement {
-    bool flat;         ///< the surface is a plane; around an axis: across it
+    bool flat;         ///< the surface is a plane
     double depth;      ///< of the force below the surface, in units of the distance of layers
     double unequal;    ///< by how much the areas that the hats around 1 and 2 find differ
   };
@@ -84,8 +84,8 @@ class MPMFace : protected Pointers {
  private:
   Region *const region;
   const double spacing;
-  // area, area times depth, volume, volume times normal [3], areas by either hat, around an axis volume times what the normal
-  // has away from it
+  // area; area times depth; volume; volume times normal [3]; areas by either hat; area. All but the first, and volumes, with rings
+  // around an axis of symmetry of the length that they have at the surface
   double sums[9] = {};
 
   bool is_inside(const double *x) const;

@@ -204,6 +204,15 @@ TEST(Reader, SpaceDirections)
   EXPECT_NEAR(image.spacing[0], 0.5, 1e-15);
   EXPECT_EQ(image.spacing[1], 2.0);
   EXPECT_EQ(image.spacing[2], 1e-3);
+  EXPECT_TRUE(image.turned);
+  for (const auto &[directions, turned] : {std::pair("(0.3,0,0) (0,2,0) (0,0,1e-3)", false),
+                                           std::pair("(0.3,0,0) (0,-2,0) (0,0,1)", true),
+                                           std::pair("(0,1,0) (2,0,0) (0,0,1)", true)}) {
+    std::string other = nrrd_header(stack, "uchar", "encoding: raw\n\n");
+    other.replace(other.find("spacings: 0.1 0.1 0.1"), 21,
+                  std::string("space directions: ") + directions);
+    EXPECT_EQ(read(other + raw<uint8_t>(stack)).turned, turned) << directions;
+  }
 }
 
 TEST(Reader, NumberedFiles)

@@ -270,6 +270,44 @@ SERIAL_TEST(ThinElements, HangingChain)
   EXPECT_NEAR(measured("frequency", 0.5 * PI / quarter / sqrt(9.81)) / 1.2024128, 1.0, 0.01);
 }
 
+// a block that falls on a strip, both on the lattice: weights by volume and gap hold it, as the log tells where it passes through
+SERIAL_TEST(Sheet, HoldsABlock)
+{
+  const int n = 16;
+  std::vector<Node> x;
+  std::vector<std::vector<int>> lines;
+  for (int i = 0; i <= n; i++) {
+    x.push_back({-0.4 + 0.8 * i / n, 0.0, 0.0});
+    if (i < n) lines.push_back({i, i + 1});
+  }
+  ScratchFile file("strip.msh", gmsh(1, x, lines));
+  const auto falls = [&](const std::string &contact) {
+    return MPM_TEST::box(2, "si", "f f p", "-0.6 0.6 -0.5 0.6 -0.1 0.1", 2, 0.02) +
+        "group strip empty\ngroup block empty\nfix a strip mpm 0.05 transfer flip 0.97\n"
+        "fix b block mpm 0.05 transfer flip 0.97\ncreate_points 1 mesh " +
+        file.name +
+        " thickness 0.002 group strip\nregion b block -0.15 0.15 0.03 0.23 INF INF\n"
+        "create_points 2 region b ppc 2 fix b group block\n"
+        "fix m strip mpm/material density 1000 neohookean 1e7 0.3\n"
+        "fix s block mpm/material density 1000 neohookean 1e6 0.3\nfix e strip mpm/elements " +
+        file.name + " thickness 0.002 compression no\nfix c all mpm/contact a b " + contact +
+        "\nregion in block -0.33 0.33 INF INF INF INF side out\nfix hold all mpm/boundary region "
+        "in "
+        "stick\nfix g all gravity 9.81 vector 0 -1 0\nfix v all viscous 3\n";
+  };
+  Scene run(falls("gap yes 0.5 normal volume") + "fix dt all mpm/dt 0.4 until 0.3\nrun 5000\n");
+  const double below = run.evaluate("bound(strip,ymin)") - (run.evaluate("xcm(block,y)") - 0.1);
+  EXPECT_LT(measured("lower face below the strip", below), 0.04);
+  EXPECT_GT(run.evaluate("f_c[1][2]"), 588.0);    // its weight
+  for (const auto &[contact, times] : {std::pair("", 1u), std::pair("gap yes 0.5", 1u),
+                                       std::pair("gap yes 0.5 normal volume", 0u)}) {
+    const auto said =
+        lines_that_say(falls(contact) + "velocity block set 0 -1 0\ntimestep 1e-4\nrun 400\n",
+                       "pass through what is so thin");
+    EXPECT_EQ(said.size(), times) << contact;
+  }
+}
+
 // two square sheets that lie on each other, sewn together along their edges (R4): in fields of their own they part, and become a cushion of 0.1213 m^3
 SERIAL_TEST(Airbag, SheetsInFieldsOfTheirOwnPart)
 {

@@ -34,6 +34,7 @@ struct ImageLayout {
   double spacing[3] = {0.0, 0.0,
                        0.0};    ///< of columns, rows, slices as the file has it, 0: it does not
   bool picture = true;          ///< rows are counted from the top, as in pictures
+  bool turned = false;          ///< the file says that its axes are not x, y, z, which is not used
 
   int64_t pixels() const { return n[0] * n[1] * n[2]; }
   std::size_t bytes() const { return pixels() * channels * image_bytes(kind); }

@@ -84,18 +84,23 @@ struct Header {
     }
     if (name == "spacings")
       for (const auto &word : list) spacings.push_back(strtod(word.c_str(), nullptr));
-    if (name == "space directions")
+    if (name == "space directions") {
+      int own = 0;                       // axis of space that this one ought to go along
       for (const auto &word : list) {    // (x,y,z) or none: the length
         double sum = 0.0;
+        int along = 0;
         for (const char *c = word.c_str(); *c == '(' || *c == ',';) {
           char *end;
           const double x = strtod(c + 1, &end);
           sum += x * x;
+          if (along++ == own ? x < 0.0 : x != 0.0) image.turned = true;
           if (end == c + 1) break;
           c = end;
         }
         spacings.push_back(std::sqrt(sum));
+        if (along) own++;
       }
+    }
   }
 
   void read()

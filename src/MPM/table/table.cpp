@@ -18,8 +18,9 @@ Table MPM_NS::read_table(const std::string &file, const std::string &columns)
 {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error(file + ": cannot be read");
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   if (in.bad()) throw std::runtime_error(file + ": cannot be read to its end");
+  if (text.compare(0, 3, "\xef\xbb\xbf") == 0) text.erase(0, 3);    // byte order mark of UTF-8
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) throw std::runtime_error(file + ": is empty");
 

@@ -56,7 +56,8 @@ class Lines {
   int64_t number = 0;
 };
 
-/** Words between separators, without blanks and quotes around them; a blank stands for any number of blanks. */
+/** Words between separators, without blanks and quotes around them; a blank stands for any number of blanks, and a separator
+ *  between quotes for itself. */
 std::vector<std::string> split(const std::string &line, char separator)
 {
   std::vector<std::string> words;
@@ -64,7 +65,12 @@ std::vector<std::string> split(const std::string &line, char separator)
   for (std::size_t at = 0;;) {
     if (separator == ' ') at = std::min(line.find_first_not_of(BLANKS, at), line.size());
     if (separator == ' ' && at == line.size()) return words;
-    const auto end = std::min(line.find_first_of(ends, at), line.size());
+    const auto begin = line.find_first_not_of(BLANKS, at);
+    const auto closing = begin != std::string::npos && line[begin] == '"'
+        ? line.find('"', begin + 1)
+        : std::string::npos;
+    const auto end = std::min(line.find_first_of(ends, closing == std::string::npos ? at : closing),
+                              line.size());
     std::string word = line.substr(at, end - at);
     const auto from = word.find_first_not_of(BLANKS);
     word = from == std::string::npos ? ""
