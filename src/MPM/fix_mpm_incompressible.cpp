@@ -85,14 +85,16 @@ Options MPMIncompressibleOptions::declare(int dim)
   o.add("angle",
         {number(angle, "theta", {20.0, 160.0, true, true}, "degrees",
                 "contact angle between surfaces and walls, in the fluid")});
-  o.add("transfer",
-        {word(transfer,
-              {{"apic", APIC, "points have gradients of the velocity"},
-               {"flip",
-                FLIP,
-                "points keep this share of what the lattice does not see of their velocity",
-                {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
-               {"pic", PIC, "points have the velocity of the lattice"}})});
+  o.add(
+      "transfer",
+      {word(transfer,
+            {{"apic", APIC, "points have gradients of the velocity"},
+             {"flip",
+              FLIP,
+              "points keep this share of what the lattice does not see of their velocity",
+              {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
+             {"aflip", AFLIP, "both", {number(flip, "share", FRACTION, "1", "1: AFLIP, 0: APIC")}},
+             {"pic", PIC, "points have the velocity of the lattice"}})});
   o.add("reflect",
         {number(reflect, "R", FRACTION, "1",
                 "share of the change by the pressure that points get once more")});
@@ -292,7 +294,8 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     }
     solids = std::make_unique<MPMFlowSolids>(lmp, cells, bits);
   }
-  if (transfer == APIC) state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
+  if (transfer == APIC || transfer == AFLIP)
+    state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
 
   time_integrate = 1;
   dynamic_group_allow = 0;

@@ -39,7 +39,7 @@ class MPMFlowViscosity;
 struct MPMFlowPoints;
 
 struct MPMIncompressibleOptions {
-  enum Transfer { APIC, FLIP, PIC };
+  enum Transfer { APIC, FLIP, AFLIP, PIC };
 
   double h = 0.0, density = 0.0;
   double viscosity = 0.0;

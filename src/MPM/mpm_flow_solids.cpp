@@ -33,6 +33,10 @@ using namespace MPM_NS;
 static constexpr double PROBE = 1.0e-6;
 // stiffness of a solid that is stretched over that at rest, where an interface goes to its balance with the fluid in a step
 static constexpr double STIFFER = 3.0;
+// least part of the largest share of fluid next to a point that counts as the share against shear along an interface
+static constexpr double LEAST_SHARE = 0.5;
+// share of fluid next to a point from which on strains along the interface are those of the solid alone
+static constexpr double MIXED = 0.1;
 // share of fluid next to a point that counts as none
 static constexpr double LEAST_FLUID = 1.0e-6;
 
@@ -129,7 +133,52 @@ template <int dim> struct Boxes {
           f(reach.number(k), g);
         }
   }
+
+  /** The same of a mean over boxes with other weights: weight(number of the cell of a box). Nothing where they are none. */
+  template <class W, class F>
+  void visit_gradients_by(const Grid &grid, const Grid::Block &block, int c, int d, const W &weight,
+                          const F &f) const
+  {
+    Place places[3];
+    places_of(c, d, places);
+    MPMFlowReach<dim> reach;
+    int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
+    for (int e = 0; e < dim; e++) base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
+    reach.find(grid, block, base);
+    int64_t low[8], high[8];
+    double weights[8], sum = 0.0;
+    int n = 0;
+    for (k[0] = 0; k[0] < 2; k[0]++)
+      for (k[1] = 0; k[1] < 2; k[1]++)
+        for (k[2] = 0; k[2] < (dim == 3 ? 2 : 1); k[2]++, n++) {
+          int above[3] = {k[0], k[1], k[2]};
+          above[d]++;
+          low[n] = reach.number(k);
+          high[n] = reach.number(above);
+          weights[n] = weight(c == d ? low[n] : high[n]);
+          for (int e = 0; e < dim; e++) weights[n] *= share[places[e]][e][k[e]];
+          sum += weights[n];
+        }
+    for (int j = 0; j < n && sum > 0.0; j++) {
+      f(high[j], weights[j] / sum);
+      f(low[j], -weights[j] / sum);
+    }
+  }
 };
+
+/** Of a symmetric tensor, what is not shear of the planes with this normal. */
+template <int dim> void take_shear_off(const double *n, double T[3][3])
+{
+  double along[3], normal = 0.0;
+  for (int c = 0; c < dim; c++) {
+    along[c] = 0.0;
+    for (int d = 0; d < dim; d++) along[c] += T[c][d] * n[d];
+    normal += along[c] * n[c];
+  }
+  for (int c = 0; c < dim; c++) along[c] -= normal * n[c];
+  for (int c = 0; c < dim; c++)
+    for (int d = 0; d < dim; d++) T[c][d] -= along[c] * n[d] + n[c] * along[d];
+}
 
 /** Coordinates and widths of points in spacings. */
 template <int dim> struct PlaceOfPoint {
@@ -244,6 +293,7 @@ double MPMFlowSolids::density_of(int i) const
 
 template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
 {
+  find_shares<dim>();
   const double factor = 1.0 / (force->nktv2p * cells.lattice.h);
   const auto tau = MPMPoints::get(atom)->tau;
   PlaceOfPoint<dim> place(cells.lattice);
@@ -255,16 +305,33 @@ template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
       place.find(atom->x[i], atom->vfrac[i], t);
       const auto &block = cells.grid.blocks[run.slot];
       boxes.find(t, place.width);
-      double mean = 0.0;
+      double mean = 0.0, stress[3][3] = {}, inside[3][3] = {};
       for (int d = 0; d < dim; d++) mean += tau[i][d] / dim;
       for (int c = 0; c < dim; c++)
-        for (int d = 0; d < dim; d++) {
-          const double push =
+        for (int d = 0; d < dim; d++)
+          stress[c][d] =
               -factor * atom->vfrac[i] * (tau[i][SYMMETRIC[c][d]] - (c == d ? mean : 0.0));
+      Interface interface;
+      const bool near = find_interface<dim>(block, t, place.width, interface);
+      if (near) {
+        std::copy_n(stress[0], 9, inside[0]);
+        take_shear_off<dim>(interface.n, inside);
+        const double part = std::min(1.0, interface.most / MIXED);
+        for (int c = 0; c < 9; c++) stress[0][c] -= (inside[0][c] *= part);
+      }
+      for (int c = 0; c < dim; c++)
+        for (int d = 0; d < dim; d++)
           boxes.visit_gradients(cells.grid, block, c, d, [&](int64_t number, double slope) {
-            forces[number * dim + c] += push * slope;
+            forces[number * dim + c] += stress[c][d] * slope;
           });
-        }
+      if (!near) continue;
+      boxes.find(t, 1.0);
+      for (int c = 0; c < dim; c++)
+        for (int d = 0; d < dim; d++)
+          boxes.visit_gradients_by(cells.grid, block, c, d, weight_of<dim>(c, d),
+                                   [&](int64_t number, double slope) {
+                                     forces[number * dim + c] += inside[c][d] * slope;
+                                   });
     }
 }
 
@@ -283,10 +350,9 @@ void MPMFlowSolids::give_forces(std::vector<double> &forces)
 
 template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt, double viscosity)
 {
-  find_shares<dim>();
-  std::vector<double> per_stress;
+  std::vector<double> stiffness;
   for (std::size_t m = 0; m < materials.size(); m++)
-    per_stress.push_back(dt / (viscosity + STIFFER * dt * stiffness_at_rest((int) m, dt)));
+    stiffness.push_back(STIFFER * stiffness_at_rest((int) m, dt));
   PlaceOfPoint<dim> place(cells.lattice);
   Boxes<dim> boxes;
   const double inv_h = 1.0 / cells.lattice.h;
@@ -314,7 +380,25 @@ template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt,
           A[c][d] = dt * inv_h * sum;
         }
       const int m = material_of(i);
-      leave_to_fluid<dim>(i, block, start, place.width, per_stress[m], A);
+      Interface interface;
+      if (find_interface<dim>(block, start, place.width, interface)) {
+        boxes.find(t, 1.0);
+        double more[3][3] = {}, both[3][3] = {};
+        for (int c = 0; c < dim; c++)
+          for (int d = 0; d < dim; d++)
+            boxes.visit_gradients_by(
+                cells.grid, block, c, d, weight_of<dim>(c, d), [&](int64_t number, double slope) {
+                  more[c][d] += dt * inv_h * slope * velocity[number * dim + c];
+                });
+        for (int c = 0; c < dim; c++)
+          for (int d = 0; d < dim; d++)
+            both[c][d] = 0.5 * (more[c][d] + more[d][c] - A[c][d] - A[d][c]);
+        take_shear_off<dim>(interface.n, both);
+        const double part = std::min(1.0, interface.most / MIXED);
+        for (int c = 0; c < dim; c++)
+          for (int d = 0; d < dim; d++) A[c][d] += part * both[c][d];
+        leave_to_fluid<dim>(i, interface, stiffness[m], viscosity, dt, A);
+      }
       for (int c = 0; c < dim; c++)
         for (int d = 0; d < dim; d++) {
           M[3 * c + d] += A[c][d];
@@ -377,21 +461,20 @@ template <int dim> void MPMFlowSolids::find_shares()
   cells.reflect_cells(solid_share.data());
 }
 
-/* ----------------------------------------------------------------------
-   Next to a fluid, the gradient of the velocity in a box is a mean of those of both. The fluid has that of the solid and, as the stress
-   along the interface is the same on both sides, what the stress of the law does to its viscosity more; the rest is that of the solid.
-   Without this both would have the same, and solids would hold a layer of the fluid of up to a half of a spacing. per_stress: time
-   over viscosity
-------------------------------------------------------------------------- */
-
+/** Shares of fluid in the boxes of a point, and the normal. False where there is none. */
 template <int dim>
-void MPMFlowSolids::leave_to_fluid(int i, const Grid::Block &block, const double *t, double width,
-                                   double per_stress, double A[3][3]) const
+bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, double width,
+                                   Interface &to) const
 {
   constexpr int KINDS = kinds(dim);
   Boxes<dim> boxes;
   boxes.find(t, width);
-  double fluid[KINDS] = {}, most = 0.0, n[3] = {}, length = 0.0;
+  double length = 0.0;
+  auto &fluid = to.fluid;
+  auto &n = to.n;
+  double most = 0.0;
+  std::fill_n(fluid, KINDS, 0.0);
+  std::fill_n(n, 3, 0.0);
   for (int kind = 0; kind < KINDS; kind++) {
     typename Boxes<dim>::Place places[3];
     Boxes<dim>::places_of(AXES[kind][0], AXES[kind][1], places);
@@ -401,7 +484,8 @@ void MPMFlowSolids::leave_to_fluid(int i, const Grid::Block &block, const double
     });
     most = std::max(most, fluid[kind]);
   }
-  if (most < LEAST_FLUID) return;
+  to.most = most;
+  if (most < LEAST_FLUID) return false;
 
   // the normal, by splines of cells, which reach all of these boxes: next to no fluid gives a direction, too
 
@@ -430,20 +514,54 @@ void MPMFlowSolids::leave_to_fluid(int i, const Grid::Block &block, const double
         }
       }
   for (int d = 0; d < dim; d++) length += n[d] * n[d];
-  if (!(length > 0.0)) return;
+  if (!(length > 0.0)) return false;
   length = std::sqrt(length);
-  const double *const tau = MPMPoints::get(atom)->tau[i];
-  double traction[3] = {}, normal = 0.0;
   for (int d = 0; d < dim; d++) n[d] /= length;
+  return true;
+}
+
+/* ----------------------------------------------------------------------
+   Next to a fluid, the gradient of the velocity in a box is a mean of those of both. What shears planes along the interface: the fluid has
+   that of the solid and, as the stress along the interface is the same on both sides, what the stress of the law does to its viscosity
+   more; the rest is that of the solid. Without this both would have the same, and solids would hold a layer of the fluid of up to a half
+   of a spacing. The stress is that of the end of the step: a solid that is as good as rigid then leaves all to the fluid, whatever the
+   duration of the step. The other strains are the same on both sides at the interface, but fluid in a box that is away from it has
+   others. The solid takes those of boxes in the proportion of their solid (weight_of()), and gives them its stress: a corner of solid in a
+   box would make all of the box stiff
+------------------------------------------------------------------------- */
+
+template <int dim>
+void MPMFlowSolids::leave_to_fluid(int i, const Interface &interface, double stiffness,
+                                   double viscosity, double dt, double A[3][3]) const
+{
+  const auto &fluid = interface.fluid;
+  const auto &n = interface.n;
+  // the part along the interface of the traction now, and what the law adds in the step if the solid has all of the strain
+
+  const double *const tau = MPMPoints::get(atom)->tau[i];
+  double traction[3] = {}, normal = 0.0, square = 0.0;
+  for (int c = 0; c < dim; c++)
+    for (int d = 0; d < dim; d++)
+      traction[c] += (tau[SYMMETRIC[c][d]] + stiffness * (A[c][d] + A[d][c])) * n[d];
+  for (int c = 0; c < dim; c++) normal += n[c] * traction[c];
   for (int c = 0; c < dim; c++) {
-    for (int d = 0; d < dim; d++) traction[c] += tau[SYMMETRIC[c][d]] * n[d];
-    normal += n[c] * traction[c];
+    traction[c] -= normal * n[c];
+    square += traction[c] * traction[c];
   }
-  for (int kind = 0; kind < KINDS; kind++)
-    for (int c = 0; c < dim; c++)
-      for (int d = 0; d < dim; d++)
-        if (kind_of(c, d) == kind)
-          A[c][d] -= fluid[kind] * per_stress * (traction[c] - normal * n[c]) * n[d];
+  if (!(square > 0.0)) return;
+
+  // this stress, at the end of the step, makes what the fluid has more, and is less for it
+
+  double share = 0.0;
+  for (int c = 0; c < dim; c++)
+    for (int d = 0; d < dim; d++)
+      share += fluid[kind_of(c, d)] * traction[c] * n[d] *
+          (traction[c] * n[d] + traction[d] * n[c]) / square;
+  const double resistance =
+      viscosity + std::max(share, LEAST_SHARE * interface.most) * stiffness * dt;
+  for (int c = 0; c < dim; c++)
+    for (int d = 0; d < dim; d++)
+      A[c][d] -= fluid[kind_of(c, d)] * dt / resistance * traction[c] * n[d];
 }
 
 /** Present state of the points that wait for their law. */

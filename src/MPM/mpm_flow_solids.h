@@ -87,9 +87,25 @@ class MPMFlowSolids : protected Pointers {
   template <int dim> void give(std::vector<double> &forces);
   template <int dim> void strain(const double *velocity, double dt, double viscosity);
   template <int dim> void find_shares();
+  /** What a point sees of fluid: the share in boxes of each kind and the largest, and the normal of the solid. */
+  struct Interface {
+    double fluid[4], most, n[3];
+  };
   template <int dim>
-  void leave_to_fluid(int i, const MPM_NS::Grid::Block &, const double *t, double width,
-                      double per_stress, double A[3][3]) const;
+  bool find_interface(const MPM_NS::Grid::Block &, const double *t, double width,
+                      Interface &) const;
+  template <int dim>
+  void leave_to_fluid(int i, const Interface &, double stiffness, double viscosity, double dt,
+                      double A[3][3]) const;
+  /** Share of solid of boxes of gradients along d of velocities along c. */
+  template <int dim> auto weight_of(int c, int d) const
+  {
+    return [this, kind = c == d ? 0 : c + d](int64_t number) {
+      constexpr int KINDS = dim == 2 ? 2 : 4;
+      const double *const s = shares.data() + 2 * KINDS * number + 2 * kind;
+      return s[1] > 0.0 ? s[0] / s[1] : 0.0;
+    };
+  }
   void load(int material, double dt);
   void update_points(int material, double dt);
   void probe(int material);
