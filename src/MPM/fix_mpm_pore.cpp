@@ -22,6 +22,7 @@
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_geostatic.h"
+#include "mpm_leaks.h"
 #include "mpm_options.h"
 #include "mpm_pair_styles.h"
 #include "mpm_points.h"
@@ -107,6 +108,20 @@ Options MPMPoreOptions::declare(int dim)
         if (forchheimer_alone) return;
         soils.back().quadratic = forchheimer == NUMBER ? forchheimer_value : 0.0;
         soils.back().diameter = forchheimer == ERGUN ? forchheimer_value : 0.0;
+      })
+      .standard("none");
+  o.add("expansion",
+        {number(growth.first, "BS", ANY_NUMBER, "1/temperature",
+                "expansion of the grains by heat, of their volume: three times the linear one"),
+         number(growth.second, "BW", ANY_NUMBER, "1/temperature",
+                "expansion of the water by heat, of its volume")},
+        "grains and water of the soil before this keyword expand by heat")
+      .then([this] {
+        growth_alone = soils.empty();
+        if (growth_alone) return;
+        soils.back().warms = true;
+        soils.back().of_grains = growth.first;
+        soils.back().of_water = growth.second;
       })
       .standard("none");
   o.add("formulation",
@@ -243,6 +258,7 @@ Options MPMPoreOptions::declare(int dim)
       return soil.retention.can_dry();
     });
     OptionRules rules = {{biot_alone, "biot", "needs a soil before it"},
+                         {growth_alone, "expansion", "needs a soil before it"},
                          {forchheimer_alone, "forchheimer", "needs a soil before it"},
                          {formulation == U_V_P, "stages",
                           "is for formulation u-p: with u-v-p waves alone limit the time step"},
@@ -268,6 +284,8 @@ Options MPMPoreOptions::declare(int dim)
       const auto &r = soil.retention;
       rules.push_back({r.can_dry() && (soil.biot < 1.0 || soil.grains > 0.0), "retention",
                        "needs rigid grains: leave out biot for this soil"});
+      rules.push_back({r.can_dry() && soil.warms, "retention",
+                       "does not go with expansion: leave one of them out for this soil"});
       rules.push_back({r.can_dry() && formulation == U_V_P, "retention",
                        "is for formulation u-p: with u-v-p pores are always full"});
       rules.push_back({r.can_dry() && !soil.is_linear(), "retention",
@@ -311,6 +329,10 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   if (can_dry())
     state.declare(content, "mpm/pore:water", [](int, double *row) {
       row[0] = -1.0;
+    });
+  if (warms())
+    state.declare(warmth, "mpm/pore:temperature", [](int, double *row) {
+      row[0] = MPMPore::UNKNOWN;
     });
   keep_arrays();
   scalar_flag = vector_flag = 1;
@@ -372,6 +394,18 @@ void FixMPMPore::init()
                  "The density of fix mpm/material {} is below that of the water in its pores: fix "
                  "mpm/pore takes it for that of the soil with full pores",
                  soil.material);
+    if (soil.warms && fix->find_history("temperature") < 0)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/pore expansion: soil {} has no temperature: its material needs a thermal "
+                 "part",
+                 soil.material);
+    if (!soil.warms && fix->material->is_thermoelastic())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/pore: the stress of soil {} changes with its temperature, and so would the "
+          "pressure of the water, as if grains and water did not expand: use expansion with "
+          "what both do, three times that of the material for the grains",
+          soil.material);
     if (soil.law != MPMPoreSoil::FORMULA) continue;
     const int index = input->variable->find(soil.formula.c_str() + 2);
     if (index < 0 || !input->variable->atomstyle(index))
@@ -455,7 +489,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
       mine.surface.distance_to_seals = [this](const double *x, double far) {
         return distance_to_bodies(x, far);
       };
-    mine.init(soils, content);
+    mine.init(soils, content, warmth);
     if (!mine.has_water()) continue;
     wet.push_back(&mine);
     if (formulation == U_V_P) init_motion(*field);
@@ -491,6 +525,7 @@ void FixMPMPore::init_implicit() const
   for (const auto &soil : soils) {
     refuse(soil.retention.can_dry(), "retention",
            "use explicit steps, or leave it out where pores stay full");
+    refuse(soil.of_grains != 0.0 || soil.of_water != 0.0, "expansion", "use explicit steps");
     refuse(!soil.is_linear(), "forchheimer", "use explicit steps, or leave it out for slow flow");
   }
 }
@@ -633,8 +668,33 @@ void FixMPMPore::evaluate_variables()
   });
 }
 
+/** Materials without water that are thinner than the reach of nodes: at the first step, once. */
+void FixMPMPore::look_for_leaks()
+{
+  if (leaks_known) return;
+  leaks_known = true;
+  for (auto *mine : wet) {
+    const auto &all = mine->field.materials;
+    if (std::all_of(all.begin(), all.end(), [&](const auto *material) {
+          return has(material->id);
+        }))
+      continue;
+    const auto leaks = find_leaks(mine->field, world, [&](const FixMPMMaterial *material) {
+      return has(material->id);
+    });
+    if (leaks.nodes && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix mpm/pore: material without water is so thin that water leaks through it, at {} "
+          "nodes "
+          "of fix mpm {}, one of them at {:.6g} {:.6g} {:.6g}: let it have three node spacings",
+          leaks.nodes, mine->field.id(), leaks.first[0], leaks.first[1], leaks.first[2]);
+  }
+}
+
 void FixMPMPore::begin_step()
 {
+  look_for_leaks();
   evaluate_variables();
   const double *const formula = formula_values.empty() ? nullptr : formula_values.data();
   for (auto *field : wet) {
@@ -809,6 +869,13 @@ const MPMPoreSoil *FixMPMPore::soil_of(int i) const
   for (const auto *mine : wet)
     if (mine->field.is_point(i)) return mine->soil_of(i);
   return nullptr;
+}
+
+bool FixMPMPore::warms() const
+{
+  return std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
+    return soil.warms;
+  });
 }
 
 bool FixMPMPore::can_dry() const

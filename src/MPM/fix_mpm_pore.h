@@ -50,8 +50,8 @@ struct MPMPoreOptions {
  private:
   // while they are read
   MPMPoreSoil next;
-  std::pair<double, double> biot = {0.0, 0.0};
-  bool biot_alone = false, forchheimer_alone = false;
+  std::pair<double, double> biot = {0.0, 0.0}, growth = {0.0, 0.0};
+  bool biot_alone = false, forchheimer_alone = false, growth_alone = false;
   enum Forchheimer { NUMBER, ERGUN } forchheimer = NUMBER;
   double forchheimer_value = 0.0;
   MPMRetention retention;
@@ -125,10 +125,12 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
  private:
   MPMRows pressure;             // [n][1+dim] with its gradient
   MPMRows inertia;              // [n][dim] flow with inertia, see MPMPoreMotion
+  double *warmth = nullptr;     // [n] temperature up to which grains and water have expanded
   double *content = nullptr;    // [n] volume of water, where a soil can dry (MPMPoreSuction)
   int initial_index = -1;       // of a variable
   double initial_value = 0.0;
   bool gradients_known = true;    // not yet where pressures were given
+  bool leaks_known = false;       // has look_for_leaks() been done?
   bool has_state = false;         // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
   std::vector<MPMPore *> wet;    // those that have soil with water
@@ -161,9 +163,11 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void init_motion(MPMField &);
   void init_implicit() const;
   bool can_dry() const;
+  bool warms() const;
   void set_initial_pressure();
   void weigh_points();
   void evaluate_variables();
+  void look_for_leaks();
   void begin_step();
   void take_off();
   void find_greatest_rates();

@@ -74,8 +74,10 @@ MPMPore::MPMPore(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
   if (moves) motion = std::make_unique<MPMPoreMotion>(lmp, field, water.density, gravity);
 }
 
-void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
+void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
+                   double *const &of_points)
 {
+  warmth = nullptr;
   soils.clear();
   quadratic.clear();
   bool dries = false;
@@ -93,7 +95,8 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content)
       if (here[k] && one.material == fix->id) {
         const double storage = one.storage_at(1.0, water);
         const double unit = force->mvv2e * force->nktv2p;
-        soils.push_back({fix, one});
+        soils.push_back({fix, one, one.warms ? fix->find_history("temperature") : -1});
+        if (one.warms) warmth = &of_points;
         if (!one.is_linear()) quadratic.resize(1);
         least_storage = std::min(least_storage, storage);
         slowest = std::min(slowest, one.permeability / (water.resistance * storage));
@@ -267,6 +270,17 @@ template <int DIM> static void to_rows(const double *state, int n, MPMNodeScalar
   }
 }
 
+/** Grains and water of points take more room, or less, since temperatures changed after the step before. */
+void MPMPore::expand(const Soil &s, int first, int n, const double *J, const double *V)
+{
+  for (int p = 0; p < n && s.temperature >= 0; p++) {
+    const int i = first + p;
+    warm[i] = s.fix->history[i][s.temperature];
+    const double before = (*warmth)[i];
+    if (before != UNKNOWN) grown[i] = V[p] * s.of.growth_at(J[p]) * (warm[i] - before);
+  }
+}
+
 void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 {
   if (layers) find_layers(state, formula);
@@ -276,6 +290,8 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
   const bool open = surface.any(), plain = !suction && !open && quadratic.empty();
   if (!quadratic.empty()) quadratic.resize(atom->nmax);
   const double density = water.density * force->mvv2e * force->nktv2p;
+  if (warmth)
+    for (auto *list : {&grown, &warm}) list->assign(atom->nmax, 0.0);
   if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
   fastest = exchange = 0.0;
   nodes.points_to_nodes(
@@ -300,6 +316,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           for (int p = 0; p < n; p++) K[p] = V[p] * mobility(*s, first + p, J[p], formula);
         }
         for (int p = 0; p < n; p++) part[p] = s->of.biot * J[p];
+        if (warmth) expand(*s, first, n, J, V);
         for (int p = 0; p < n && !plain; p++) {
           const int i = first + p;
           const double *const mine = state[i];
@@ -486,6 +503,7 @@ void MPMPore::take_motion()
     for (int p = 0; p < n; p++) change[p] *= out[p];
     const double rate = -s.of.biot / dt;
     for (int p = 0; p < n; p++) out[p] = rate * change[p];
+    for (int p = 0; p < n && warmth; p++) out[p] += grown[first + p] / dt;
     for (int p = 0; p < n && suction; p++) out[p] *= suction->take_motion(first + p, change[p], dt);
   };
   if (moves_first()) {
@@ -637,6 +655,7 @@ void MPMPore::end_step(const MPMRows &state)
   const double keep = solve ? solve->keep : exp(-rate_of_lag() * dt);
   nodes.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q, const double *) {
+        for (int i = first; i < first + n && warmth; i++) (*warmth)[i] = warm[i];
         if (!suction) {
           const double *const C = capacity.data() + first, *const m = mean.data() + first,
                               *const out = squeezed.data() + first;

@@ -43,8 +43,11 @@ class MPMPore : public MPMNodePressure, protected Pointers {
           const double *gravity, double relax, bool moves);
 
   /** Start of a run: the soils that points of this field have. content: of points, if there is a soil that
-   *  can dry (MPMPoreSuction). Collective. */
-  void init(const std::vector<MPMPoreSoil> &, double *const &content);
+   *  can dry (MPMPoreSuction). warmth: temperatures of points up to which their water has expanded, if there is a soil that warms.
+   *  Collective. */
+  void init(const std::vector<MPMPoreSoil> &, double *const &content, double *const &warmth);
+  /** A temperature that is not known yet. */
+  static constexpr double UNKNOWN = -1.0e300;
   bool has_water() const { return !soils.empty(); }
 
   /** The water of points of soils that can dry, where it is not yet known. */
@@ -109,6 +112,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   struct Soil {
     const FixMPMMaterial *fix;
     MPMPoreSoil of;
+    int temperature;    // column of the history of its material, -1: it does not expand
   };
   const MPMPoreWater &water;
   const double *const gravity;
@@ -131,6 +135,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   std::vector<double> capacity;       // [n] storage times volume
   std::vector<double> conductance;    // [n] mobility times volume
   std::vector<double> mean;           // [n] pressure by the nodes, at the start
+  std::vector<double> grown, warm;    // [n] by warmth in this step, volume; its temperature
+  double *const *warmth = nullptr;    // null: no soil warms
   std::vector<double>
       squeezed;    // [n] volume; after take_motion() rate at which this drives water out
   std::vector<double> quadratic;    // [n] of the resistance, if there is any
@@ -156,6 +162,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   void conduct(int i, double *q) const;
   void init_layers();
   void find_layers(const MPMRows &state, const double *formula);
+  void expand(const Soil &, int first, int n, const double *J, const double *V);
   void points_to_nodes(const MPMRows &state, const double *formula);
   const Soil *soil(const FixMPMMaterial *) const;
   double rate_of_waves() const;

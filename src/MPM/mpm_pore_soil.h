@@ -39,8 +39,18 @@ struct MPMPoreSoil {
   double grains = 0.0;       ///< bulk modulus of the grains [pressure]; 0: rigid
   double quadratic = 0.0;    ///< gradient of pressure per square of flow (Forchheimer)
   double diameter =
-      0.0;    ///< of grains, from which that follows (Ergun); 0: it is the number above
+      0.0;               ///< of grains, from which that follows (Ergun); 0: it is the number above
+  bool warms = false;    ///< are the next two given?
+  double of_grains = 0.0;    ///< expansion of the grains, of their volume [1/temperature]
+  double of_water = 0.0;     ///< the same of the water
   MPMRetention retention;
+
+  /** Volume by which grains and water in a unit of volume grow for a unit of temperature. */
+  double growth_at(double J) const
+  {
+    const double n = pores_at(J);
+    return (biot - n) * of_grains + n * of_water;
+  }
 
   /** Grains keep their volume. */
   double porosity_at(double J) const { return 1.0 - (1.0 - porosity) / J; }
