@@ -25,6 +25,7 @@
 #include "math_extra.h"
 #include "mesh/bending.h"
 #include "mesh/element.h"
+#include "mesh/shared_strain.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_image.h"
@@ -57,7 +58,8 @@ static ElementType type_of(const double *row)
 }
 static bool bends(const double *row)
 {
-  return type_of(row) == ElementType::PATCH || type_of(row) == ElementType::CORNER;
+  return type_of(row) == ElementType::PATCH || type_of(row) == ElementType::CORNER ||
+      type_of(row) == ElementType::EDGE;
 }
 
 // axes must have at least this part of their length along an element
@@ -1067,7 +1069,12 @@ void FixMPMElements::add_pressure(bool starting)
 void FixMPMElements::define_bending(double *r, const double (*X)[3], bigint &rough) const
 {
   double *const to = state_of(r, 0);
-  if (type_of(r) == ElementType::PATCH) {
+  if (type_of(r) == ElementType::EDGE) {
+    static_assert(sizeof(SharedStrain) <= sizeof(BentTriangle), "does not fit into a row");
+    SharedStrain edge;
+    edge.define(X);
+    memcpy(to, &edge, sizeof(edge));
+  } else if (type_of(r) == ElementType::PATCH) {
     static_assert(sizeof(BentTriangle) % sizeof(double) == 0, "does not fit into a row");
     BentTriangle bent;
     bool has[PATCH_NODES - 3];
@@ -1102,6 +1109,11 @@ double FixMPMElements::bend(const double *r, const double (*x)[3], double (*f)[3
     BentTriangle bent;
     memcpy(&bent, from, sizeof(bent));
     return bent.bend(stiffness, nu, x, f);
+  }
+  if (type_of(r) == ElementType::EDGE) {
+    SharedStrain edge;
+    memcpy(&edge, from, sizeof(edge));
+    return edge.energy(12.0 * stiffness / (thin.across() * thin.across()), nu, x, f);
   }
   BentLine bent;
   memcpy(&bent, from, sizeof(bent));
@@ -1138,7 +1150,7 @@ double FixMPMElements::largest_bending_frequency() const
   std::vector<double> sum(ids.n, 0.0), all(ids.n);
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
     double *const r = row(e), mine[PATCH_NODES];
-    if (!bends(r)) continue;
+    if (!bends(r) || type_of(r) == ElementType::EDGE) continue;    // which makes nothing stiffer
     if (type_of(r) == ElementType::PATCH) {
       BentTriangle bent;
       memcpy(&bent, state_of(r, 0), sizeof(bent));

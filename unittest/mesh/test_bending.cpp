@@ -8,6 +8,7 @@
 #include "math/matrix.h"
 #include "mesh/bending.h"
 #include "mesh/gmsh.h"
+#include "mesh/shared_strain.h"
 
 #include "gtest/gtest.h"
 
@@ -278,6 +279,61 @@ TEST(Bending, Arc)
     sum += bent.bend(3.0, 2, x, f);
   }
   EXPECT_NEAR(sum / (3.0 / (2.0 * 0.1 * n) * (n - 1) / n), 1.0, 1e-12);
+}
+
+// two triangles that are folded along their edge, turned, and strained alike have the energy of their strains, and where these differ less, as
+// a third of each shares the mean
+TEST(SharedStrain, EnergyAndForces)
+{
+  const double X[4][3] = {{0, 0, 0}, {1, 0.2, 0}, {0.4, 0.9, 0}, {0.5, -0.6, 0.2}};
+  SharedStrain edge;
+  edge.define(X);
+  const double fold = 0.4, c = std::cos(fold), s = std::sin(fold), l = std::hypot(1.0, 0.2);
+  double x[4][3], f[4][3] = {{0.0}}, none[4][3];
+  // the last node, turned about the edge
+  std::copy_n(X[0], 12, x[0]);
+  const double u[3] = {1.0 / l, 0.2 / l, 0.0};
+  const double along = dot(X[3], u);
+  double across[3];
+  cross(u, X[3], across);
+  for (int d = 0; d < 3; d++) x[3][d] = along * u[d] + c * (X[3][d] - along * u[d]) + s * across[d];
+  for (auto &at : x) {
+    const Place turned_to = turned({at[0], at[1], at[2]});
+    for (int d = 0; d < 3; d++) at[d] = 1.01 * turned_to[d];
+  }
+  EXPECT_NEAR(edge.energy(1.0, 0.3, x, f), 0.0, 1e-30);
+  for (const auto &force : f) EXPECT_NEAR(dot(force, force), 0.0, 1e-30);
+
+  for (int k = 0; k < 4; k++)
+    for (int d = 0; d < 3; d++) x[k][d] += 0.01 * std::sin(3.0 * k + d);
+  EXPECT_LT(edge.energy(2.0, 0.3, x, f), -1e-7);
+  double total[3] = {0.0}, turn[3] = {0.0};
+  for (int k = 0; k < 4; k++) {
+    double torque[3];
+    cross(x[k], f[k], torque);
+    for (int d = 0; d < 3; d++) {
+      total[d] += f[k][d];
+      turn[d] += torque[d];
+      double side[2];
+      for (int w = 0; w < 2; w++) {
+        x[k][d] += w ? 2e-6 : -1e-6;
+        side[w] = edge.energy(2.0, 0.3, x, none);
+      }
+      x[k][d] -= 1e-6;
+      EXPECT_NEAR(f[k][d], -(side[1] - side[0]) / 2e-6, 1e-8);
+    }
+  }
+  for (const double sum : total) EXPECT_NEAR(sum, 0.0, 1e-15);
+  for (const double sum : turn) EXPECT_NEAR(sum, 0.0, 1e-15);
+
+  // one triangle alone is strained by e: of 1/2 e E e (A1 + A2)/3 there is left what the mean has
+  const double flat[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -2, 0}};
+  edge.define(flat);
+  const double e = 1e-5;
+  double y[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1 + e, 0}, {0, -2, 0}};
+  const double A1 = 0.5, A2 = 1.0, mean = e * A1 / (A1 + A2),
+               expected = SharedStrain::PART * 0.5 / 3.0 * (mean * mean * (A1 + A2) - e * e * A1);
+  EXPECT_NEAR(edge.energy(1.0, 0.3, y, none) / expected, 1.0, 1e-4);
 }
 
 TEST(Bending, Refuses)

@@ -213,7 +213,16 @@ void Mesh::add_bending()
     elements.push_back(patch);
   }
   for (const auto &[nodes, parts] : rims) {
-    if (parts.size() != 2 || elements[parts[0].first].type != ElementType::LINE) continue;
+    if (parts.size() != 2) continue;
+    if (elements[parts[0].first].type != ElementType::LINE) {
+      MeshElement edge = elements[parts[0].first];
+      const int i = parts[0].second, a = edge.node[(i + 1) % 3], b = edge.node[(i + 2) % 3];
+      const int all[4] = {a, b, edge.node[i], elements[parts[1].first].node[parts[1].second]};
+      edge.type = ElementType::EDGE;
+      std::copy_n(all, 4, edge.node);
+      elements.push_back(edge);
+      continue;
+    }
     MeshElement corner = elements[parts[0].first];
     corner.type = ElementType::CORNER;
     corner.node[0] = elements[parts[0].first].node[1 - parts[0].second];

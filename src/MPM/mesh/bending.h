@@ -13,6 +13,12 @@
 
 namespace MPM_NS {
 
+/** Are triangles with these unit normals, whose nodes go around in the same sense, of one smooth surface? */
+inline bool is_smooth(const double *n, const double *m)
+{
+  return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.7;
+}
+
 /** Nodes of a triangle and of those around it: 0 1 2 of the triangle, 3 + i of its neighbor across the edge opposite to node i, which goes from
  *  i + 1 to i + 2, and 6 + 2i and 7 + 2i of the neighbors of that one, across its edges from i + 1 to 3 + i and from 3 + i to i + 2. */
 constexpr int PATCH_NODES = 12;

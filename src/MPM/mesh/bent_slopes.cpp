@@ -18,9 +18,9 @@ using namespace MPM_NS;
 
 namespace {
 
-// cosine of the angle between triangles that are not of one smooth surface; error of slopes that needs no correction; eigenvalue below which nodes do not
+// error of slopes that needs no correction; eigenvalue below which nodes do not
 // tell surfaces apart
-constexpr double CREASE = 0.7, EXACT = 1.0e-6, DEGENERATE = 0.005;
+constexpr double EXACT = 1.0e-6, DEGENERATE = 0.005;
 
 struct Place {
   double x, y;
@@ -104,7 +104,7 @@ void Unfolded::unfold(int a, int b, int c, const double *n, double *normal)
                x = (p[b].x - p[a].x) / l, y = (p[b].y - p[a].y) / l;
   p[c] = {p[a].x + along * x + away * y, p[a].y + along * y - away * x};
   normal_of(X[b], X[a], X[c], normal);
-  smooth[c] = dot(n, normal) > CREASE;
+  smooth[c] = is_smooth(n, normal);
 }
 
 Unfolded::Unfolded(const double (*places)[3], const bool *neighbors) : X(places)

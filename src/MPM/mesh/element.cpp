@@ -73,8 +73,8 @@ ElementRule bending(int nnode)
 
 const ElementRule &ElementRule::of(ElementType type)
 {
-  static const ElementRule rules[7] = {simplex(2), cube(2),     simplex(3), cube(3),
-                                       simplex(1), bending(12), bending(3)};
+  static const ElementRule rules[8] = {simplex(2), cube(2),     simplex(3), cube(3),
+                                       simplex(1), bending(12), bending(3), bending(4)};
   return rules[static_cast<int>(type)];
 }
 

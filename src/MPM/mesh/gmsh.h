@@ -31,6 +31,7 @@ enum class ElementType : int {
   LINE,
   PATCH,    ///< a triangle and its neighbors, see mesh/bending.h; never in a file, nor is the next one
   CORNER,    ///< two lines
+  EDGE,      ///< two triangles, see mesh/shared_strain.h
 };
 
 /** Number of nodes of an element, and its dimension (1, 2 or 3). */
@@ -44,6 +45,8 @@ constexpr int element_nodes(ElementType t)
       return 3;
     case ElementType::PATCH:
       return 12;
+    case ElementType::EDGE:
+      return 4;
     case ElementType::HEXAHEDRON:
       return 8;
     default:
