@@ -90,6 +90,7 @@ static constexpr double FELT_THROUGH =
     3.0;    // node spacings: material on one side is not felt on the other
 static constexpr double ALONG =
     1.0e-3;    // sine of the angle of a motion that is along the surface
+static constexpr double EQUAL = 1.0e-6;    // components of normals that are as large
 static constexpr double RESOLVED = 1.5;    // node spacings: nodes cannot tell widths that are less
 
 namespace {
@@ -510,11 +511,13 @@ void FixMPMBoundary::extend_across(MPMField &field) const
     field.lattice.node_position(first, middle);
     for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
     if (known && fabs(surface->distance(middle, FAR * h)) > reach) continue;
-    for (int k = 0; k < (dim == 3 ? 27 : 9); k++) {
-      const int away[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - (dim == 3)};
-      const int next[3] = {b[0] + away[0], b[1] + away[1], b[2] + away[2]};
-      if (across || std::count(away, away + 3, 0) == 2) grid.activate(next);
-    }
+    const int rings = holds_surface() ? 2 : 1, flat = dim == 3 ? rings : 0;    // see list_knots()
+    for (int k = -flat; k <= flat; k++)
+      for (int j = -rings; j <= rings; j++)
+        for (int i = -rings; i <= rings; i++) {
+          const int next[3] = {b[0] + i, b[1] + j, b[2] + k};
+          if (across || abs(i) + abs(j) + abs(k) == 1) grid.activate(next);
+        }
   }
 }
 
@@ -784,6 +787,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> &outside)
 {
   list.crossings.clear();
+  list.knots.clear();
   list.looked_at.clear();
   const MPMField &field = *list.field;
   const double h = field.lattice.h;
@@ -818,6 +822,7 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
                      return std::tie(up[0], a.place) < std::tie(up[1], b.place);
                    });
   if (follows && kind == STICK) find_lines_alone(list);
+  if (holds_surface()) list_knots(list);
 }
 
 /* ----------------------------------------------------------------------
@@ -899,8 +904,8 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
   grid.node_index(single.node, index);
   field.lattice.node_position(index, x);
   const double *const n = single.normal;
-  for (int d = 1; d < field.lattice.dim; d++)
-    if (fabs(n[d]) > fabs(n[c.axis])) c.axis = d;
+  for (int d = 1; d < field.lattice.dim; d++)    // rounding decides nothing
+    if (fabs(n[d]) > fabs(n[c.axis]) + EQUAL) c.axis = d;
   const int a = c.axis, outward = n[a] > 0.0 ? 1 : -1;
   const double slope = fabs(n[a]);
   if (slope < 0.5) return false;    // the normal is not known
@@ -1301,8 +1306,9 @@ void FixMPMBoundary::act(double dt, Stage stage)
     if (count) check_width(list);
     for (std::size_t k = 0; k < ncrossings; k++) {
       touch(nlines + k);
-      act_on_crossing(list, list.crossings[k]);
+      if (!list.crossings[k].in_knot) act_on_crossing(list, list.crossings[k]);
     }
+    for (auto &knot : list.knots) act_on_knot(list, knot);
     if (tries && follows)
       for (std::size_t k = 0; k < list.approaches.size(); k++) {
         const auto &line = list.approaches[k];

@@ -194,6 +194,14 @@ class FixMPMBoundary :
     enum Front { SOUND, THIN_PLACE, NEAR_OTHERS } front = SOUND;
     bool acts = true, in_plate = false;    // in_plate: of less than RESOLVED
     bool alone = false;                    // grips: no other line has nodes of this one
+    bool in_knot = false;
+  };
+  // lines that have nodes in common and prescribe nearly the same there, which act together, see fix_mpm_boundary_knot.cpp
+  struct Knot {
+    std::vector<int> lines;             // indices of crossings
+    std::vector<int64_t> node;          // all of their nodes
+    std::vector<double> mass, share;    // of nodes, and of lines: 0: does not act, for which
+    std::vector<double> inverse;        // [row][row] is known
   };
   // a line of nodes through the surface of material that is not at the wall yet, in trials, see
   // fix_mpm_boundary_approach.cpp; from the wall to the material
@@ -212,6 +220,7 @@ class FixMPMBoundary :
     std::vector<Orbit> orbits;
     std::vector<Single> singles;
     std::vector<Crossing> crossings = {};
+    std::vector<Knot> knots = {};
     // lines that do not act but tell where nodes see too little of a region: at blades, wires, and faces
     // behind which no node acts
     std::vector<Crossing> looked_at = {};
@@ -233,6 +242,7 @@ class FixMPMBoundary :
     bool straight = false;    // B is used
 
     void prepare(bool all);
+    bool is_straight() const { return straight; }
     double solve(const double *relative, double *change) const;
 
    private:
@@ -379,6 +389,8 @@ class FixMPMBoundary :
   void list_region_nodes(FieldNodes &);
   void extend_across(MPMField &) const;
   void list_crossings(FieldNodes &, const std::vector<Single> &outside);
+  static void list_knots(FieldNodes &);
+  void act_on_knot(const FieldNodes &, Knot &);
   void list_bare_faces(FieldNodes &, const std::vector<Single> &outside);
   void take_off_lines(FieldNodes &);
   bool find_crossing(FieldNodes &, const Single &, Crossing &);
@@ -413,9 +425,10 @@ class FixMPMBoundary :
   static int weights_at(const MPMField &, int axis, int inward, double x, int &first,
                         double *weight);
   bool find_chain(const FieldNodes &, const int64_t *node, const double *weight, int n, int inward,
-                  Chain &) const;
+                  Chain &, double least = 0.0) const;
   void act_on_cut(const FieldNodes &, Line &, bool last);
   void act_on_crossing(const FieldNodes &, Crossing &);
+  bool decide_line(MPM_NS::Grid &, Crossing &);
   void act_on_orbit(const FieldNodes &, const Orbit &);
   void act_on_single(const FieldNodes &, Single &);
 };

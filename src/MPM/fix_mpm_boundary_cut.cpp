@@ -71,7 +71,7 @@ void FixMPMBoundary::Face::cut_weights(const MPMField &field, double x)
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, const double *weight,
-                                int n, int inward, Chain &c) const
+                                int n, int inward, Chain &c, double least) const
 {
   Grid &grid = list.field->grid;
   const int order = stencil_order(list.field->options.shape);
@@ -88,7 +88,7 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
     const double *record = node[k] < 0 ? nullptr : grid.record(node[k]);
     const bool matters = weight[k] >= MIN_WEIGHT[order];
     place += j * weight[k];
-    if (!record || record[3] <= 0.0) {
+    if (!record || record[3] <= least) {
       if (!reached && matters && !keeps) return false;
       if (c.m == 0 && (keeps || (order == 1 && j == 0))) {
         extrapolated += weight[k];
@@ -246,6 +246,18 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   now.normal = nullptr;
 }
 
+/** Does the line act in this step? Then nodes inside do not on their own, as far as it is not known from the start. */
+bool FixMPMBoundary::decide_line(Grid &grid, Crossing &c)
+{
+  const bool to_surface = holds_surface();
+  if (c.front == Crossing::SOUND && !to_surface) return true;
+  if (!now.decided) c.acts = holds_line(grid, c);
+  if (!c.acts) return false;
+  if (c.front == Crossing::NEAR_OTHERS || to_surface)
+    held_by_lines.insert(held_by_lines.end(), c.node, c.node + (follows ? c.n : c.inside));
+  return true;
+}
+
 /* ----------------------------------------------------------------------
    Normal and tangential part of the impulse at the surface of a region, whose normal need not be along
    the line
@@ -257,13 +269,7 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
   const int dim = grid.lattice.dim;
   const double *const n = crossing.normal;
   const bool to_surface = holds_surface();
-  if (crossing.front != Crossing::SOUND || to_surface) {
-    if (!now.decided) crossing.acts = holds_line(grid, crossing);
-    if (!crossing.acts) return;
-    if (crossing.front == Crossing::NEAR_OTHERS || to_surface)
-      held_by_lines.insert(held_by_lines.end(), crossing.node,
-                           crossing.node + (follows ? crossing.n : crossing.inside));
-  }
+  if (!decide_line(grid, crossing)) return;
   Chain chain;
   if (!find_chain(list, crossing.node, crossing.weight, crossing.n, 1, chain)) return;
 
