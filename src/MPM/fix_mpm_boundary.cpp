@@ -391,6 +391,7 @@ void FixMPMBoundary::init()
   in_trials = false;
   steps = 0;
   too_thin.begin();
+  not_touched.begin();
 }
 
 /* ----------------------------------------------------------------------
