@@ -357,6 +357,25 @@ SERIAL_TEST(Bar, IsPulledByAGripThatSlips)
   }
 }
 
+// a plate that holds does so as soon as nodes on both sides of its surface see material: a warning tells when that is across a gap
+SERIAL_TEST(Block, IsHeldAcrossAGap)
+{
+  for (const char *kind : {"stick", "slip"})
+    for (const double gap : {0.0, 0.05}) {
+      const auto said = lines_that_say(
+          plane("lj", "f f", "-2 2 0 2.4", 1, 0.05) +
+              body("block -0.5 0.5 0 1 INF INF", "density 1 neohookean 100 0.0",
+                   "0.1 stress gradient") +
+              "variable way equal -0.0075*step\n" +
+              strprintf("region plate block INF INF %g 2.2 INF INF move NULL v_way NULL\n",
+                        1.0 + gap) +
+              "fix floor all mpm/boundary ylo slip\nfix press all mpm/boundary region plate " +
+              kind + "\nfix solve all mpm/implicit static\nrun 2\n",
+          "Fix mpm/boundary press: its region plate holds material near");
+      EXPECT_EQ(said.size(), gap > 0.0 ? 1u : 0u) << kind << gap;
+    }
+}
+
 // what comes from farther away is an error
 SERIAL_TEST(Block, ComesFromTooFar)
 {

@@ -139,8 +139,9 @@ SERIAL_TEST(Tangent, KnowsTheLoads)
        {"", "frame total", "axisymmetric yes", "frame total axisymmetric yes"})
     for (const char *load :
          {"region bore pressure 3e5", "region bore traction 2e5 1e5 0 pressure v_a",
-          "free pressure v_a", "points 1.5 1 2 0 pressure 4e5"}) {
+          "free pressure v_a", "points 1.5 1 2 0 pressure 4e5", "region bore moment 0 0 3e5"}) {
       const bool axis = std::string(options).find("axi") != std::string::npos;
+      if (axis && std::string(load).find("moment") != std::string::npos) continue;
       Scene run(plane("si", "f f", "0 3 0 3", 1, 0.03) + "fix grid all mpm 0.2 " + options +
                 "\nregion outer cylinder z 0 0 2 INF INF\n"
                 "region bore cylinder z 0 0 1 INF INF side out\n"
@@ -233,9 +234,86 @@ SERIAL_TEST(Report, OutlivesTheRun)
   EXPECT_EQ(again.fix("solve")->compute_scalar(), before[8]);
 }
 
+// benchmark P1 (c): an end moment rolls a beam up. kappa over M/EI, and the stretch of its middle, are those of this rubber in pure bending in plane strain
+// (the equations of a curved strip solved as a boundary value problem)
+SERIAL_TEST(Beam, IsRolledUpByAMoment)
+{
+  struct Case {
+    double part, curvature, stretch;
+    int cells, steps;
+  };
+  for (const auto &c :
+       {Case{0.5, 1.0051066, 1.0030935, 4, 8}, Case{1.0, 1.0210080, 1.0125423, 4, 16}}) {
+    const double spacing = 0.5 / c.cells;
+    Scene run(
+        plane("si", "f f", "-6 22 -6 16", 1, 0.1) +
+        body("block 0 20 -0.5 0.5 INF INF", "density 1000 neohookean 1e6 0.3",
+             strprintf("%.17g frame total", 2.0 * spacing)) +
+        "region wall block INF 0 INF INF INF INF\nfix clamp all mpm/boundary region wall stick\n"
+        "region end plane 20 0 0 -1 0 0\n" +
+        strprintf("variable M equal %.17g*(step+1)/%d\n",
+                  c.part * 2.0 * PI / 20.0 * 1e6 / 0.91 / 12.0, c.steps) +
+        "fix bend all mpm/traction region end moment 0 0 v_M\n"
+        "fix solve all mpm/implicit static solver multigrid\ncompute e all mpm/energy\n"
+        "thermo_style custom step c_e\ntimestep 1.0\n");
+    run.set_reference();
+    run.commands(strprintf("run %d\n", c.steps));
+    double tip[2] = {0.0, 0.0}, n = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double *const X = run.reference(i);
+      if (X[0] < 20.0 - spacing || std::fabs(X[1]) > spacing) continue;
+      for (int d = 0; d < 2; d++) tip[d] += run.x()[i][d];
+      n += 1.0;
+    }
+    const double kappa = c.part * c.curvature * 2.0 * PI / 20.0, radius = c.stretch / kappa,
+                 angle = kappa * (20.0 - 0.5 * spacing),
+                 miss = std::hypot(tip[0] / n - radius * std::sin(angle),
+                                   tip[1] / n - radius * (1.0 - std::cos(angle)));
+    EXPECT_LT(
+        measured(
+            strprintf("%g of a circle, %d cells: way of the tip from its place over the length",
+                      c.part, c.cells),
+            miss / 20.0),
+        0.02);
+    const double *const f = run.fix_vector("bend", 7),
+                        M = c.part * 2.0 * PI / 20.0 * 1e6 / 0.91 / 12.0;
+    EXPECT_NEAR(measured("moment over what is asked for", f[6] / M), (c.steps + 1.0) / c.steps,
+                1e-9);
+    EXPECT_LT(std::hypot(f[0], f[1]), 1e-9 * M);
+    const double work = run.fix("bend")->compute_scalar(), *const e = run.compute_vector();
+    // the load of the next step is there at the end of a step, so that its mean is late by half of one
+    EXPECT_NEAR(measured("work over energy", work / e[1]), 1.0, 2.0 / c.steps);
+    EXPECT_LT(std::fabs(measured("residual of the ledger over energy", e[9] / e[1])),
+              1.5 / c.steps);
+  }
+}
+
+// in space, a moment with a part along the axis of a bar bends and twists it; forces of explicit steps are the same
+SERIAL_TEST(Bar, HasAMomentInSpace)
+{
+  for (const char *solve :
+       {"fix solve all mpm/implicit static solver multigrid\ntimestep 1.0\n", "timestep 1e-5\n"}) {
+    Scene run(space("si", "f f f", "0 2.2 -0.6 0.6 -0.6 0.6", 1, 0.03) +
+              "fix grid all mpm 0.1 frame total\nregion bar block 0 1 -0.2 0.2 -0.2 0.2\n"
+              "create_points 1 region bar ppc 2\n"
+              "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
+              "fix walls all mpm/boundary xlo stick\nregion end plane 1 0 0 -1 0 0\n"
+              "fix load all mpm/traction region end moment 300 100 -200\n" +
+              solve + "run 2\n");
+    const double *const f = run.fix_vector("load", 7);
+    for (int d = 0; d < 3; d++) {
+      EXPECT_NEAR(f[d], 0.0, 1e-9);
+      EXPECT_NEAR(f[4 + d], d == 0 ? 300.0 : d == 1 ? 100.0 : -200.0, 1e-8);
+    }
+    const double *const r = run.fix_vector("walls", 3);
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(r[d], 0.0, 5e-2);
+  }
+}
+
 TEST(Loads, RanksAndRestart)
 {
-  for (const char *load : {"region bore area $(PI/2) pressure v_p", "free pressure v_a"})
+  for (const char *load :
+       {"region bore area $(PI/2) pressure v_p", "free pressure v_a", "region bore moment 0 0 2e4"})
     for (const char *solve : {"static", "euler", "static solver multigrid"}) {
       const auto scene = replaced(
           replaced(tube("pressure v_p", 0.3, 4, std::string(solve) + " tolerance 1e-11",

@@ -388,6 +388,7 @@ void FixMPMBoundary::init()
   in_trials = false;
   steps = 0;
   too_thin.begin();
+  not_touched.begin();
 }
 
 /* ----------------------------------------------------------------------

@@ -294,10 +294,11 @@ class FixMPMBoundary :
   std::vector<int64_t>
       held_by_lines;    // nodes inside that are not nearest to the face of their line
   MPMWallGap gap;
-  bool warned = false;         // of a region that is too fast
-  bigint steps = 0;            // of this fix in this run
-  MPMFirstNote<5> too_thin;    // region: step, index of the field, place
-  double reaction[6] = {};     // force and torque
+  bool warned = false;            // of a region that is too fast
+  bigint steps = 0;               // of this fix in this run
+  MPMFirstNote<5> too_thin;       // region: step, index of the field, place
+  MPMFirstNote<5> not_touched;    // follows: step, minus mean distance, place
+  double reaction[6] = {};        // force and torque
 
   // contact of which a solver decides, see mpm_trial_contact.h: one for each line, crossing, single, and approach, in this order
   struct Touch {
@@ -406,6 +407,8 @@ class FixMPMBoundary :
   void update_motion(double dt);
   void find_gaps(FieldNodes &, double dt);
   void find_region_gaps(FieldNodes &, double dt);
+  void map_region_gaps(FieldNodes &, double dt);
+  void note_gaps(FieldNodes &, double dt);
   std::function<double(const double *)> distance_from_region(const MPMField &, double dt,
                                                              double more = 0.0) const;
   void check_speed(double dt);

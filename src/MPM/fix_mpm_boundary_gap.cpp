@@ -12,12 +12,16 @@
 
 #include "fix_mpm_boundary.h"
 
+#include "comm.h"
 #include "domain.h"
+#include "error.h"
 #include "mpm_field.h"
 #include "mpm_stencil.h"
 #include "region.h"
+#include "update.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -25,6 +29,8 @@ using namespace MPM_NS;
 
 // node spacings in mean distances that decide on nothing where a solver does: contact with regions is tabulated
 static constexpr double NOT_KNOWN = 0.03;
+// of walls that move and hold: there is a warning, which a gap of about twice as much has
+static constexpr double NOT_TOUCHED = 0.07;
 
 /* ---------------------------------------------------------------------- */
 
@@ -73,14 +79,10 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
   }
 }
 
-/* ----------------------------------------------------------------------
-   which nodes inside of a region are touched in this step
-------------------------------------------------------------------------- */
-
-void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
+/** Collective. */
+void FixMPMBoundary::map_region_gaps(FieldNodes &list, double dt)
 {
   MPMField &field = *list.field;
-  const double h = field.lattice.h;
   // a function's half width: along the axis from the surface to a node, and then along all axes, of which
   // the distance is at most the square root of 6 times as much
   const double seen = 0.5 * (stencil_order(field.options.shape) + 1);
@@ -91,7 +93,54 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
       if (crossing.node[k] >= 0) near[crossing.node[k] / NODES_PER_BLOCK] = 1;
   if (!region_moves()) region->prematch();
   gap.map(field, near, region->nregion == 1, 2.45 * seen, distance_from_region(field, dt));
+}
 
+/* ----------------------------------------------------------------------
+   Lines of a region that moves and holds act as soon as nodes on both sides of the surface see material, which can be half a node spacing
+   in front. Collective: a warning that tells the first such place
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::note_gaps(FieldNodes &list, double dt)
+{
+  if (not_touched.told()) return;
+  map_region_gaps(list, dt);
+  Grid &grid = list.field->grid;
+  const auto now = (double) update->ntimestep;
+  for (const auto &crossing : list.crossings) {
+    Chain chain;
+    if (!is_in_front(grid, crossing) || goes_through(grid, crossing) ||
+        !find_chain(list, crossing.node, crossing.weight, crossing.n, 1, chain))
+      continue;
+    MPMWallGap::Sums sums;
+    for (int k = 0; k < crossing.n; k++)
+      if (crossing.node[k] >= 0) sums.add(crossing.weight[k], gap.at(crossing.node[k]));
+    const double beyond = sums.beyond(list.crossed[crossing.full]);
+    if (!(beyond > NOT_TOUCHED) || !std::isfinite(beyond)) continue;
+    double x[3];
+    grid.node_position(crossing.base, x);
+    x[crossing.axis] = crossing.surface;
+    not_touched.take({now, -beyond, x[0], x[1], x[2]});
+  }
+  std::array<double, 5> first;
+  if (!not_touched.tell(world, first) || comm->me) return;
+  error->warning(
+      FLERR,
+      "Fix mpm/boundary {}: its region {} holds material near {:.6g} {:.6g} {:.6g} across "
+      "a gap from step {:.0f} on, as nodes on both sides see it: with {} forces begin "
+      "before the material is touched. Use separate, or start with the region at the "
+      "surface of the material; this is said only once",
+      id, region_id, first[2], first[3], first[4], first[0], kind == STICK ? "stick" : "slip");
+}
+
+/* ----------------------------------------------------------------------
+   which nodes inside of a region are touched in this step
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
+{
+  MPMField &field = *list.field;
+  const double h = field.lattice.h;
+  map_region_gaps(list, dt);
   constexpr int PER_CELL = 32;
   auto &contacts = list.contacts;
   for (auto k = contacts.size(); k <= DEEPEST * PER_CELL; k++) {

@@ -59,6 +59,7 @@ void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular, bo
     find_approaches(list, dt);
     find_clear(list, dt);
   } else if (follows && acts_across()) {
+    note_gaps(list, dt);
     find_approaches(list, dt);
   }
   for (const auto &line : list.lines) touches.emplace_back(!separates || line.touched);

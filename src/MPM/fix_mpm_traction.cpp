@@ -85,11 +85,26 @@ Options MPMTractionOptions::declare(int dim)
         has_pressure = true;
       })
       .standard("none");
+  o.add("moment",
+        {variables(moment, 3, "Mx My Mz", "force*distance",
+                   "moment on the surface as a whole, which turns with it, can be equal-style "
+                   "variables")})
+      .then([this] {
+        has_moment = true;
+      })
+      .standard("none");
   MPMFace::declare(o, spacing, area);
   o.refuse([=] {
     const bool of_region = surface == REGION;
     return OptionRules{
-        {!has_traction && !has_pressure, "", "has no load: use traction or pressure"},
+        {!has_traction && !has_pressure && !has_moment, "",
+         "has no load: use traction, pressure, or moment"},
+        {surface == FREE && has_moment, "moment",
+         "must not be on all of the free surface: use region or points"},
+        {dim == 2 && has_moment &&
+             (moment[0].value != 0.0 || moment[1].value != 0.0 || !moment[0].variable.empty() ||
+              !moment[1].variable.empty()),
+         "moment", "must be along z in 2d: {moment}"},
         {surface == FREE && has_traction, "traction",
          "must not be on all of the free surface, whose resultant is zero: use region or points"},
         {!of_region && spacing > 0.0, "spacing", "is for layers below the surface of a region"},
@@ -118,6 +133,10 @@ FixMPMTraction::FixMPMTraction(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
     state.declare(inside, "pressure", INSIDE_WIDTH);
   else
     state.declare(rows, "area", WIDTH);
+  if (has_moment)
+    turn = std::make_unique<MPMMoment>(lmp, "Fix mpm/traction " + std::string(id), [this](int i) {
+      return rows[i][AREA];
+    });
   grows = surface == REGION && has_pressure;
   if (grows) state.declare(growth, "growth", GROWTH_WIDTH);
   keep_arrays();
@@ -129,17 +148,22 @@ void FixMPMTraction::find_load(int k)
   if (v.variable.empty()) return;
   auto *const variables = input->variable;
   v.index = variables->find(v.variable.c_str());
-  const bool known = v.index >= 0;
-  if (known && (variables->equalstyle(v.index) || variables->atomstyle(v.index))) return;
+  const bool known = v.index >= 0, of_points = k < 4;
+  if (known && (variables->equalstyle(v.index) || (of_points && variables->atomstyle(v.index))))
+    return;
   error->all(FLERR, Error::NOLASTLINE, "Variable {} for fix mpm/traction {} {}", v.variable,
-             k < 3 ? "traction" : "pressure",
-             known ? "is not equal-style or atom-style" : "does not exist");
+             k < 3           ? "traction"
+                 : of_points ? "pressure"
+                             : "moment",
+             !known          ? "does not exist"
+                 : of_points ? "is not equal-style or atom-style"
+                             : "is not equal-style");
 }
 
 void FixMPMTraction::init()
 {
   require_field(lmp, *this);
-  for (int k = 0; k < 4; k++) find_load(k);
+  for (int k = 0; k < NLOAD; k++) find_load(k);
   if (surface == REGION && !defined && !domain->get_region_by_id(region))
     error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/traction {} does not exist", region,
                id);
@@ -148,6 +172,12 @@ void FixMPMTraction::init()
 void FixMPMTraction::init_physics(MPMPlan &plan)
 {
   fields = plan.fields;
+  for (const auto *field : fields)
+    if (has_moment && field->options.axisymmetric)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/traction {} moment cannot be around an axis of symmetry, where surfaces "
+                 "are rings: use traction or pressure, or remove axisymmetric of fix mpm {}",
+                 id, field->id());
 }
 
 bool FixMPMTraction::belongs(const MPMField &field, int i) const
@@ -272,10 +302,10 @@ void FixMPMTraction::define()
 void FixMPMTraction::evaluate_loads()
 {
   bool any = false;
-  for (int k = 0; k < 4; k++) any = any || !load(k).variable.empty();
+  for (int k = 0; k < NLOAD; k++) any = any || !load(k).variable.empty();
   if (any) modify->clearstep_compute();
-  const double unit = 1.0 / force->nktv2p;
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < NLOAD; k++) {
+    const double unit = k < 4 ? 1.0 / force->nktv2p : 1.0;
     const auto &v = load(k);
     const bool of_points = !v.variable.empty() && input->variable->atomstyle(v.index);
     if (!of_points) {
@@ -294,6 +324,8 @@ void FixMPMTraction::evaluate_loads()
     }
   }
   if (any) modify->addstep_compute(update->ntimestep + 1);
+  const double torque[3] = {now[4].value, now[5].value, now[6].value};
+  if (turn) turn->set(torque);
 }
 
 /** cof(F) N: the present area for each one before deformation, times its normal. */
@@ -307,6 +339,11 @@ void FixMPMTraction::present_area(int i, const double *F, double *area) const
 void FixMPMTraction::load_on(int i, const double *F, double *load) const
 {
   for (int d = 0; d < 3; d++) load[d] = now[d].at(i);
+  if (turn) {
+    double of_moment[3];
+    turn->load(i, of_moment);
+    for (int d = 0; d < 3; d++) load[d] += of_moment[d];
+  }
   if (!has_pressure) return;
   double area[3];
   present_area(i, F, area);
@@ -463,6 +500,19 @@ void FixMPMTraction::add_stress(const MPMField &field, int first, int n, double 
   }
 }
 
+/** Turns v by the smallest rotation from the direction of a to that of b. */
+static void turn_with(const double *a, const double *b, double *v)
+{
+  double axis[3], first[3], second[3];
+  cross(a, b, axis);
+  const double size = std::sqrt(dot(a, a) * dot(b, b)), cosine = dot(a, b) / size;
+  for (double &component : axis) component /= size;
+  if (!(cosine > -0.999)) return;
+  cross(axis, v, first);
+  cross(axis, first, second);
+  for (int d = 0; d < 3; d++) v[d] += first[d] + second[d] / (1.0 + cosine);
+}
+
 /* ----------------------------------------------------------------------
    the loads of this step at other deformations: dead ones are those in the rows, which pressure changes by its area
 ------------------------------------------------------------------------- */
@@ -498,6 +548,13 @@ void FixMPMTraction::follow(const MPMField &field, int first, int n, const doubl
       const double change = -row[PRESSED] * (after[d] - before[d]);
       load[d] = row[LOAD + d] + change;
       push[d] += row[AREA] * change;
+    }
+    if (turn) {    // its forces are those of MPMMoment; the stress turns with the surface
+      double of_moment[3];
+      turn->load(i, of_moment);
+      for (int d = 0; d < 3; d++) load[d] -= of_moment[d];
+      turn_with(before, after, of_moment);
+      for (int d = 0; d < 3; d++) load[d] += of_moment[d];
     }
     add_stress_of_load(i, F, load, tau);
   }

@@ -17,9 +17,11 @@ FixStyle(mpm/traction,FixMPMTraction);
 
 #include "declare/option.h"
 #include "mpm_face_growth.h"
+#include "mpm_moment.h"
 #include "mpm_physics.h"
 #include "mpm_state.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,14 +35,15 @@ struct MPMTractionOptions {
   double points_area = 0.0, points_normal[3] = {0.0, 0.0, 0.0};
   MPM_NS::NumberOrVariable traction[3];    ///< dead, for each area before deformation
   MPM_NS::NumberOrVariable pressure;       ///< following, positive: against the body
-  bool has_traction = false, has_pressure = false;
+  MPM_NS::NumberOrVariable moment[3];      ///< on the surface as a whole
+  bool has_traction = false, has_pressure = false, has_moment = false;
   double spacing = 0.0, area = 0.0;    ///< 0: not given
 
   MPM_NS::Options declare(int dimension);
 };
 
-/** Forces per area on the surface of bodies: dead ones, which keep their direction and total, and pressure, which stays normal
- *  to the surface and acts on its present area. They are forces on points (atom->f), or, of pressure on all of the surface
+/** Forces per area on the surface of bodies: dead ones, which keep their direction and total, pressure, which stays normal
+ *  to the surface and acts on its present area, and those of a moment (MPMMoment). They are forces on points (atom->f), or, of pressure on all of the surface
  *  of a body, a part of internal forces. */
 class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractionOptions {
  public:
@@ -65,6 +68,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   bool follows(const MPMField &, int first, int last) const override;
   void follow(const MPMField &, int first, int n, const double *F, double *force,
               double *tau) const override;
+  MPMTrialForces *trial_forces(const MPMField &) override { return turn.get(); }
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
@@ -111,13 +115,18 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
     std::vector<double> of_points;    // [n] of an atom-style variable, else empty
     double at(int i) const { return of_points.empty() ? value : of_points[i]; }
   };
-  Load now[4];
+  static constexpr int NLOAD = 7;    // traction, pressure, moment
+  Load now[NLOAD];
+  std::unique_ptr<MPMMoment> turn;    // null: there is no moment
 
   bool belongs(const MPMField &, int i) const;
   void present_area(int i, const double *F, double *area) const;
   void find_growth(MPMField &);
   void add_stress_of_load(int i, const double *F, const double *load, double *tau) const;
-  MPM_NS::NumberOrVariable &load(int k) { return k < 3 ? traction[k] : pressure; }
+  MPM_NS::NumberOrVariable &load(int k)
+  {
+    return k < 3 ? traction[k] : k == 3 ? pressure : moment[k - 4];
+  }
   void find_load(int k);
   void evaluate_loads();
   void define();

@@ -23,6 +23,7 @@
 namespace LAMMPS_NS {
 class MPMField;
 class MPMNodePressure;
+class MPMTrialForces;
 
 /** Physics that joins the step: heat, pore water, ... Fixes that derive from this class are found by fix
  *  mpm at the start of each run. examples/own-physics has one, line by line. */
@@ -82,6 +83,9 @@ class MPMPhysics {
                       double * /*force*/, double * /*tau*/) const
   {
   }
+
+  /** Loads that depend on where all of the points of a surface are, which are in atom->f, too; null: there are none in this field. */
+  virtual MPMTrialForces *trial_forces(const MPMField &) { return nullptr; }
 
   /** The part of forces on walls that the contact of points does not bear, such as that of water in pores: at nodes of blocks
    *  that are marked in near (and others), force[node][3] is the integral of N p n over the surface of the body [mass

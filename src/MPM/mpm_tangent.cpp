@@ -23,6 +23,8 @@
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_passes.h"
+#include "mpm_physics.h"
+#include "mpm_plan.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
 #include "mpm_time_limit.h"
@@ -56,6 +58,9 @@ void MPMTangent::init()
     with = MPMKernels::select("reference")->transfer_total(dim, options.shape, transfer, true);
   between.assign(field.elements.begin(), field.elements.end());
   if (averages) means.init(false, false);
+  nelements = between.size();
+  for (auto *physics : field.plan->physics)
+    if (auto *const forces = physics->trial_forces(field)) between.push_back(forces);
   *batch = {};
   batch->h = field.lattice.h;
   int nhistory = 1;
@@ -459,7 +464,17 @@ void MPMTangent::loads(const double *u, double *force)
       if (nH > nL) hoop_stress[first + p] = stresses[nH * p + nL];
     }
   });
-  scatter(load_forces.data(), force);
+  sum_forces = load_forces;
+  if (between.size() > nelements) move_points(u);
+  for (std::size_t k = nelements; k < between.size(); k++) {
+    double sizes = 0.0;
+    point_forces.resize(3 * (std::size_t) atom->nmax);
+    between[k]->forces_after(point_motion.data(), point_forces.data(), sizes);
+    const double *const before = between[k]->forces();
+    for (std::size_t j = 0; j < 3 * (std::size_t) atom->nlocal; j++)
+      sum_forces[j] += point_forces[j] - before[j];
+  }
+  scatter(sum_forces.data(), force);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -121,6 +121,7 @@ class MPMTangent : protected Pointers {
 
   // forces between points, see mpm_trial_forces.h: these, displacements and forces of points [n][3]
   std::vector<MPMTrialForces *> between;
+  std::size_t nelements = 0;    // the first of them; the others are loads
   std::vector<double> point_motion, point_forces, sum_forces;
   void move_points(const double *u);
   bool add_between(const double *u, double &carried);

@@ -41,7 +41,7 @@ void MPMTangent::find_loads()
   for (const auto &run : field.map->runs)
     if (run.material && !mine) mine = follows((int) run.first, (int) (run.last - run.first));
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  loaded = any != 0;
+  loaded = any != 0 || between.size() > nelements;
   const std::size_t nmax = atom->nmax;
   load_forces.assign(loaded ? 3 * nmax : 0, 0.0);
   load_tangents.assign(loaded ? 3 * nmax * nH : 0, 0.0);
