@@ -190,15 +190,12 @@ void FixMPMBoundary::act_on_knot(const FieldNodes &list, Knot &knot)
   for (int i = 0; i < nnodes; i++) {
     if (!(mass[i] > LEAST * heaviest)) continue;
     const double *const record = grid.record(knot.node[i]);
-    double V[3], v[3], old[3], pushed[3];
+    double V[3], v[3], old[3];
     wall.velocity(*list.field, knot.node[i], V);
     for (int d = 0; d < dim; d++) {
-      v[d] = pushed[d] = record[d] + change[3 * i + d];
-      if (!hold) continue;
-      old[d] = record[4 + d] + change_old[3 * i + d];
-      pushed[d] -= now.old_share * change_old[3 * i + d];
+      v[d] = record[d] + change[3 * i + d];
+      if (hold) old[d] = record[4 + d] + change_old[3 * i + d];
     }
-    count_moment(grid, knot.node[i], record, pushed);
     set_velocity(grid, knot.node[i], V, v, hold ? old : nullptr);
   }
 }

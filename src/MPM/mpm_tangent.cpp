@@ -40,8 +40,8 @@ using namespace MPM_NS;
 
 MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
     Pointers(lmp), field(field), with(), batch(new Batch()), tangent(new Tangent()),
-    dim(field.lattice.dim), nL(dim * dim), nH(nL + field.options.axisymmetric),
-    means(field), averages(field.options.averages_stress())
+    dim(field.lattice.dim), nL(dim * dim), nH(nL + field.options.axisymmetric), means(field),
+    averages(field.options.averages_stress())
 {
 }
 
