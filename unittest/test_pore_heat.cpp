@@ -85,27 +85,30 @@ TEST(Heated, RanksAndRestart)
   expect_continues(scene, variables);
 }
 
-// a wall without water between two soils: nodes of one that is thin belong to both
+// a wall without water between two soils, or one that does not conduct: nodes of one that is thin belong to both
 TEST(Wall, LeaksAreTold)
 {
-  for (const double cells : {1.0, 2.0, 3.0}) {
-    const double a = 0.05 * cells;
-    EXPECT_EQ(
-        lines_that_say(
-            plane("si", "f p", "-1 1 0 0.4", 2, 0.03) +
-                strprintf("region left block INF %g INF INF INF INF\n", -a) +
-                strprintf("region right block %g INF INF INF INF INF\n", a) +
-                strprintf("region wall block %g %g INF INF INF INF\n", -a, a) +
-                "create_points 1 region left spacing 0.05\ncreate_points 1 region right spacing "
-                "0.05\ncreate_points 2 region wall spacing 0.05\ngroup soil type 1\ngroup dry type "
-                "2\nfix grid all mpm 0.1\nfix m soil mpm/material density 2000 linear 1e7 0.3\n"
-                "fix b dry mpm/material density 2000 linear 1e7 0.3\n"
-                "fix water all mpm/pore 2.2e7 1000 1 soil m 0.4 constant 1e-7\ntimestep 1e-6\nrun "
-                "1\n",
-            "so thin that water leaks through it")
-            .size(),
-        cells < 3.0 ? 1u : 0u);
-  }
+  for (const bool heat : {false, true})
+    for (const double cells : {1.0, 2.0, 3.0}) {
+      const double a = 0.05 * cells;
+      EXPECT_EQ(
+          lines_that_say(
+              plane("si", "f p", "-1 1 0 0.4", 2, 0.03) +
+                  strprintf("region left block INF %g INF INF INF INF\n", -a) +
+                  strprintf("region right block %g INF INF INF INF INF\n", a) +
+                  strprintf("region wall block %g %g INF INF INF INF\n", -a, a) +
+                  "create_points 1 region left spacing 0.05\n"
+                  "create_points 1 region right spacing 0.05\n"
+                  "create_points 2 region wall spacing 0.05\n"
+                  "group soil type 1\ngroup dry type 2\nfix grid all mpm 0.1\n"
+                  "fix m soil mpm/material density 2000 linear 1e7 0.3" +
+                  (heat ? " thermal conducting 1000 293 2\nfix heat all mpm/heat\n"
+                        : "\nfix water all mpm/pore 2.2e7 1000 1 soil m 0.4 constant 1e-7\n") +
+                  "fix b dry mpm/material density 2000 linear 1e7 0.3\ntimestep 1e-6\nrun 1\n",
+              heat ? "so thin that heat leaks through it" : "so thin that water leaks through it")
+              .size(),
+          cells < 3.0 ? 1u : 0u);
+    }
 }
 
 SERIAL_TEST(BadInput, IsRefused)

@@ -175,6 +175,29 @@ SERIAL_TEST(Plate, ClosesTheSurface)
   expect_error(other, "timestep 1e-6\nrun 0\n", "there is no fix mpm/rigid");
 }
 
+// the same under a region of fix mpm/boundary that moves
+TEST(Wall, ClosesTheSurface)
+{
+  for (const char *bodies : {"open", "closed"}) {
+    Scene run(plane("si", "p f", "0 0.4 0 1.6", 1, 0.03) +
+              "region soil block INF INF INF 1.03 INF INF\nfix grid all mpm 0.1\n"
+              "create_points 1 region soil spacing 0.05 0.0515\n"
+              "fix m all mpm/material density 2000 linear 1e7 0.3\n"
+              "fix floor all mpm/boundary ylo slip\nvariable d equal -0.02*time\n"
+              "region plate block INF INF 1.03 1.4 INF INF move NULL v_d NULL\n"
+              "fix plate all mpm/boundary region plate slip\n"
+              "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 1e-3 free pressure 0 "
+              "bodies " +
+              bodies + "\n");
+    run_to(run, 0.02);
+    const double came = measured(bodies, run.fix("water")->compute_scalar());
+    if (bodies[0] == 'o')
+      EXPECT_LT(came, -1e-6);
+    else
+      EXPECT_EQ(came, 0.0);
+  }
+}
+
 // pair styles do not know what water bears, which is told where they have friction
 SERIAL_TEST(Pairs, HaveFrictionOfTheTotalStress)
 {

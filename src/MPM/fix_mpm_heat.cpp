@@ -18,6 +18,7 @@
 #include "input.h"
 #include "modify.h"
 #include "mpm_field.h"
+#include "mpm_leaks.h"
 #include "mpm_options.h"
 #include "region.h"
 #include "update.h"
@@ -589,10 +590,34 @@ void FixMPMHeat::find_edges()
   }
 }
 
+/** Materials that do not conduct and are thinner than the reach of nodes: at the first step, once. */
+void FixMPMHeat::look_for_leaks()
+{
+  if (leaks_known) return;
+  leaks_known = true;
+  const auto conducts = [](const FixMPMMaterial *fix) {
+    return fix->material->conducts();
+  };
+  for (const auto &of : fields) {
+    const auto &all = of->field.materials;
+    if (!of->conducts() || std::all_of(all.begin(), all.end(), conducts)) continue;
+    const auto leaks = find_leaks(of->field, world, conducts);
+    if (leaks.nodes && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix mpm/heat {}: material that does not conduct is so thin that heat leaks through it, "
+          "at "
+          "{} nodes of fix mpm {}, one of them at {:.6g} {:.6g} {:.6g}: let it have three node "
+          "spacings",
+          id, leaks.nodes, of->field.id(), leaks.first[0], leaks.first[1], leaks.first[2]);
+  }
+}
+
 int FixMPMHeat::count_stages()
 {
   static constexpr int NRATE =
       4;    // of a field: of its conduction, of its faces normal to each axis
+  look_for_leaks();
   std::vector<double> mine(NRATE * fields.size(), 0.0), all;
   find_surfaces();
   for (std::size_t k = 0; k < fields.size(); k++) {

@@ -121,6 +121,7 @@ class FixMPMHeat :
   Heats power;
   double dt_last = 0.0;
   bool power_known = true;
+  bool leaks_known = false;    // has look_for_leaks() been done?
   int source_index = -1;
   std::vector<double> source_values;    // [n] of an atom-style variable
 
@@ -132,6 +133,7 @@ class FixMPMHeat :
   int places_of_contacts() const { return places_of_surfaces() + (int) surfaces.size(); }
   void find_surfaces();
   void report_thin();
+  void look_for_leaks();
   void check(MPMHeatCondition &, const std::string &name);
   void check_values() const;
   void evaluate_variables();
