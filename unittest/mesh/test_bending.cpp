@@ -329,6 +329,8 @@ TEST(SharedStrain, EnergyAndForces)
   // one triangle alone is strained by e: of 1/2 e E e (A1 + A2)/3 there is left what the mean has
   const double flat[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -2, 0}};
   edge.define(flat);
+  const double sheared[4][3] = {{0, 0, 0}, {1, 0, 0}, {0.01, 1, 0}, {-0.02, -2, 0}};
+  EXPECT_NEAR(edge.energy(1.0, 0.3, sheared, none), 0.0, 1e-30);
   const double e = 1e-5;
   double y[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1 + e, 0}, {0, -2, 0}};
   const double A1 = 0.5, A2 = 1.0, mean = e * A1 / (A1 + A2),

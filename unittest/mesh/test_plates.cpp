@@ -345,6 +345,24 @@ SERIAL_TEST(Bending, ScordelisLoRoof)
   EXPECT_LT(1.0 - w[1], 0.4 * (1.0 - w[0]));
 }
 
+// triangles with too few nodes around them for a curvature are told
+SERIAL_TEST(Bending, WarnsOfRoughMeshes)
+{
+  const auto warnings = [](int n, double shift) {
+    Plate plate = sheet_of(n, n, [=](double u, double v) {
+      return Node{u * (1.0 + shift * v), v, 0.0};
+    });
+    plate.thickness = 0.1;
+    plate.E = 1e6;
+    plate.nu = 0.3;
+    const ScratchFile file("rough.msh", gmsh(2, plate.x, plate.elements));
+    return lines_that_say(scene(plate, file), "too few nodes around them").size();
+  };
+  EXPECT_EQ(warnings(1, 0.0), 0u);
+  EXPECT_EQ(warnings(4, 0.5), 0u);
+  EXPECT_EQ(warnings(1, 0.5), 1u);
+}
+
 // a strip of lines rolled to half a circle without being stretched has the energy of bending alone, D angle^2/2 l for each corner, and no stress
 SERIAL_TEST(Bending, RolledStripHasNoMembraneStress)
 {
