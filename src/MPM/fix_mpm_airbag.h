@@ -59,6 +59,7 @@ class FixMPMAirbag : public Fix, private MPMAirbagOptions, private MPMElementsPr
   double in = 0.0, out = 0.0;    // mass that has come and gone
 
   double on_surface(double volume, double area, bool starting) override;
+  bool is_given() const override { return has_pressure; }
   void flow(double dt);
 };
 

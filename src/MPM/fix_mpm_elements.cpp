@@ -991,7 +991,6 @@ void FixMPMElements::set_pressure(MPMElementsPressure *who, bool closed)
 
 template <class Visit> void FixMPMElements::for_faces(Visit visit) const
 {
-  static constexpr int split[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
   for (int i = 0; i < atom->nlocal; i++) {
     double here[3];
     if (count[i] > 0) domain->unmap(atom->x[i], atom->image[i], here);
@@ -1006,28 +1005,12 @@ template <class Visit> void FixMPMElements::for_faces(Visit visit) const
         const double *at[3];
         int node[3];
         for (int m = 0; m < std::min(3, nnode); m++) {
-          at[m] = x[split[part][m]];
-          node[m] = nodes[e][split[part][m]];
+          at[m] = x[SPLIT[part][m]];
+          node[m] = nodes[e][SPLIT[part][m]];
         }
         visit(nnode == 4 ? 0.5 : 1.0, at, node);
       }
     }
-  }
-}
-
-/** Normal of a triangle or line with the length of its area. */
-static void area_vector(int dim, const double *const at[3], double *normal)
-{
-  double a[3], b[3];
-  MathExtra::sub3(at[1], at[0], a);
-  if (dim == 2) {
-    normal[0] = a[1];
-    normal[1] = -a[0];
-    normal[2] = 0.0;
-  } else {
-    MathExtra::sub3(at[2], at[0], b);
-    cross(a, b, normal);
-    for (int d = 0; d < 3; d++) normal[d] *= 0.5;
   }
 }
 

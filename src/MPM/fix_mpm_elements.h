@@ -53,6 +53,8 @@ class MPMElementsPressure {
  public:
   /** On all ranks together, in each step: the pressure, for the volume that is enclosed (not known: 0) and the area. */
   virtual double on_surface(double volume, double area, bool starting) = 0;
+  /** Does it depend on neither of these? */
+  virtual bool is_given() const = 0;
 
  protected:
   ~MPMElementsPressure() = default;    // who it is owns itself
@@ -127,8 +129,10 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   const char *beyond_trials() const
   {
     return bending ? "bending: use explicit steps"
-        : pressure ? "the pressure in it: remove that, or use explicit steps"
-                   : nullptr;
+        : pressure && !pressure->is_given()
+        ? "how the pressure of the gas in it changes: use fix mpm/airbag pressure, or explicit "
+          "steps"
+        : nullptr;
   }
 
   /** Is it a surface or a line? */
@@ -224,6 +228,9 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   int nodes_of(const double *row) const;
   void take_motion(const double *u);
   void bring_home(double *to);
+  void find_moved(std::size_t e, bool moved, double (*x)[3]) const;
+  void add_pressure_after(bool moved, double sign);
+  void differentiate_pressure();
   template <class Use> bool try_elements(const Use &use);
   void add_sums(Work &);
   void add_pressure(bool starting);

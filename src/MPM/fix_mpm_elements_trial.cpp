@@ -70,6 +70,75 @@ template <class Use> bool FixMPMElements::try_elements(const Use &use)
   return good;
 }
 
+/** Nodes relative to the first one, after the motion or before. */
+void FixMPMElements::find_moved(std::size_t e, bool moved, double (*x)[3]) const
+{
+  const auto first = (std::size_t) nodes[e][0];
+  for (int m = 0; m < nodes_of(e); m++)
+    for (int d = 0; d < 3; d++) {
+      const auto here = (std::size_t) nodes[e][m];
+      x[m][d] = atom->x[here][d] - atom->x[first][d];
+      if (moved && d < dim) x[m][d] += motion[3 * here + d] - motion[3 * first + d];
+    }
+}
+
+/** The pressure that forces of the step have, on surfaces as they are after the motion or before, times a sign, to what is sent. */
+void FixMPMElements::add_pressure_after(bool moved, double sign)
+{
+  const double factor = sign * side * pressure_before / (force->nktv2p * dim);
+  for (std::size_t e = 0; e < nodes.size(); e++) {
+    const bool four = nodes_of(e) == 4;
+    double x[MAX_ELEMENT_NODES][3] = {{0.0}}, normal[3];
+    find_moved(e, moved, x);
+    for (int part = 0; part < (four ? 4 : 1); part++) {
+      const double *at[3];
+      for (int m = 0; m < 3; m++) at[m] = x[SPLIT[part][m]];
+      area_vector(dim, at, normal);
+      for (int m = 0; m < dim; m++)
+        for (int d = 0; d < dim; d++)
+          sent[3 * (std::size_t) nodes[e][SPLIT[part][m]] + d] +=
+              (four ? 0.5 : 1.0) * factor * normal[d];
+    }
+  }
+}
+
+/** Of the same: a volume that is enclosed has a symmetric second derivative, of which each face then gets the symmetric part. */
+void FixMPMElements::differentiate_pressure()
+{
+  const int size = maxnode * dim;
+  const double factor = side * pressure_before / (force->nktv2p * dim);
+  for (std::size_t e = 0; e < nodes.size(); e++) {
+    const bool four = nodes_of(e) == 4;
+    double x[MAX_ELEMENT_NODES][3] = {{0.0}};
+    find_moved(e, true, x);
+    for (int part = 0; part < (four ? 4 : 1); part++) {
+      const double *at[3];
+      double high[3], low[3], K[9][9];
+      for (int m = 0; m < 3; m++) at[m] = x[SPLIT[part][m]];
+      for (int column = 0; column < dim * dim; column++) {
+        // the area is linear, or bilinear, in places of nodes, so that differences of any size are exact
+        double &place = x[SPLIT[part][column / dim]][column % dim];
+        const double value = place;
+        place = value + 0.5 * shortest;
+        area_vector(dim, at, high);
+        place = value - 0.5 * shortest;
+        area_vector(dim, at, low);
+        place = value;
+        for (int row = 0; row < dim * dim; row++)
+          K[row][column] =
+              (four ? 0.5 : 1.0) * factor * (high[row % dim] - low[row % dim]) / shortest;
+      }
+      const auto local = [&](int k) {
+        return dim * SPLIT[part][k / dim] + k % dim;
+      };
+      for (int column = 0; column < dim * dim; column++)
+        for (int row = 0; row < dim * dim; row++)
+          tangents[e * size * size + (std::size_t) size * local(column) + local(row)] +=
+              kind.closed ? 0.5 * (K[row][column] + K[column][row]) : K[row][column];
+    }
+  }
+}
+
 /** Sums of values of nodes [local and ghost][3] over ranks, added to those of this one. */
 void FixMPMElements::bring_home(double *to)
 {
@@ -92,6 +161,9 @@ bool FixMPMElements::forces_after(const double *u, double *f, double &carried)
       carried += std::sqrt(square);
     }
   });
+  // what forces() has at the start is without the pressure on surfaces that are open
+  if (pressure) add_pressure_after(true, 1.0);
+  if (pressure && !kind.closed) add_pressure_after(false, -1.0);
   std::fill_n(f, 3 * (std::size_t) atom->nlocal, 0.0);
   bring_home(f);
   return good;
@@ -116,6 +188,7 @@ double FixMPMElements::differentiate(const double *u)
       });
     }
   shifted_node = -1;
+  if (pressure) differentiate_pressure();
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
     double most = 0.0;
     for (int k = 0; k < size * size; k++)

@@ -12,9 +12,29 @@
 #include "fix_mpm_elements.h"
 #include "material/batch.h"
 #include "material/plane_stress.h"
+#include "math/matrix.h"
 #include "mesh/element.h"
 
 namespace LAMMPS_NS {
+
+/** Triangles of a quadrangle, with a weight of half each; the first one is that of a triangle. */
+static constexpr int SPLIT[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
+
+/** Normal of a triangle or line with the length of its area. */
+inline void area_vector(int dim, const double *const at[3], double *normal)
+{
+  double a[3], b[3];
+  for (int d = 0; d < 3; d++) a[d] = at[1][d] - at[0][d];
+  if (dim == 2) {
+    normal[0] = a[1];
+    normal[1] = -a[0];
+    normal[2] = 0.0;
+  } else {
+    for (int d = 0; d < 3; d++) b[d] = at[2][d] - at[0][d];
+    MPM_NS::cross(a, b, normal);
+    for (int d = 0; d < 3; d++) normal[d] *= 0.5;
+  }
+}
 
 /** Elements whose integration points are in the batch. */
 struct FixMPMElements::Work {

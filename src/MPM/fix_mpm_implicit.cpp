@@ -192,17 +192,11 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
           "computes in explicit steps would not be in its balance: remove one of them",
           dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
   for (const auto *elements : field->elements) {
-    if (const char *const what = elements->beyond_trials())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit knows of fix mpm/elements {} the forces of its elements, but not {}",
-          elements->id, what);
-    if (!elements->is_thin() || domain->dimension == 3)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit knows the forces of lines in 2d, but not those of the elements of "
-          "fix mpm/elements {}: use points instead, or explicit steps",
-          elements->id);
+    if (!elements->is_thin())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit knows the forces of surfaces and lines, but not those of the "
+                 "solid elements of fix mpm/elements {}: use points instead, or explicit steps",
+                 elements->id);
     if (preconditioner == MULTIGRID)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/implicit solver multigrid is made of the stiffness of points, and knows "
@@ -277,6 +271,12 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 void FixMPMImplicit::setup(int)
 {
+  for (const auto *elements : field->elements)    // which know of their pressure now
+    if (const char *const what = elements->beyond_trials())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit knows of fix mpm/elements {} the forces of its elements, but not {}",
+          elements->id, what);
   solver->init();
   seconds = 0.0;
   std::copy_n(total, (int) NTOTAL, at_start);

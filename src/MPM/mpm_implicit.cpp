@@ -43,7 +43,7 @@ static constexpr double MAY_GROW =
 static constexpr double AT_ONCE = 0.1;       // node spacings that walls move nodes alone
 static constexpr int ROUNDS = 2;             // of friction of walls that press on each other
 static constexpr double LOST = 1.0e12;       // times the first residual
-static constexpr double REACHED = 1.0e-9;    // by domains, in points
+static constexpr double REACHED = 1.0e-9;    // in points
 // unknowns of a system that is factorized as a whole, which is faster than levels, by dimension
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};
 
@@ -77,6 +77,7 @@ MPMImplicit::~MPMImplicit() = default;
 
 void MPMImplicit::init()
 {
+  by_reach = field.domains || !field.elements.empty();
   tangent.init();
   joint.reset();
   for (auto *physics : field.plan->physics)
@@ -91,7 +92,7 @@ void MPMImplicit::init()
 void MPMImplicit::take_nodes()
 {
   const int64_t nnodes = grid.nnodes();
-  if (field.domains) find_reach();
+  if (by_reach) find_reach();
   mass.resize(nnodes);
   for (auto *list : {&before, &explicit_velocity, &outer, &inner, &from, &residual, &free, &trial,
                      &change, &room})
@@ -112,9 +113,9 @@ void MPMImplicit::take_nodes()
 }
 
 /* ----------------------------------------------------------------------
-   A node that corners of domains come to by a share e of its cell has forces of the order e, and a stiffness of the order e^2: it moves by
-   1/e of what the corners do. Forces of nodes say how well those of corners are in balance when they are divided by e. Where e is round-off of
-   the places of corners, which may be on a plane of nodes, the node is left alone: corners then stand still by this share
+   A node that corners of domains, or nodes of elements, come to by a small share e has forces of the order e, and a stiffness of the order
+   e^2: it moves by 1/e of what these do. Forces of nodes say how well those of corners are in balance when they are divided by e. Where e is round-off
+   of the places of corners, which may be on a plane of nodes, the node is left alone: corners then stand still by this share
 ------------------------------------------------------------------------- */
 
 void MPMImplicit::find_reach()
@@ -271,6 +272,7 @@ double MPMImplicit::negligible_forces(const std::vector<double> &u, double stiff
     if (!(mass[n] > 0.0) || !grid.owns(n)) continue;
     double square = 0.0;
     for (int d = 0; d < width; d++) square += u[width * n + d] * u[width * n + d];
+    if (by_reach) square *= reach[n] * reach[n];
     mine[0] += mass[n] * square;
     mine[1] += mass[n];
   }

@@ -151,7 +151,8 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> friction;
   int repeats = 1;              // of node actions, until they are a projection
   std::vector<double> mass;     // [node]
-  std::vector<double> reach;    // [node] number of points there, at most 1; empty: of no account
+  bool by_reach = false;        // do nodes count by what they are for points?
+  std::vector<double> reach;    // [node] number of points there, at most 1
   std::vector<double> before, explicit_velocity, outer, inner, from, wall, held;
   std::vector<double> start, acceleration;    // with walls, for dynamics
   std::vector<double>

@@ -8,6 +8,8 @@
 
 #include "thin_testing.h"
 
+#include <map>
+
 using namespace MPM_TEST;
 
 namespace {
@@ -99,6 +101,93 @@ SERIAL_TEST(Truss, SnapsThrough)
   }
 }
 
+namespace {
+
+/** An octahedron whose triangles are divided, on a sphere around 0. */
+std::string ball(int divisions, double R)
+{
+  std::vector<Node> x = {{R, 0, 0}, {-R, 0, 0}, {0, R, 0}, {0, -R, 0}, {0, 0, R}, {0, 0, -R}};
+  std::vector<std::vector<int>> f = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  for (int k = 0; k < divisions; k++) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto key = std::make_pair(std::min(a, b), std::max(a, b));
+      if (const auto found = middles.find(key); found != middles.end()) return found->second;
+      Node m;
+      double square = 0.0;
+      for (int d = 0; d < 3; d++) square += std::pow(m[d] = x[a][d] + x[b][d], 2);
+      for (double &c : m) c *= R / std::sqrt(square);
+      x.push_back(m);
+      return middles[key] = (int) x.size() - 1;
+    };
+    std::vector<std::vector<int>> finer;
+    for (const auto &t : f) {
+      const int a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
+      for (const auto &part : {std::vector<int>{t[0], a, c}, {t[1], b, a}, {t[2], c, b}, {a, b, c}})
+        finer.push_back(part);
+    }
+    f.swap(finer);
+  }
+  return gmsh(2, x, f);
+}
+
+/** A balloon of neohookean whose pressure grows in five steps to that of a stretch of 1.2. */
+std::string balloon(const ScratchFile &file, const std::string &gas, const std::string &implicit)
+{
+  return MPM_TEST::box(3, -0.2, 0.2, 0.02, "frame total") +
+      thin_body(file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+      "variable p equal (step+1)/5*0.844962*1e5/2.6*0.01\nfix p all mpm/airbag e " + gas +
+      "\nfix solve all mpm/implicit " + implicit +
+      "\nvariable r atom sqrt(x*x+y*y+z*z)\ncompute r all reduce ave v_r\n"
+      "compute most all reduce max v_r\nthermo_style custom step c_r c_most\ntimestep 1.0\n";
+}
+
+}    // namespace
+
+// the stretch of 1.2 of benchmark R2, in quadratically converging steps
+SERIAL_TEST(Balloon, IsBlownUp)
+{
+  const ScratchFile file("ball", ball(3, 0.1));
+  Scene run(balloon(file, "pressure v_p", "static"));
+  for (int step = 1; step <= 5; step++) {
+    run.commands("run 1\n");
+    EXPECT_LE(run.fix("solve")->compute_vector(0), 5.0);
+  }
+  const double r = run.compute_scalar("r");
+  EXPECT_NEAR(measured("stretch", (r / 0.1 - 1.0) / 0.2), 1.0, 0.025);
+  EXPECT_LT(measured("sphericity", run.compute_scalar("most") / r - 1.0), 0.01);
+}
+
+// a cable between two clamps (H.M. Irvine, Cable Structures (1981)), sag .39978: it swings to rest in steps of backward Euler, and is then in
+// equilibrium. Two straight halves without tension have no stiffness across them, which is an error in statics, and no equilibrium
+SERIAL_TEST(Cable, IsACatenary)
+{
+  const double h = 0.02;
+  const ScratchFile file("cable", hanging(50, 0.5, 1));
+  const auto scene = MPM_TEST::box(2, -0.7, 0.7, h, "frame total") +
+      thin_body(file.name, "thickness 0.001", "neohookean 1e6 0", "compression no") +
+      strprintf("region a sphere 0 0 0 %g\nregion b sphere 0.5 0 0 %g\n", 2.2 * h, 2.2 * h) +
+      "fix a all mpm/boundary region a stick\nfix b all mpm/boundary region b stick\n"
+      "fix g all gravity 9.81 vector 0 -1 0\ncompute low all reduce min y\n"
+      "thermo_style custom step c_low\n";
+  expect_error(scene +
+                   "fix solve all mpm/implicit static linear 300 parts 1\ntimestep 1.0\nrun 1\n",
+               "no equilibrium");
+  Scene run(scene +
+            "fix solve all mpm/implicit euler\ntimestep 0.02\nrun 40\nunfix solve\n"
+            "fix solve all mpm/implicit static\nrun 1\n");
+  EXPECT_NEAR(measured("sag over exact", run.compute_scalar("low") / -0.39978), 1.0, 0.005);
+  EXPECT_LT(run.fix("solve")->compute_scalar(), 1e-8);
+}
+
+TEST(Balloon, Ranks)
+{
+  const ScratchFile file("ranks", ball(3, 0.1));
+  OnRanks run(balloon(file, "pressure v_p", "static tolerance 1e-11"), "run 2\n");
+  EXPECT_LT(measured("difference", run.difference()), 1e-9);
+}
+
 TEST(Truss, Ranks)
 {
   const ScratchFile file("ranks", truss_mesh(0.5));
@@ -117,4 +206,7 @@ SERIAL_TEST(Elements, BadInput)
   expect_error(replaced(scene, "thickness 0.01\nregion", "thickness 0.01 bending yes\nregion") +
                    "run 1\n",
                "use explicit steps");
+  const ScratchFile bag("bag", ball(2, 0.1));
+  expect_error(balloon(bag, "gas 102325 1.4 outside 101325", "static") + "run 1\n",
+               "use fix mpm/airbag pressure");
 }
