@@ -39,6 +39,29 @@ double error_of_cylinders(int n)
   return measured(strprintf("%d cells: error", n), std::sqrt(sum / square));
 }
 
+/** Slow flow by a weight through a square array of cylinders, which fill 0.05: mean velocity over that of A.S. Sangani, A. Acrivos,
+ *  Int. J. Multiphase Flow 8 (1982) 193, by whom the drag on one is 15.56 times viscosity and mean velocity. */
+double flow_through_cylinders(int n)
+{
+  constexpr double filled = 0.05, speed = 0.01;
+  const double drag = 4.0 * PI /
+      (-0.5 * std::log(filled) - 0.738 + filled - 0.887 * filled * filled +
+       2.039 * std::pow(filled, 3));
+  Scene run(
+      plane("si", "p p", "0 1 0 1", 1, 0.01) +
+      strprintf("region cylinder sphere 0.503 0.497 0 %.17g\nregion fluid sphere 0.503 0.497 0 "
+                "%.17g side out\ncreate_points 1 region fluid spacing %.17g\n",
+                std::sqrt(filled / PI), std::sqrt(filled / PI), 0.5 / n) +
+      strprintf("fix w all mpm/incompressible %.17g 1 viscosity 1 implicit yes stick cylinder "
+                "tolerance 1e-6\nfix g all gravity %.17g vector 1 0 0\n",
+                1.0 / n, drag * speed) +
+      "timestep 0.01\nrun 60\n");
+  double sum = 0.0;
+  for (int i = 0; i < run.n(); i++) sum += run.v()[i][0];
+  return measured(strprintf("%d cells: mean velocity over theory", n),
+                  sum / run.n() * (1.0 - filled) / speed);
+}
+
 /** A block of honey that falls into a bowl or, in 3d, onto an inclined plane. */
 std::string honey(int dim, double h)
 {
@@ -60,6 +83,14 @@ std::string fixes(double h)
 }
 
 }    // namespace
+
+// of second order, with two and four cells in the radius
+SERIAL_TEST(Stick, ArrayOfCylinders)
+{
+  const double coarse = flow_through_cylinders(16) - 1.0, fine = flow_through_cylinders(32) - 1.0;
+  EXPECT_LT(std::fabs(coarse), 0.06);
+  EXPECT_LT(std::fabs(fine), 0.015);
+}
 
 // walls that are curved and at any place in their cells: second order
 SERIAL_TEST(Stick, CylinderThatTurns)
