@@ -374,6 +374,30 @@ SERIAL_TEST(Block, IsHeldAcrossAGap)
           "Fix mpm/boundary press: its region plate holds material near");
       EXPECT_EQ(said.size(), gap > 0.0 ? 1u : 0u) << kind << gap;
     }
+  EXPECT_TRUE(lines_that_say(plane("lj", "f f", "-2 2 0 2.4", 1, 0.05) +
+                                 body("block -0.5 0.5 0 1 INF INF", "density 1 neohookean 100 0.3",
+                                      "0.1 stress gradient") +
+                                 "variable way equal -0.01*step\n"
+                                 "region plate block INF INF 1 2.2 INF INF move NULL v_way NULL\n"
+                                 "fix floor all mpm/boundary ylo slip\n"
+                                 "fix press all mpm/boundary region plate stick\n"
+                                 "fix solve all mpm/implicit static\nrun 14\n",
+                             "across a gap")
+                  .empty());
+}
+
+// linear functions in the updated frame are told
+SERIAL_TEST(Shape, LinearIsTold)
+{
+  for (const char *options : {"shape linear", "shape linear frame total", "shape quadratic"}) {
+    const auto said = lines_that_say(
+        plane("lj", "f f", "-2 2 0 2.4", 1, 0.05) +
+            body("block -0.5 0.5 0 1 INF INF", "density 1 neohookean 100 0.0",
+                 std::string("0.1 ") + options) +
+            "fix floor all mpm/boundary ylo slip\nfix solve all mpm/implicit static\nrun 0\n",
+        "forces jump when points go from cell to cell");
+    EXPECT_EQ(said.size(), std::string(options) == "shape linear" ? 1u : 0u) << options;
+  }
 }
 
 // what comes from farther away is an error

@@ -31,6 +31,7 @@ using namespace MPM_NS;
 static constexpr double NOT_KNOWN = 0.03;
 // of walls that move and hold: there is a warning, which a gap of about twice as much has
 static constexpr double NOT_TOUCHED = 0.07;
+static constexpr double FILLED = 0.4;    // of the reach of the node in front
 
 /* ---------------------------------------------------------------------- */
 
@@ -106,11 +107,15 @@ void FixMPMBoundary::note_gaps(FieldNodes &list, double dt)
   map_region_gaps(list, dt);
   Grid &grid = list.field->grid;
   const auto now = (double) update->ntimestep;
+  const double h = list.field->lattice.h;
   for (const auto &crossing : list.crossings) {
     Chain chain;
     if (!is_in_front(grid, crossing) || goes_through(grid, crossing) ||
         !find_chain(list, crossing.node, crossing.weight, crossing.n, 1, chain))
       continue;
+    // next to a side of the body, lines see corners that nothing has to hold
+    const int64_t ahead = crossing.node[crossing.n - 1];
+    if (ahead < 0 || gap.at(ahead).volume < FILLED * std::pow(h, list.field->lattice.dim)) continue;
     MPMWallGap::Sums sums;
     for (int k = 0; k < crossing.n; k++)
       if (crossing.node[k] >= 0) sums.add(crossing.weight[k], gap.at(crossing.node[k]));
