@@ -29,7 +29,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double FAR = 1.0e8;    // node spacings
+static constexpr double FAR = 1.0e8;          // node spacings
+static constexpr double STRAIGHT = 0.9999;    // cosine between a line and the normal
 
 void FixMPMBoundary::find_lines_alone(FieldNodes &list) const
 {
@@ -41,6 +42,14 @@ void FixMPMBoundary::find_lines_alone(FieldNodes &list) const
     c.alone = std::all_of(c.node, c.node + c.n, [&](int64_t node) {
       return node >= 0 && lines[node] == 1;
     });
+
+  // projections on lines of a curved surface that share nodes, one after the other, come together slowly if at all: nodes are held one by one there
+
+  list.crossings.erase(std::remove_if(list.crossings.begin(), list.crossings.end(),
+                                      [](const Crossing &c) {
+                                        return !c.alone && std::fabs(c.normal[c.axis]) < STRAIGHT;
+                                      }),
+                       list.crossings.end());
 }
 
 /** Is there material on both sides of the surface, and can the line hold it? */
