@@ -622,15 +622,15 @@ void FixMPMContact::warn_overlap()
 }
 
 /* ----------------------------------------------------------------------
-   first step of a run: a body that is all surface or line, and another one that is not. The content of
-   a sheet has a gradient towards it on both of its sides. Below what lies on it the normal of the sheet is the wrong
-   one, and contact with the mean of both normals pulls the body through the sheet. With weights by volume the
-   normal is that of the body, at nodes that the body fills.
+   first step of a run: a body that is all surface or line, and another one that is not. The first fills no volume, so that the
+   nodes between are not full. And it has a gradient towards it on both of its sides: below what lies on it, its
+   normal is the wrong one, and contact with the mean of both normals pulls the body through. With weights by volume
+   the normal is that of the body.
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::warn_thin()
 {
-  if (gap && normal_by != COLINEAR) return;
+  if (normal_by != COLINEAR && (!gap || full <= 0.5)) return;
   std::vector<const Fix *> thin;
   for (Fix *ifix : modify->get_fix_list()) {
     const auto *mesh = dynamic_cast<FixMPMElements *>(ifix);
@@ -654,7 +654,7 @@ void FixMPMContact::warn_thin()
         if (comm->me == 0)
           error->warning(FLERR,
                          "Fix mpm/contact {}: {} is a surface or line of fix mpm/elements, and {} "
-                         "is not, which can pass through what is so thin: use gap yes 0.5 normal "
+                         "is not, which can pass through what is so thin: use gap no normal "
                          "volume",
                          id, bodies[a].field->id(), bodies[b].field->id());
         return;
