@@ -74,7 +74,7 @@ template <class Use> bool FixMPMElements::try_elements(const Use &use)
 void FixMPMElements::find_moved(std::size_t e, bool moved, double (*x)[3]) const
 {
   const auto first = (std::size_t) nodes[e][0];
-  for (int m = 0; m < nodes_of(e); m++)
+  for (int m = 0; m < nodes_of(row(e)); m++)
     for (int d = 0; d < 3; d++) {
       const auto here = (std::size_t) nodes[e][m];
       x[m][d] = atom->x[here][d] - atom->x[first][d];
@@ -87,7 +87,7 @@ void FixMPMElements::add_pressure_after(bool moved, double sign)
 {
   const double factor = sign * side * pressure_before / (force->nktv2p * dim);
   for (std::size_t e = 0; e < nodes.size(); e++) {
-    const bool four = nodes_of(e) == 4;
+    const bool four = nodes_of(row(e)) == 4;
     double x[MAX_ELEMENT_NODES][3] = {{0.0}}, normal[3];
     find_moved(e, moved, x);
     for (int part = 0; part < (four ? 4 : 1); part++) {
@@ -108,7 +108,7 @@ void FixMPMElements::differentiate_pressure()
   const int size = maxnode * dim;
   const double factor = side * pressure_before / (force->nktv2p * dim);
   for (std::size_t e = 0; e < nodes.size(); e++) {
-    const bool four = nodes_of(e) == 4;
+    const bool four = nodes_of(row(e)) == 4;
     double x[MAX_ELEMENT_NODES][3] = {{0.0}};
     find_moved(e, true, x);
     for (int part = 0; part < (four ? 4 : 1); part++) {
