@@ -314,10 +314,14 @@ template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
       Interface interface;
       const bool near = find_interface<dim>(block, t, place.width, interface);
       if (near) {
-        std::copy_n(stress[0], 9, inside[0]);
+        std::copy_n(&stress[0][0], 9, &inside[0][0]);
         take_shear_off<dim>(interface.n, inside);
         const double part = std::min(1.0, interface.most / MIXED);
-        for (int c = 0; c < 9; c++) stress[0][c] -= (inside[0][c] *= part);
+        for (int c = 0; c < dim; c++)
+          for (int d = 0; d < dim; d++) {
+            inside[c][d] *= part;
+            stress[c][d] -= inside[c][d];
+          }
       }
       for (int c = 0; c < dim; c++)
         for (int d = 0; d < dim; d++)
