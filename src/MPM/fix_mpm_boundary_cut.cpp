@@ -106,6 +106,8 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
     c.m++;
   }
   if (keeps ? c.m == 0 || first - place > OUTSIDE : !reached) return false;
+  // none of the nodes that tell of the velocity at the wall has mass
+  if (c.total + extrapolated == 0.0) return false;
   if (extrapolated > 0.0) {
     levers += first * extrapolated;
     if (keeps || c.m == 2) {

@@ -166,8 +166,8 @@ void FixMPMBoundary::act_on_knot(const FieldNodes &list, Knot &knot)
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(G);
     Eigen::VectorXd values = eigen.eigenvalues();
     for (int r = 0; r < n; r++) values[r] = values[r] > SMALL ? 1.0 / values[r] : 0.0;
-    G = scale.asDiagonal() * eigen.eigenvectors() * values.asDiagonal() *
-        eigen.eigenvectors().transpose() * scale.asDiagonal();
+    const Eigen::MatrixXd vectors = scale.asDiagonal() * eigen.eigenvectors();
+    G = (vectors * values.asDiagonal()).lazyProduct(vectors.transpose());
     knot.inverse.assign(G.data(), G.data() + (std::size_t) n * n);
   }
 
