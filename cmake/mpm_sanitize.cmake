@@ -19,8 +19,8 @@ endif()
 # after the other options of a target
 function(mpm_sanitize target)
   if(MPM_SANITIZE)
-    # functions that are inlined by force are compiled once instead of at each call, which saves minutes
-    target_compile_options(${target} PRIVATE ${MPM_SANITIZERS} -O1 -g1 -fno-omit-frame-pointer -UNDEBUG)
-    target_compile_definitions(${target} PRIVATE MPM_SANITIZED _GLIBCXX_ASSERTIONS always_inline=unused)
+    target_compile_options(${target} PRIVATE ${MPM_SANITIZERS} -O1 -g1 -fno-omit-frame-pointer -UNDEBUG
+      "SHELL:-include ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/sanitize.h")
+    target_compile_definitions(${target} PRIVATE MPM_SANITIZED _GLIBCXX_ASSERTIONS)
   endif()
 endfunction()

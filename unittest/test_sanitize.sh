@@ -21,9 +21,8 @@ part=${2:?}
 cxx=${CXX:-c++}
 mkdir -p "$folder/$part" && folder=$(cd "$folder/$part" && pwd) && cd "$folder" || exit 1
 
-# functions that are inlined by force are compiled once instead of at each call, which saves minutes
 flags=(-std=c++17 -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
-       -DMPM_SANITIZED -Dalways_inline=unused -fno-omit-frame-pointer -fopenmp-simd -ffp-contract=fast
+       -DMPM_SANITIZED -include "$root/cmake/sanitize.h" -fno-omit-frame-pointer -fopenmp-simd -ffp-contract=fast
        -fno-math-errno -fno-trapping-math
        -Wall -Wextra -I"$src" -I"$root/unittest" -isystem "${MPM_EIGEN:-/usr/include/eigen3}" -fPIC
        -D_GLIBCXX_ASSERTIONS -fsanitize=float-cast-overflow)
