@@ -703,6 +703,14 @@ TEST(Idle, ChangesNothing)
   EXPECT_TRUE(identical(with.gather(), without.gather()));
 }
 
+SERIAL_TEST(Radiation, OfDegreesCelsius)
+{
+  const std::string scene = replaced(bar(4, "xlo radiation 1.0 20", 0.0, "", -20.0), "lj", "si");
+  expect_error(scene + "run 1\n", "has the temperature -20: give all temperatures in kelvins");
+  const std::string free = replaced(scene, "xlo radiation", "surface radiation");
+  expect_error(free + "run 1\n", "has the temperature -20: give all temperatures in kelvins");
+}
+
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string scene = plane("lj", "f p", "0 4 0 4", 1, 0.1) +

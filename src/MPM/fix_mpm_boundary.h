@@ -64,6 +64,7 @@ struct MPMBoundaryOptions {
 class FixMPMBoundary :
     public Fix,
     public MPMNodeAction,
+    public MPMRubbing,
     private MPMTrialContact,
     private MPMBoundaryOptions {
  public:
@@ -89,6 +90,7 @@ class FixMPMBoundary :
   MPMTrialContact *trial_contact() override { return decides() || follows ? this : nullptr; }
   void act(double dt, Stage) override;
 
+  bool loses_heat() const override { return friction > 0.0 && !heat.said; }
   bool is_region() const { return !region_id.empty(); }
   /** Of a place from the surface of the region, negative inside; far where it is more. During a run. */
   double distance(const double *x, double far) const { return surface->distance(x, far); }

@@ -56,11 +56,16 @@ struct MPMContactOptions {
 };
 
 /** Contact between bodies that are fields (fix mpm) on one lattice, at the nodes they share. */
-class FixMPMContact : public Fix, public MPMNodeAction, private MPMContactOptions {
+class FixMPMContact :
+    public Fix,
+    public MPMNodeAction,
+    public MPMRubbing,
+    private MPMContactOptions {
  public:
   Turn turn() const override { return BETWEEN_BODIES; }
   FixMPMContact(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
+  bool loses_heat() const override { return kinetic_friction > 0.0 && !heat.said; }
   void init() override;
   void init_action() override;
   void post_run() override { report_unsolved(); }

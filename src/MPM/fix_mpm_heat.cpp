@@ -20,6 +20,8 @@
 #include "mpm_field.h"
 #include "mpm_leaks.h"
 #include "mpm_options.h"
+#include "mpm_pair_styles.h"
+#include "pair_mpm_penalty.h"
 #include "region.h"
 #include "update.h"
 #include "variable.h"
@@ -139,6 +141,8 @@ Options MPMHeatOptions::declare(int dim)
                 "of implicit steps: heat that is not in balance at nodes, over that of the step")});
   o.add("grains", {yes_no(grains)},
         "points exchange heat with grains, by the temperatures and heat flows of atoms");
+  o.add("penalty", {yes_no(penalty)},
+        "what friction and damping of pair style mpm/penalty take becomes heat of the points");
   o.refuse([=] {
     const bool is_explicit = in_time.time == MPMDiffusionOptions::EXPLICIT;
     OptionRules rules = {
@@ -202,6 +206,8 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   restart_global = 1;
   if (transfer.has_slopes()) state.declare(gradients, "mpm/heat:gradient", domain->dimension);
   grains_said = options.given("grains");
+  penalty_said = options.given("penalty");
+  if (penalty) state.declare(rubbing, "mpm/heat:rubbing", 1);
   if (grains) {
     state.declare(waiting, "mpm/heat:waiting", 1);
     grain_heat = std::make_unique<MPMGrainHeat>(lmp, waiting);
@@ -213,7 +219,8 @@ FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
 int FixMPMHeat::setmask()
 {
   const int report = in_time.time == MPMDiffusionOptions::EXPLICIT ? 0 : (int) POST_RUN;
-  return report | (grains ? POST_INTEGRATE | POST_FORCE | END_OF_STEP : 0);
+  return report | (grains ? POST_INTEGRATE | POST_FORCE | END_OF_STEP : 0) |
+      (penalty ? (int) POST_FORCE : 0);
 }
 
 /* ----------------------------------------------------------------------
@@ -251,6 +258,8 @@ void FixMPMHeat::init()
         FLERR, Error::NOLASTLINE,
         "Fix mpm/heat: atoms have heat flows, of which material points would know nothing: say "
         "grains yes, or grains no if they exchange none with points");
+  find_rubbers();
+  warn_of_friction();
   const auto materials = find_fixes<FixMPMMaterial>(lmp);
   if (std::none_of(materials.begin(), materials.end(), [](auto *fix) {
         return fix->material->conducts();
@@ -274,6 +283,117 @@ void FixMPMHeat::init()
                  source.substr(2),
                  source_index < 0 ? "does not exist" : "is not equal-style or atom-style");
   }
+}
+
+/** Pair styles between bodies, whose init() has been before. */
+void FixMPMHeat::find_rubbers()
+{
+  rubbers.clear();
+  if (!penalty) return;
+  for (const auto &style : MPMPairStyle::all(*force)) {
+    auto *const pair = dynamic_cast<PairMPMPenalty *>(style.pair);
+    if (!pair || !pair->takes_energy()) continue;
+    pair->make_heat();
+    rubbers.push_back(pair);
+  }
+  if (rubbers.empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/heat penalty: there is no pair style mpm/penalty with friction or damping: "
+               "give its pair_coeff one of these, or drop the keyword");
+}
+
+/** Friction whose heat nobody has, where the input does not say that this is so: once. */
+void FixMPMHeat::warn_of_friction()
+{
+  if (losses_known) return;
+  losses_known = true;
+  if (comm->me) return;
+  for (auto *rubbing : find_fixes<MPMRubbing>(lmp)) {
+    const auto *const fix = dynamic_cast<Fix *>(rubbing);
+    if (rubbing->loses_heat())
+      error->warning(
+          FLERR,
+          "Fix {} {}: what its friction takes is lost, and warms nothing of fix mpm/heat "
+          "{}: give it heat yes, or heat no if that is meant",
+          fix->style, fix->id, id);
+  }
+  for (const auto &style : MPMPairStyle::all(*force)) {
+    const auto *const pair = dynamic_cast<PairMPMPenalty *>(style.pair);
+    if (pair && pair->takes_energy() && !penalty_said)
+      error->warning(FLERR,
+                     "Pair style {}: what its friction and damping take is lost, and warms nothing "
+                     "of fix mpm/heat {}: give that penalty yes, or penalty no if this is meant",
+                     style.name, id);
+    if (!pair && style.name.compare(0, 4, "gran") == 0 && !grains_said)
+      error->warning(FLERR,
+                     "Pair style {}: what its friction and damping take is lost, and warms nothing "
+                     "of fix mpm/heat {}: give that grains no or yes if this is meant",
+                     style.name, id);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   forces of pair styles act in the next step, and so does the heat of their friction
+------------------------------------------------------------------------- */
+
+void FixMPMHeat::setup(int)
+{
+  std::fill_n(iterations, (int) NTOTAL, 0.0);
+  take_rubbing();
+  check_temperatures();
+}
+
+/** Radiation of points that have less than no temperature is nonsense: they are in degrees Celsius. Collective. */
+void FixMPMHeat::check_temperatures()
+{
+  const auto radiates = [](const MPMHeatCondition &c) {
+    return c.kind == MPMHeatCondition::RADIATION;
+  };
+  if (std::none_of(conditions, conditions + MPMHeatFaces::NFACE, radiates) &&
+      std::none_of(surfaces.begin(), surfaces.end(), [&](const auto &s) {
+        return radiates(s.condition);
+      }))
+    return;
+  for (const auto &of : fields)
+    for (const auto *material : of->field.materials) {
+      const int column = material->find_history("temperature");
+      if (!material->material->conducts()) continue;
+      for (int i = 0; i < atom->nlocal; i++)
+        if ((atom->mask[i] & material->groupbit) && of->field.is_point(i) &&
+            !(material->history[i][column] >= 0.0))
+          error->one(FLERR, Error::NOLASTLINE,
+                     "Fix mpm/heat {} radiation needs absolute temperatures, but point {} has the "
+                     "temperature {:.6g}: give all temperatures in kelvins",
+                     id, atom->tag[i], material->history[i][column]);
+    }
+}
+
+void FixMPMHeat::post_force(int)
+{
+  if (grains) grain_heat->note_step();
+  take_rubbing();
+}
+
+void FixMPMHeat::take_rubbing()
+{
+  if (!penalty) return;
+  for (int i = 0; i < atom->nlocal; i++) {
+    rubbing[i][0] = 0.0;
+    for (const auto *pair : rubbers) rubbing[i][0] += pair->heating(i);
+  }
+}
+
+void FixMPMHeat::give_rubbing(double dt)
+{
+  double sum = 0.0;
+  for (auto &of : fields) {
+    if (!of->conducts()) continue;
+    rubbed.assign(atom->nmax, 0.0);
+    for (int i = 0; i < atom->nlocal; i++)
+      if (of->field.is_point(i)) sum += rubbed[i] = dt * rubbing[i][0];
+    of->give(rubbed);
+  }
+  book(FRICTION, sum);
 }
 
 /** Do faces of the box take their weights from the surface that nodes know (MPMHeatBody)? */
@@ -797,6 +917,7 @@ void FixMPMHeat::conduct()
   std::fill(in_step.begin(), in_step.end(), 0.0);
   for (auto &field : fields)
     if (grains && field->conducts()) grain_heat->give(*field);
+  if (penalty) give_rubbing(fields[0]->field.step_dt());
   const int stages = count_stages();
   for (auto &field : fields)
     if (field->conducts()) field->faces.hold(field->temperature, in_step);
@@ -895,7 +1016,7 @@ void FixMPMHeat::restart(char *buf)
 double FixMPMHeat::memory_usage()
 {
   double bytes = FixMPMState::memory_usage() + steps.memory_usage() +
-      source_values.capacity() * sizeof(double);
+      (source_values.capacity() + rubbed.capacity()) * sizeof(double);
   if (grains) bytes += grain_heat->memory_usage();
   if (solver) bytes += solver->memory_usage();
   for (const auto &field : fields) bytes += field->memory_usage();

@@ -44,6 +44,7 @@ struct MPMHeatOptions {
   int most_stages = 32;
   MPMDiffusionOptions in_time;
   bool grains = false;
+  bool penalty = false;
 
   MPM_NS::Options declare(int dimension);
 };
@@ -60,9 +61,9 @@ class FixMPMHeat :
   int setmask() override;    // conduction is called by fix mpm
   void init() override;
   void post_integrate() override { grain_heat->show(); }
-  void post_force(int) override { grain_heat->note_step(); }
+  void post_force(int) override;
   void end_of_step() override { book(GRAINS, grain_heat->take()); }
-  void setup(int) override { std::fill_n(iterations, (int) NTOTAL, 0.0); }
+  void setup(int) override;
   void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
@@ -93,7 +94,11 @@ class FixMPMHeat :
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic and xpic
   MPMRows waiting;      // [n][1] heat that grains have given to points, see MPMGrainHeat
   std::unique_ptr<MPMGrainHeat> grain_heat;    // null: not asked for
-  bool grains_said = false;                    // is the keyword there?
+  MPMRows rubbing;    // [n][1] power that points get by pair style mpm/penalty, in the coming step
+  std::vector<double> rubbed;                        // [n] heat of that
+  std::vector<class PairMPMPenalty *> rubbers;       // pair styles that make it
+  bool grains_said = false, penalty_said = false;    // are the keywords there?
+  bool losses_known = false;                         // has warn_of_friction() been done?
   std::vector<std::unique_ptr<MPMConduction>> fields;
   struct Past {    // so far, this rank's share; in restart files that of all ranks
     double through_faces, of_sources;
@@ -127,6 +132,10 @@ class FixMPMHeat :
 
   double sigma() const;
   MPMHeatBody &body_of(const MPMField &);
+  void find_rubbers();
+  void warn_of_friction();
+  void take_rubbing();
+  void give_rubbing(double dt);
   void find_neighbors();
   void init_contacts();
   int places_of_surfaces() const { return GIVERS + NGIVER; }
@@ -136,6 +145,7 @@ class FixMPMHeat :
   void look_for_leaks();
   void check(MPMHeatCondition &, const std::string &name);
   void check_values() const;
+  void check_temperatures();
   void evaluate_variables();
   /** Of how many kinds of exchange can a node of a field have a part? */
   int exchanges(const MPMConduction &of_field) const;

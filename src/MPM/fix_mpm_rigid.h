@@ -66,11 +66,12 @@ struct MPMRigidOptions : MPMRigidMotion {
  *
  *  In a flow of fix mpm/incompressible, for which its region is solid, it has the shape of any region that is bounded, also in 2d,
  *  and that fix moves it together with the pressure, see MPMFlowBodies. */
-class FixMPMRigid : public Fix, public MPMNodeAction, private MPMRigidOptions {
+class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
   FixMPMRigid(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
+  bool loses_heat() const override { return friction > 0.0 && !heat.said; }
   void init() override;
   void init_action() override;
   void write_restart(FILE *) override;

@@ -73,6 +73,7 @@
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
 
@@ -567,6 +568,26 @@ void MPMConduction::find_rates(const double *source, Heats &power)
   });
   for (std::size_t k = 0; k < given.size(); k++)
     if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (field.step_dt() * scalar.capacity[k]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMConduction::give(std::vector<double> &energy)
+{
+  const auto &pic = field.pic;
+  at_rest.assign(3 * (std::size_t) atom->nmax, 0.0);
+  const PointRows r = field.rows_at_rest(at_rest.data(), energy.data());
+  const TransferStep still = field.step_data(0.0);
+  auto &nodes = field.work.nodes;
+  points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
+    if (std::any_of(energy.begin() + run.first, energy.begin() + run.last, [](double e) {
+          return e != 0.0;
+        }))
+      pic.p2g_momentum(r, still, run.first, run.last, base, field.map->tile, box);
+  });
+  field.nodes.sum(nodes.data(), pic.nreal, 3, 1);
+  given.resize(field.grid.nnodes(), 0.0);
+  for (std::size_t n = 0; n < given.size(); n++) given[n] += nodes[n * pic.nreal + 3];
 }
 
 /* ----------------------------------------------------------------------

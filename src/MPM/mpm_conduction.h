@@ -70,6 +70,10 @@ class MPMConduction : protected Pointers {
   /** Last part: temperatures of points; returns the heat that they have got. */
   double nodes_to_points(const MPMRows &gradients);
 
+  /** Adds heat of points of this rank, [n] of energy, to that of their nodes, by the weights of the shape functions.
+   *  Collective; before points_to_nodes(). */
+  void give(std::vector<double> &energy);
+
   const std::vector<double> &node_capacity() const { return scalar.capacity; }
   const std::vector<double> &node_volume() const { return scalar.volume; }
   /** Of nodes, see MPMSuperStep. */
@@ -113,6 +117,7 @@ class MPMConduction : protected Pointers {
   bool total = false, active = false;
 
   std::vector<double> volumes;    // [n] of points in this step
+  std::vector<double> at_rest;    // [n][3] velocities of points that give heat, zero
   std::unique_ptr<MPMLayerMean>
       layers;               // of materials that conduct differently; null: points have their own
   double greatest = 0.0;    // of all conductivities, with layers

@@ -45,7 +45,10 @@ void MPMFrictionHeatOptions::declare(Options &o, const char *yes, const char *fi
               {{"no", NO, "what friction takes is lost"},
                {"yes", YES, yes},
                {"share", SHARE, "", {number(share, "S", FRACTION, "1", first)}}})},
-        "heat of friction for :doc:`fix mpm/heat <fix_mpm_heat>`");
+        "heat of friction for :doc:`fix mpm/heat <fix_mpm_heat>`")
+      .then([this] {
+        said = true;
+      });
 }
 
 MPMFrictionHeat::MPMFrictionHeat(LAMMPS *lmp, const MPMFrictionHeatOptions &options) :

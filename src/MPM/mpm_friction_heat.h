@@ -25,11 +25,22 @@ struct MPMFrictionHeatOptions {
   enum Kind { NO, YES, SHARE };
 
   Kind kind = NO;
+  bool said = false;     ///< is the keyword given?
   double share = 1.0;    ///< with SHARE: of the first body, or of the material at a wall
 
   bool heats() const { return kind != NO; }
   /** Declares the keyword; yes, first: what these words do, for the manual. */
   void declare(MPM_NS::Options &, const char *yes, const char *first);
+};
+
+/** A fix with friction, for fix mpm/heat. */
+class MPMRubbing {
+ public:
+  /** Does it take energy by friction, without a word in the input on what becomes of it? */
+  virtual bool loses_heat() const = 0;
+
+ protected:
+  ~MPMRubbing() = default;
 };
 
 /** Heat of friction at nodes, which fix mpm/heat conducts into the material.

@@ -28,7 +28,6 @@
 #include "modify.h"
 #include "mpm_conduction.h"
 #include "mpm_field.h"
-#include "mpm_passes.h"
 #include "update.h"
 
 #include <algorithm>
@@ -116,30 +115,13 @@ double MPMGrainHeat::sum_waiting() const
   return sum;
 }
 
-/* ----------------------------------------------------------------------
-   by the weights of the shape functions
-------------------------------------------------------------------------- */
-
 void MPMGrainHeat::give(MPMConduction &conduction)
 {
-  MPMField &field = conduction.field;
-  const auto &pic = field.pic;
-  energy.resize(atom->nmax);
-  values.assign(3 * (std::size_t) atom->nmax, 0.0);
-  const PointRows r = field.rows_at_rest(values.data(), energy.data());
-  const TransferStep still = field.step_data(0.0);
-  auto &nodes = field.work.nodes;
-  points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
-    bool any = false;
-    for (int i = run.first; i < run.last; i++) {
-      energy[i] = waiting[i][0];
-      any = any || energy[i] != 0.0;
-      waiting[i][0] = 0.0;
-    }
-    if (any) pic.p2g_momentum(r, still, run.first, run.last, base, field.map->tile, box);
-  });
-  field.nodes.sum(nodes.data(), pic.nreal, 3, 1);
-  auto &given = conduction.given;
-  given.resize(field.grid.nnodes(), 0.0);
-  for (std::size_t n = 0; n < given.size(); n++) given[n] += nodes[n * pic.nreal + 3];
+  energy.assign(atom->nmax, 0.0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!conduction.field.is_point(i)) continue;
+    energy[i] = waiting[i][0];
+    waiting[i][0] = 0.0;
+  }
+  conduction.give(energy);
 }

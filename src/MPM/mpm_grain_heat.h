@@ -47,7 +47,7 @@ class MPMGrainHeat : protected Pointers {
   const MPMRows &waiting;
   std::vector<MPMField *> fields;
   double dt = 0.0;
-  std::vector<double> energy, values;    // of points, for transfers
+  std::vector<double> energy;    // of points, for a field
 
   const FixMPMMaterial *material_of(int i) const;
 };

@@ -13,7 +13,9 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_contact.h"
+#include "fix_mpm_material.h"
 #include "force.h"
+#include "material/material.h"
 #include "math_const.h"
 #include "math_extra.h"
 #include "memory.h"
@@ -61,6 +63,11 @@ void PairMPMPenalty::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   if (neighbor->ago == 0 || (int) radius.size() < atom->nmax) find_pairs();
   for (const int i : near) radius[i] = current_radius(i);
+  if (heats) {
+    effusivity.resize(atom->nmax);
+    heat.assign(atom->nmax, 0.0);
+    for (const int i : near) effusivity[i] = effusivity_of(i);
+  }
   comm->forward_comm(this);
 
   double **x = atom->x, **v = atom->v, **f = atom->f;
@@ -121,6 +128,11 @@ void PairMPMPenalty::compute(int eflag, int vflag)
     const double share = newton_pair || j < nlocal ? 1.0 : 0.5;
     contacts += share;
     dissipated += share * power;
+    if (heats && power > 0.0) {
+      const double both = effusivity[i] + effusivity[j];
+      if (both > 0.0) heat[i] += power * effusivity[i] / both;
+      if (both > 0.0 && share == 1.0) heat[j] += power * effusivity[j] / both;
+    }
     if (evflag)
       ev_tally_xyz(i, j, nlocal, newton_pair, eflag ? 0.5 * stiffness * overlap * overlap : 0.0,
                    0.0, force_i[0], force_i[1], force_i[2], d[0], d[1], d[2]);
@@ -134,6 +146,7 @@ void PairMPMPenalty::compute(int eflag, int vflag)
                    "has a larger modulus",
                    atom->tag[deep], update->ntimestep);
   }
+  if (heats && newton_pair) comm->reverse_comm(this);
   pvector[0] = contacts;
   pvector[1] = dissipated;
   if (vflag_fdotr) virial_fdotr_compute();
@@ -251,8 +264,20 @@ double PairMPMPenalty::current_radius(int i)
   return rings ? std::min(now, growth * (1.0 + 1e-10) * largest[atom->type[i]]) : now;
 }
 
+/** As in MPMFrictionHeat, with the mean conductivity along all axes; 0: its material does not conduct. */
+double PairMPMPenalty::effusivity_of(int i) const
+{
+  const int field = field_of(i);
+  const auto *const fix = field == NOTHING ? nullptr : fields[field]->material_of(i);
+  if (!fix || !fix->material->conducts()) return 0.0;
+  const Conduction c = fix->material->conduction(fix->history[i]);
+  const double k = c.orthotropic ? (c.conductivity + c.across[0] + c.across[1]) / 3.0
+                                 : c.conductivity;
+  return sqrt(k * fix->material->density() * c.capacity);
+}
+
 /* ----------------------------------------------------------------------
-   radii change in each step; masses do not, but this is the only message
+   radii change in each step, and so may effusivities; masses do not, but this is the only message
 ------------------------------------------------------------------------- */
 
 int PairMPMPenalty::pack_forward_comm(int n, int *list, double *buf, int, int *)
@@ -262,6 +287,7 @@ int PairMPMPenalty::pack_forward_comm(int n, int *list, double *buf, int, int *)
     const int j = list[k];
     buf[m++] = j < atom->nlocal ? current_radius(j) : radius[j];
     if (damped) buf[m++] = mass[j];
+    if (heats) buf[m++] = j < atom->nlocal ? effusivity_of(j) : effusivity[j];
   }
   return m;
 }
@@ -272,7 +298,23 @@ void PairMPMPenalty::unpack_forward_comm(int n, int first, double *buf)
   for (int i = first; i < first + n; i++) {
     radius[i] = buf[m++];
     if (damped) mass[i] = buf[m++];
+    if (heats) effusivity[i] = buf[m++];
   }
+}
+
+/* ----------------------------------------------------------------------
+   heat of ghosts
+------------------------------------------------------------------------- */
+
+int PairMPMPenalty::pack_reverse_comm(int n, int first, double *buf)
+{
+  std::copy_n(heat.begin() + first, n, buf);
+  return n;
+}
+
+void PairMPMPenalty::unpack_reverse_comm(int n, int *list, double *buf)
+{
+  for (int k = 0; k < n; k++) heat[list[k]] += buf[k];
 }
 
 /* ----------------------------------------------------------------------
@@ -415,7 +457,10 @@ void PairMPMPenalty::init_style()
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/penalty with friction or damping needs the velocities of ghost "
                "atoms: use comm_modify vel yes");
-  comm_forward = damped ? 2 : 1;
+  heats = false;
+  heat.clear();
+  comm_forward = damped ? 3 : 2;    // at the most: radius, mass, and effusivity
+  comm_reverse = 1;
   radius.clear();
   look = true;
   warned = warned_deep = false;
@@ -485,6 +530,8 @@ void PairMPMPenalty::read_restart_settings(FILE *fp)
 
 double PairMPMPenalty::memory_usage()
 {
-  return Pair::memory_usage() + (radius.capacity() + mass.capacity()) * sizeof(double) +
+  return Pair::memory_usage() +
+      (radius.capacity() + mass.capacity() + effusivity.capacity() + heat.capacity()) *
+      sizeof(double) +
       pairs.capacity() * sizeof(pairs[0]) + near.capacity() * sizeof(int);
 }

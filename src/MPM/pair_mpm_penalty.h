@@ -68,6 +68,8 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
   void read_restart_settings(FILE *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
+  int pack_reverse_comm(int, int, double *) override;
+  void unpack_reverse_comm(int, int *, double *) override;
   double memory_usage() override;
 
   /** Is there friction between any types? */
@@ -77,6 +79,17 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
       return c.friction > 0.0;
     });
   }
+  /** Does it take energy between any types, by friction or damping? */
+  bool takes_energy() const
+  {
+    return has_friction() || std::any_of(coeffs.begin(), coeffs.end(), [](const auto &c) {
+             return c.damping > 0.0;
+           });
+  }
+  /** At init(), after that of this style: what it takes is heat of the points, for fix mpm/heat. */
+  void make_heat() { heats = true; }
+  /** Power that a point of this rank gets by that, from the forces of the step. */
+  double heating(int i) const { return i < (int) heat.size() ? heat[i] : 0.0; }
 
  private:
   using Coeff = MPMPenaltyCoeff;
@@ -94,7 +107,10 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
   bool warned = false;                // that points outgrow their limit
   bool warned_deep = false;           // that bodies penetrate each other
 
+  bool heats = false;    // is what is taken heat of the points?
+
   std::vector<double> radius, mass;          // current, [nmax]; mass with damping only
+  std::vector<double> effusivity, heat;      // [nmax] with heat only; 0: does not conduct; power
   std::vector<std::pair<int, int>> pairs;    // in reach of each other: of different fields
   std::vector<int> near;                     // local points in them
 
@@ -104,6 +120,7 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
   int field_of(int i) const;
   double initial_radius(int i) const;
   double current_radius(int i);
+  double effusivity_of(int i) const;
   Coeff &coeff_of(int i, int j);
 };
 
