@@ -491,9 +491,4 @@ SERIAL_TEST(Contact, BadInput)
   expect_error(replaced(scene, "static", "static slip 0"), "slip");
   expect_error(replaced(scene, "static", "static slip -1"), "slip");
   expect_error(replaced(frictionless, "static", "static slip 1e-6") + "run 1\n", "there are none");
-  expect_error(replaced(scene, "static", "midpoint") + "run 1\n", "use static or euler");
-  expect_error(
-      replaced(replaced(scene, "static", "newmark"), "0.0625 ", "0.0625 transfer flip 1.0") +
-          "run 1\n",
-      "use static or euler");
 }

@@ -334,16 +334,17 @@ class FixMPMBoundary :
   bool in_trials = false;
   MPMField *tried = nullptr;
   const double *motion = nullptr;    // velocities of nodes at the end of the step
-  double trial_dt = 0.0, eps = 0.0, soft = 0.0;
-  int rounds = 0;           // of decisions in this step
-  bool seeks = false;       // material that comes to the wall in implicit steps
-  bool follows = false;     // a region that moves and holds: by lines in implicit steps
-  bool carrying = false;    // it is a grip for the material inside, see fix_mpm_boundary_carry.cpp
+  double trial_dt = 0.0, trial_slip_time = 0.0, eps = 0.0, soft = 0.0;
+  double rub_share = 1.0;    // of friction that nodes get
+  int rounds = 0;            // of decisions in this step
+  bool seeks = false;        // material that comes to the wall in implicit steps
+  bool follows = false;      // a region that moves and holds: by lines in implicit steps
+  bool carrying = false;     // it is a grip for the material inside, see fix_mpm_boundary_carry.cpp
   bool closes =
       false;    // lines that are held go to the wall now, else they are at rest relative to it
   std::vector<double> clear;    // [point][face] its distance from the wall at the start of the step
 
-  void begin_trials(MPMField &, double dt, double eps, bool rests) override;
+  void begin_trials(MPMField &, double dt, double slip_time, double eps, bool rests) override;
   bool close_gaps(bool yes) override;
   void check_arrival() override;
   bool find_carried(MPMField &, std::vector<double> &) override;
@@ -361,7 +362,11 @@ class FixMPMBoundary :
   void correct(const double *du) override;
   bool decide(const double *u) override;
   void soften(double by) override { soft = by; }
-  void foresee_velocities(const double *v) override { motion = v; }
+  void foresee_velocities(const double *v, double share) override
+  {
+    motion = v;
+    rub_share = share;
+  }
   FieldNodes &tried_nodes();
   void find_approaches(FieldNodes &, double dt);
   void find_clear(const FieldNodes &, double dt);
@@ -371,7 +376,7 @@ class FixMPMBoundary :
   template <class Use> void visit_touches(const Use &use);
   int find_held(const FieldNodes &, int k, Held *held, double *normal) const;
   void change_of_direction(const Touch &, const double *slip, double *change) const;
-  void find_slip(const Held *, int n, const double *normal, const double *u, bool walls,
+  void find_slip(const Held *, int n, const double *normal, const double *u, double time,
                  double *slip, double &away) const;
   void rub_nodes(MPM_NS::Grid &);
   std::vector<double>

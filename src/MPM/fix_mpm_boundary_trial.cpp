@@ -35,7 +35,8 @@ static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular, bool rests)
+void FixMPMBoundary::begin_trials(MPMField &field, double dt, double slip_time, double regular,
+                                  bool rests)
 {
   if (heating)
     error->all(FLERR, Error::NOLASTLINE,
@@ -45,6 +46,7 @@ void FixMPMBoundary::begin_trials(MPMField &field, double dt, double regular, bo
   tried = &field;
   in_trials = true;
   trial_dt = dt;
+  trial_slip_time = slip_time;
   eps = regular;
   soft = 0.0;
   update_motion(dt);
@@ -170,17 +172,17 @@ int FixMPMBoundary::find_held(const FieldNodes &list, int k, Held *held, double 
   return n;
 }
 
-/** Motion of the surface along the wall, and away from it, relative to the wall if this is wanted. */
+/** Motion of the surface along the wall, and away from it, relative to what the wall goes in this time. */
 void FixMPMBoundary::find_slip(const Held *held, int n, const double *normal, const double *u,
-                               bool walls, double *slip, double &away) const
+                               double time, double *slip, double &away) const
 {
   const int dim = tried->grid.lattice.dim;
   MathExtra::zero3(slip);
   for (int j = 0; j < n; j++) {
     double V[3] = {0.0, 0.0, 0.0};
-    if (walls) wall.velocity(*tried, held[j].node, V);
+    if (time > 0.0) wall.velocity(*tried, held[j].node, V);
     for (int d = 0; d < dim; d++)
-      slip[d] += held[j].share * (u[dim * held[j].node + d] - trial_dt * V[d]);
+      slip[d] += held[j].share * (u[dim * held[j].node + d] - time * V[d]);
   }
   away = MathExtra::dot3(slip, normal);
   for (int d = 0; d < 3; d++) slip[d] -= away * normal[d];
@@ -208,7 +210,7 @@ void FixMPMBoundary::add_friction(const double *u, double *force)
   const double width = std::max(eps, soft);
   visit_touches([&](Touch &touch, const Held *held, int n, const double *normal) {
     double away;
-    find_slip(held, n, normal, u, true, touch.slip, away);
+    find_slip(held, n, normal, u, trial_slip_time, touch.slip, away);
     MathExtra::zero3(touch.rubs);
     if (!(touch.force > 0.0)) return;
     const double length = std::sqrt(MathExtra::lensq3(touch.slip) + width * width);
@@ -248,7 +250,7 @@ void FixMPMBoundary::add_friction_change(const double *du, double scale, double 
   visit_touches([&](Touch &touch, const Held *held, int n, const double *normal) {
     if (!(touch.force > 0.0)) return;
     double slip[3], turn[3], away;
-    find_slip(held, n, normal, du, false, slip, away);
+    find_slip(held, n, normal, du, 0.0, slip, away);
     change_of_direction(touch, slip, turn);
     const double length = std::sqrt(MathExtra::lensq3(touch.slip) + width * width),
                  more = (touch.push - touch.base) / scale;
@@ -265,7 +267,7 @@ void FixMPMBoundary::correct(const double *du)
   const double width = std::max(eps, soft);
   visit_touches([&](Touch &touch, const Held *held, int n, const double *normal) {
     double slip[3], turn[3], away;
-    find_slip(held, n, normal, du, false, slip, away);
+    find_slip(held, n, normal, du, 0.0, slip, away);
     change_of_direction(touch, slip, turn);
     double *const w = touch.dual;
     const double length = std::sqrt(MathExtra::lensq3(touch.slip) + width * width);
@@ -336,7 +338,7 @@ bool FixMPMBoundary::decide(const double *u)
     if (touch.active) {
       wrong[k] = largest > 0.0 ? -touch.force / largest : 0.0;
     } else {
-      find_slip(held, n, normal, u, true, slip, away);
+      find_slip(held, n, normal, u, trial_dt, slip, away);
       wrong[k] = (-away - touch.gap) / h;
     }
     mine = std::max(mine, wrong[k]);
@@ -368,7 +370,7 @@ void FixMPMBoundary::rub_nodes(Grid &grid)
       double V[3], v[3] = {0.0, 0.0, 0.0}, whole[3] = {0.0, 0.0, 0.0};
       wall.velocity(*tried, node, V);
       for (int d = 0; d < dim; d++) {
-        v[d] = record[d] + trial_dt * held[j].share * touch.rubs[d] / record[3];
+        v[d] = record[d] + rub_share * trial_dt * held[j].share * touch.rubs[d] / record[3];
         whole[d] = motion[dim * node + d];
       }
       set_velocity(grid, node, V, v, nullptr, whole);

@@ -221,11 +221,6 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
                  "use fix mpm/boundary, with a region that moves for a rigid body, or explicit "
                  "steps",
                  style, name);
-    if (time != STATIC && time != EULER)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit has contact and friction at the end of steps alone, and fix {} "
-                 "{} has one of these: use static or euler, or slip without friction",
-                 style, name);
     for (auto *other : plan.physics)
       if (other->node_pressure(*field))
         error->all(
@@ -261,7 +256,7 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("implicit step", [this]() {
       solver->finish();
     });
-  if (place == MPMPlan::AFTER_MOTION && (time == STATIC || time == EULER))
+  if (place == MPMPlan::AFTER_MOTION)
     plan.together("implicit step", [this]() {
       solver->check_contacts();
     });

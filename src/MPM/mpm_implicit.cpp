@@ -238,8 +238,9 @@ void MPMImplicit::find_friction(const std::vector<double> &u)
     std::fill(friction.begin(), friction.end(), 0.0);
     for (auto *contact : contacts) {
       contact->take_forces(of_pushes);
-      contact->add_friction(u.data(), friction.data());
+      contact->add_friction(slide_of(u), friction.data());
     }
+    for (double &force : friction) force *= rub_share;
   }
 }
 
@@ -380,6 +381,7 @@ void MPMImplicit::apply(const double *x, double *y)
       project_forces(room.data());
       std::fill(friction.begin(), friction.end(), 0.0);
       for (auto *contact : contacts) contact->add_friction_change(x, of_pushes, friction.data());
+      for (double &force : friction) force *= rub_share;
     }
     for (int64_t k = 0; k < nreals(); k++) y[k] -= friction[k];
   }
@@ -823,13 +825,16 @@ double MPMImplicit::step(double step_dt)
   rubs = false;
   bool all_hold = true;
   slip = options.slip > 0.0 ? options.slip : SLIP * field.lattice.h;
+  const double slip_time = dt * options.share_of_end();
   for (auto *action : field.plan->actions)
     if (auto *contact = action->trial_contact()) {
-      contact->begin_trials(field, dt, slip, options.time == MPMImplicitOptions::STATIC);
+      contact->begin_trials(field, dt, slip_time, slip, options.time == MPMImplicitOptions::STATIC);
       contacts.push_back(contact);
       all_hold = all_hold && action->is_projection();
       rubs = rubs || contact->has_friction();
     }
+  impacts = !all_hold && options.moves_by_mean();
+  rub_share = accelerates_by_friction() ? share_of_contact() : 1.0;
   const bool carries = find_carried();
   find_constraints();
   if (joint) joint->begin_step();
@@ -857,7 +862,7 @@ double MPMImplicit::step(double step_dt)
     if (options.time == MPMImplicitOptions::NEWMARK || options.keeps_acceleration()) {
       const auto with = options.coefficients();
       acceleration = explicit_velocity;
-      if (constrained) act(acceleration.data());
+      if (constrained && !impacts) act(acceleration.data());
       for (int64_t k = 0; k < nreals(); k++) acceleration[k] = (acceleration[k] - start[k]) / dt;
       if (options.keeps_acceleration() && kept.known) find_accelerations();
       for (int64_t k = 0; k < nreals(); k++)
@@ -871,6 +876,7 @@ double MPMImplicit::step(double step_dt)
               (mass[k / width] * (explicit_velocity[k] - before[k]) / dt - outer[k]);
       }
     }
+    if (impacts) begin_impacts();
   }
   if (!can_keep() || !go_on_from_before(u)) approach(u);
   if (can_keep()) remember(u);
@@ -896,18 +902,26 @@ double MPMImplicit::give_back(const std::vector<double> &u)
              keeps = options.keeps_acceleration();
   const auto with = options.coefficients();
   double kinetic = 0.0;
-  if (keeps) next.assign(nreals(), 0.0);
+  if (keeps && !impacts) next.assign(nreals(), 0.0);
   push.assign(nreals(), 0.0);
   velocity.resize(nreals());
   double *record = field.grid.nodes();
-  for (auto *contact : contacts) contact->foresee_velocities(velocity.data());
+  if (impacts) end_impacts(u);
+  const double of_contact = impacts ? share_of_contact() : 1.0;
+  for (auto *contact : contacts) contact->foresee_velocities(velocity.data(), of_contact);
   for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
     for (int d = 0; d < width; d++) {
       const int64_t k = width * n + d;
       const double m = mass[n], v = velocity[k] = u[k] / dt;
       record[d] = m > 0.0 ? v + dt * (residual[k] - free[k]) / m : 0.0;
       record[4 + d] = rests ? v : before[k];
-      if (newmark && m > 0.0) {
+      if (impacts && m > 0.0) {
+        const double rubbing = rubs ? friction[k] : 0.0,
+                     borne = of_contact * (free[k] - residual[k] - rubbing) +
+            of_contact / rub_share * rubbing;
+        record[d] = v - dt * borne / m + ending[k] - stopped[k];
+        record[4 + d] = v - (stopped[k] - before[k]);
+      } else if (newmark && m > 0.0) {
         // with the reactions of the start and the end of the step
         const double end = inertia * (u[k] - from[k]), of_end = options.gamma,
                      of_start = 1.0 - of_end,
@@ -916,8 +930,8 @@ double MPMImplicit::give_back(const std::vector<double> &u)
         record[d] = v + of_end * (record[d] - v) - of_start * dt * reaction;
         record[4 + d] = v - (start[k] + gained - before[k]);
       }
-      if (midpoint && m > 0.0) record[4 + d] = v - (2.0 * v - start[k] - before[k]);
-      if (keeps && m > 0.0) {
+      if (midpoint && !impacts && m > 0.0) record[4 + d] = v - (2.0 * v - start[k] - before[k]);
+      if (keeps && !impacts && m > 0.0) {
         // momentum changes by accelerations that are not those of the forces of this step alone
         const double pull = inertia * (u[k] - from[k]),
                      end = next[k] =
@@ -998,6 +1012,7 @@ double MPMImplicit::memory_usage() const
       (joint ? joint->memory_usage() : 0.0);
   for (const auto *list : {&mass,      &reach,        &friction, &before,  &explicit_velocity,
                            &outer,     &inner,        &from,     &wall,    &held,
+                           &offset,    &slide,        &mean,     &ending,  &stopped,
                            &start,     &acceleration, &push,     &closing, &velocity,
                            &loads,     &more_loads,   &residual, &partial, &of_nodes,
                            &of_points, &early,        &next,     &free,    &change,

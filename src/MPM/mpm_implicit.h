@@ -57,6 +57,8 @@ struct MPMImplicitOptions {
     double beta, gamma, of_inertia, of_forces;
   };
   Coefficients coefficients() const;
+  /** Of a change of u, over that of dt times the velocity that contact forces belong to: that of the end of the step. */
+  double share_of_end() const;
   /** The part of the motion of a step after which forces are those of the balance. */
   double part_of_motion() const { return time == MIDPOINT ? 0.5 : 1.0; }
   /** Do points have another velocity at the end of a step than they move with? */
@@ -165,6 +167,20 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> loads,
       more_loads;    // that follow points: at the start, and what is new at the end
   std::vector<double> residual, free, change, trial, blocks, room, allowed;
+
+  // contact in methods of second order (mpm_implicit_impact.cpp)
+
+  bool impacts = false;          // walls separate, or have friction
+  double rub_share = 1.0;        // of friction by the forces that press, in the balance
+  std::vector<double> offset;    // what motions have more that slip like the end of the step
+  std::vector<double> slide;     // u with this
+  std::vector<double> mean;      // accelerations that points bring, which they have more than nodes
+  std::vector<double> ending, stopped;    // velocities of the end, before and after walls
+  bool accelerates_by_friction() const;
+  void begin_impacts();
+  const double *slide_of(const std::vector<double> &u);
+  double share_of_contact() const;
+  void end_impacts(const std::vector<double> &u);
 
   // bodies that nothing holds (mpm_implicit_free.cpp)
 

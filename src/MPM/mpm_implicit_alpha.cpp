@@ -27,6 +27,14 @@ void MPMImplicit::find_accelerations()
   const int dim = width;
   const double *const of_point = lmp->atom->rmass;
   const MPMStencil stencil(field);
+  // walls that bring contact hold by forces of the end of the step alone: until then, nodes have those of the body there
+  std::vector<double> borne;
+  if (impacts) {
+    std::vector<double> rest = acceleration;
+    project(rest.data());
+    borne = acceleration;
+    for (int64_t k = 0; k < nreals(); k++) borne[k] -= rest[k];
+  }
   acceleration.assign(nreals(), 0.0);
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
@@ -39,15 +47,18 @@ void MPMImplicit::find_accelerations()
   field.nodes.sum(acceleration.data(), dim, 0, dim);
   for (int64_t k = 0; k < nreals(); k++)
     acceleration[k] = mass[k / dim] > 0.0 ? acceleration[k] / mass[k / dim] : 0.0;
+  if (impacts) mean = acceleration;
   project(acceleration.data());
+  for (std::size_t k = 0; k < borne.size(); k++) acceleration[k] += borne[k];
 }
 
 /** Points get what accelerations of nodes have changed by, in the first step all of it. They are where they were at the start. */
 void MPMImplicit::keep_accelerations()
 {
   const int dim = width;
+  const auto &had = impacts ? mean : acceleration;
   if (kept.known)
-    for (int64_t k = 0; k < nreals(); k++) next[k] -= acceleration[k];
+    for (int64_t k = 0; k < nreals(); k++) next[k] -= had[k];
   field.nodes.complete(next.data(), dim, dim);
   const MPMStencil stencil(field);
   for (const auto &run : field.map->runs)

@@ -37,7 +37,7 @@ void MPMImplicit::find_end_of_motion()
   for (int64_t n = 0; n < (int64_t) mass.size(); n++)
     for (int d = 0; d < dim && mass[n] > 0.0; d++) {
       const double v = velocity[dim * n + d];
-      of_nodes[2 * dim * n + d] = v - start[dim * n + d];
+      of_nodes[2 * dim * n + d] = impacts ? stopped[dim * n + d] - v : v - start[dim * n + d];
       of_nodes[2 * dim * n + U + d] = dt * v;
     }
   field.nodes.complete(of_nodes.data(), 2 * dim, 2 * dim);

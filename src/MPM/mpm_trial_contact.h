@@ -24,8 +24,9 @@ class MPMField;
  *  friction to nodes as it was found last. Vectors are [node][dim]; forces are in units of mass times acceleration. */
 class MPMTrialContact {
  public:
-  /** The start of a step of duration dt, in statics (rests) or dynamics; eps [distance]. Collective. */
-  virtual void begin_trials(MPMField &, double dt, double eps, bool rests) = 0;
+  /** The start of a step of duration dt, in statics (rests) or dynamics; eps [distance]. Motions from which there is friction are relative to
+   *  that of the wall in the time slip_time. Collective. */
+  virtual void begin_trials(MPMField &, double dt, double slip_time, double eps, bool rests) = 0;
   /** Points that a wall takes with it as a whole in this step, as those in a grip: left[point] becomes the share of its volume that is left outside, if there
    *  are any; else it stays empty. Those inside have no part in the balance of forces, which the wall makes use of from now on. Returns whether there may be such, the
    *  same on all ranks. Not called where a solver cannot leave them out. */
@@ -59,8 +60,8 @@ class MPMTrialContact {
   virtual bool decide(const double *u) = 0;
   /** Friction is weakened to that of a larger eps for a correction: 0 ends this. */
   virtual void soften(double eps) = 0;
-  /** Nodes will have these velocities at the end of the step; valid until then. */
-  virtual void foresee_velocities(const double *v) = 0;
+  /** Nodes will have these velocities after the stage STEP, in which they get this share of the friction that was found; valid until then. */
+  virtual void foresee_velocities(const double *v, double share) = 0;
 
  protected:
   ~MPMTrialContact() = default;
