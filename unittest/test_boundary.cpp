@@ -1315,6 +1315,25 @@ TEST(Regions, SlipHoldsWhereItMoves)
     }
 }
 
+// A roller that goes along the surface of a block and into it: ranks need nodes next to it wherever it is, also while no point leaves its neighborhood
+TEST(Regions, RollerOnRanks)
+{
+  const std::string text = plane("lj", "f f", "-14 14 -6 6", 1, 2.0) +
+      body("block -10 10 -3 0 -0.5 0.5", "density 1.0 linear 100.0 0.3", "0.5 origin 0.3 0.4") +
+      "variable x equal -6+4*time\nvariable y equal -0.1*time\n"
+      "region roller sphere 0 3.2 0 3.2 move v_x v_y NULL\n"
+      "region floor block INF INF INF -3 INF INF\n"
+      "fix floor all mpm/boundary region floor slip\nfix w all mpm/boundary region roller slip\n"
+      "fix damp all viscous 0.05\ntimestep 0.02\nrun 100\n";
+  Scene serial(text, MPI_COMM_SELF), parallel(text);
+  for (const char *value : {"f_w[1]", "f_w[2]", "f_floor[2]", "f_w"}) {
+    const double one = serial.evaluate(value);
+    EXPECT_NEAR(parallel.evaluate(value), one, 1e-9 * std::fabs(serial.evaluate("f_w[2]")))
+        << value;
+  }
+  EXPECT_GT(std::fabs(serial.evaluate("f_w[2]")), 1e-3);
+}
+
 TEST(Regions, NoTrailBehindAMovingBody)
 {
   // pitfall 16: a floor moves along under a falling body; nodes that it has left fall freely
