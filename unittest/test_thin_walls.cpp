@@ -41,12 +41,14 @@ struct Rest {
 /** A block, 1 wide and 0.5 high, at rest on a plate of this thickness, whose upper face is at top, and which reaches
  *  this far beyond the block; in node spacings. The wall: made of the plate by these commands. */
 Rest rest(double h, double thickness, double top, double beyond, const std::string &kind,
-          const std::string &wall = "")
+          const std::string &wall = "", bool moves = false)
 {
   const double y = 0.4 + top * h;
   Scene run(elastic_block(h, "0 2 0 1.2", strprintf("0.5 1.5 %.15g %.15g", y, y + 0.5)) +
-            strprintf("region plate block %.15g %.15g %.15g %.15g INF INF\n", 0.5 - beyond * h,
-                      1.5 + beyond * h, y - thickness * h, y) +
+            "variable still equal 0.0\n" +
+            strprintf("region plate block %.15g %.15g %.15g %.15g INF INF %s\n", 0.5 - beyond * h,
+                      1.5 + beyond * h, y - thickness * h, y,
+                      moves ? "move NULL v_still NULL" : "") +
             wall + "fix w all mpm/boundary region " + (wall.empty() ? "plate " : "wall ") + kind +
             strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) +
             strprintf("variable settled equal %.15g-xcm(all,y)\n", y + 0.25) +
@@ -64,6 +66,7 @@ TEST(ThinPlate, CarriesABlock)
   struct Plate {
     double thickness, top, beyond;    // in node spacings
     const char *kind = "separate";
+    bool moves = false;
   };
   const Plate plates[] = {{1, 0, 4},
                           {0.8, 0.5, 4},
@@ -74,11 +77,14 @@ TEST(ThinPlate, CarriesABlock)
                           {0.3, 0.6, 2, "slip"},
                           {0.8, 0.5, 3, "slip"},
                           {1, 0, 4, "slip"},
-                          {2.2, 0.5, 4, "slip"}};
+                          {2.2, 0.5, 4, "slip"},
+                          {0.3, 0.6, 2, "slip", true},
+                          {0.8, 0.5, 3, "slip", true}};
   for (const double h : {0.05, 0.025})
     for (const auto &plate : plates) {
       if (h < 0.05 && plate.thickness != 0.8) continue;
-      const auto thin = rest(h, plate.thickness, plate.top, plate.beyond, plate.kind),
+      const auto thin =
+                     rest(h, plate.thickness, plate.top, plate.beyond, plate.kind, "", plate.moves),
                  thick = rest(h, 6.0, plate.top, plate.beyond, plate.kind);
       const auto name = strprintf("%s, h %g, thickness %g h, at %g h: ", plate.kind, h,
                                   plate.thickness, plate.top);
@@ -302,10 +308,13 @@ TEST(ThinRegions, AreReportedWithWhatOtherRanksHave)
 // Regions that move are looked at in the first step, whatever its number
 TEST(ThinRegions, ThatMoveAreReportedInShortRuns)
 {
-  const std::string moves = "block 0 2 0.36 0.39 INF INF move NULL v_still NULL";
   Warned twice = {"reset_timestep 1\nrun 102\n"};
   twice.every = 2;
-  for (const char *kind : {"stick", "slip"}) {
+  // nodes inside act with stick, and lines with slip
+  for (const std::string kind : {"stick", "slip"}) {
+    const std::string moves =
+        std::string(kind == "slip" ? "block 1.51 1.54 0 0.62" : "block 0 2 0.36 0.39") +
+        " INF INF move NULL v_still NULL";
     EXPECT_EQ(warnings_of(moves, kind, {"run 3\n"}).size(), 1U) << kind;
     EXPECT_EQ(warnings_of(moves, kind, twice).size(), 1U) << kind;
   }

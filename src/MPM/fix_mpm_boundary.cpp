@@ -65,6 +65,7 @@
 #include "mpm_field.h"
 #include "mpm_options.h"
 #include "mpm_physics.h"
+#include "mpm_region_motion.h"
 #include "mpm_state.h"
 #include "region.h"
 #include "update.h"
@@ -92,20 +93,6 @@ static constexpr double ALONG =
     1.0e-3;    // sine of the angle of a motion that is along the surface
 static constexpr double EQUAL = 1.0e-6;    // components of normals that are as large
 static constexpr double RESOLVED = 1.5;    // node spacings: nodes cannot tell widths that are less
-
-namespace {
-/** Center and unit axis of a region's rotation, which are protected members. */
-struct RegionMotion : public Region {
-  static const double *point_of(const Region *r) { return r->*(&RegionMotion::point); }
-  static const double *axis_of(const Region *r) { return r->*(&RegionMotion::runit); }
-};
-
-/** Shift and angle of a region, as restart files keep them. */
-std::array<double *, 4> motion_of(Region *region)
-{
-  return {&region->dx, &region->dy, &region->dz, &region->theta};
-}
-}    // namespace
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values
@@ -256,10 +243,10 @@ bool FixMPMBoundary::keeps_distance() const
   return region ? holds_surface() : !decides();
 }
 
-/** Slip on a region at rest: lines act where material is in front of it, and nodes where it is inside. */
+/** Slip on a region in explicit steps, and at rest in implicit ones: lines act where material is in front of it, and nodes where it is inside. */
 bool FixMPMBoundary::holds_surface() const
 {
-  return kind == SLIP && friction == 0.0 && !region_moves();
+  return kind == SLIP && friction == 0.0 && !follows;
 }
 
 bool FixMPMBoundary::acts_on(const MPMField &field) const
@@ -385,6 +372,8 @@ void FixMPMBoundary::init()
     }
   }
   motion_step = -1;
+  placed = false;
+  for (auto &list : nodes) list.around.known = false;
   in_trials = false;
   steps = 0;
   too_thin.begin();
@@ -404,7 +393,8 @@ void FixMPMBoundary::setup(int)
   });
   const auto *field = MPMField::all(lmp)[0];
   if (!past.acted || field->steps_to_next() == field->options.every)
-    for (int k = 0; k < 4; k++) past.region[k] = *motion_of(region)[k];
+    for (int k = 0; k < 4; k++) past.region[k] = *MPMRegionMotion::of(region)[k];
+  placed = true;
 }
 
 /* ----------------------------------------------------------------------
@@ -489,46 +479,15 @@ bool FixMPMBoundary::looks_at_all(const MPMField &field, const Grid::Block &bloc
   return false;
 }
 
-/* ----------------------------------------------------------------------
-   A line of nodes through the surface of a region can have nodes that only another rank's points reach.
-   Lines along several axes share nodes: blocks all around. Where lines are only looked at, see check_width(), those
-   next to each other are enough
-------------------------------------------------------------------------- */
-
-void FixMPMBoundary::extend_across(MPMField &field) const
-{
-  const bool known = !region_moves() && region->nregion == 1, across = acts_across();
-  if (comm->nprocs == 1 || !(across || known)) return;
-  Grid &grid = field.grid;
-  const int dim = field.lattice.dim;
-  const double h = field.lattice.h,
-               reach = (0.5 * grid.side * sqrt((double) dim) + (across ? 4.0 : 2.0)) * h;
-  if (!region_moves()) region->prematch();
-  const auto nblocks = (int) grid.blocks.size();
-  for (int ib = 0; ib < nblocks; ib++) {
-    const int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
-    const int first[3] = {b[0] * grid.side, b[1] * grid.side, b[2] * grid.side};
-    double middle[3];
-    field.lattice.node_position(first, middle);
-    for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
-    if (known && fabs(surface->distance(middle, FAR * h)) > reach) continue;
-    const int rings = holds_surface() ? 2 : 1, flat = dim == 3 ? rings : 0;    // see list_knots()
-    for (int k = -flat; k <= flat; k++)
-      for (int j = -rings; j <= rings; j++)
-        for (int i = -rings; i <= rings; i++) {
-          const int next[3] = {b[0] + i, b[1] + j, b[2] + k};
-          if (across || abs(i) + abs(j) + abs(k) == 1) grid.activate(next);
-        }
-  }
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::topology_changed(MPMField &field)
 {
   for (auto &list : nodes) {
     if (list.field != &field) continue;
+    const auto around = list.around;
     list = {&field, faces_on_lattice(field), {}, {}, {}, {}};
+    list.around = around;
     if (!region)
       list_face_nodes(list);
     else if (!region_moves())
@@ -714,7 +673,7 @@ void FixMPMBoundary::FieldNodes::list_orbits(const bool *prescribed, int axis)
 void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 {
   const MPMField &field = *list.field;
-  const Grid &grid = field.grid;
+  Grid &grid = list.field->grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h;
   const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
@@ -731,9 +690,24 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
 
   list.singles.clear();
   if (!moves) region->prematch();
+  const auto has_mass = [&](std::size_t block) {
+    const double *record = grid.record((int64_t) block * NODES_PER_BLOCK);
+    double mass = 0.0;
+    for (int n = 0; n < NODES_PER_BLOCK; n++, record += grid.nreal) mass += record[3];
+    return mass > 0.0;
+  };
+  const bool looks_for_mass = moves && holds_surface();
+  std::vector<char> massive;
+  for (std::size_t ib = 0; looks_for_mass && ib < grid.blocks.size(); ib++)
+    massive.push_back(has_mass(ib));
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
-    // most blocks are out of reach
+    // most blocks are out of reach, and those around a region that moves, where it is not at the body, have nothing to hold
 
+    const int *const around = grid.blocks[ib].slot;
+    if (looks_for_mass && std::none_of(around, around + 27, [&](int block) {
+          return block >= 0 && massive[block];
+        }))
+      continue;
     const int64_t first_node = (int64_t) ib * NODES_PER_BLOCK;
     double first[3], last[3], mid[3];
     grid.node_position(first_node, first);
@@ -855,7 +829,7 @@ void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single>
 }
 
 /* ----------------------------------------------------------------------
-   Nodes that are on lines do not act on their own. With slip, a surface that moves across the lattice hands nodes
+   Nodes that are on lines do not act on their own. With slip and friction, a surface that moves across the lattice hands nodes
    over, see list_region_nodes(), which lines do not do: there are none where it does
 ------------------------------------------------------------------------- */
 
@@ -1191,7 +1165,7 @@ void FixMPMBoundary::update_motion(double dt)
   double *const old = past.region;
   if (region_moves()) {
     // others may have looked at the region since then
-    for (int k = 0; k < 4; k++) *motion_of(region)[k] = old[k];
+    for (int k = 0; k < 4; k++) *MPMRegionMotion::of(region)[k] = old[k];
     for (auto &list : nodes) list_region_nodes(list);
   }
 
@@ -1214,13 +1188,13 @@ void FixMPMBoundary::update_motion(double dt)
     }
   }
   if (region_moves()) {
-    const auto motion = motion_of(region);
+    const auto motion = MPMRegionMotion::of(region);
     for (int d = 0; d < 3; d++) wall.shift[d] = (*motion[d] - old[d]) / dt;
     check_speed(dt);
     if (region->rotateflag) {
       double origin[3];
-      MathExtra::add3(RegionMotion::point_of(region), old, origin);
-      wall.rotate(region->theta - old[3], RegionMotion::axis_of(region), origin, dt);
+      MathExtra::add3(MPMRegionMotion::point_of(region), old, origin);
+      wall.rotate(region->theta - old[3], MPMRegionMotion::axis_of(region), origin, dt);
     }
     if (region->varshape)
       for (auto &list : nodes)
@@ -1240,7 +1214,8 @@ void FixMPMBoundary::update_motion(double dt)
           s.growth = (s.distance - distance) / dt - MathExtra::dot3(v, s.normal);
         }
     for (int k = 0; k < 4; k++) old[k] = *motion[k];
-    if (kind == SLIP && !follows && acts_across())
+    const bool hands_over = kind == SLIP && !follows && !holds_surface();
+    if (hands_over && acts_across())
       for (auto &list : nodes) take_off_lines(list);
   }
   if (!past.acted) MathExtra::copy3(wall.shift, wall.before);

@@ -81,6 +81,7 @@ class FixMPMBoundary :
   double compute_vector(int) override;
   double memory_usage() override;
 
+  void couple_topology() override;
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
   bool looks_beyond_points() const override { return false; }
@@ -230,6 +231,10 @@ class FixMPMBoundary :
     std::vector<MPMWallContact> crossed = {};     // with crossings, as far as they have been needed
     std::vector<char> crossed_known = {};
     std::vector<Approach> approaches = {};
+    struct Around {
+      double at[4] = {};    // shift and angle of the region, around which blocks are
+      bool known = false;
+    } around = {};
 
     void list_line(int face, const int *index);
     void list_orbits(const bool *prescribed, int axis);
@@ -293,6 +298,7 @@ class FixMPMBoundary :
   double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
+  bool placed = false;    // is past.region its place in this run?
   std::vector<int64_t>
       held_by_lines;    // nodes inside that are not nearest to the face of their line
   MPMWallGap gap;
@@ -395,7 +401,9 @@ class FixMPMBoundary :
   static bool faces_are_near(const Faces &, int axis);
   void list_face_nodes(FieldNodes &);
   void list_region_nodes(FieldNodes &);
-  void extend_across(MPMField &) const;
+  bool knows_place() const;
+  double way_since(const double *then) const;
+  void extend_across(MPMField &);
   void list_crossings(FieldNodes &, const std::vector<Single> &outside);
   static void list_knots(FieldNodes &);
   void act_on_knot(const FieldNodes &, Knot &);

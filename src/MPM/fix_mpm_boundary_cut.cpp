@@ -255,8 +255,11 @@ bool FixMPMBoundary::decide_line(Grid &grid, Crossing &c)
   if (c.front == Crossing::SOUND && !to_surface) return true;
   if (!now.decided) c.acts = holds_line(grid, c);
   if (!c.acts) return false;
-  if (c.front == Crossing::NEAR_OTHERS || to_surface)
-    held_by_lines.insert(held_by_lines.end(), c.node, c.node + (follows ? c.n : c.inside));
+  if (c.front == Crossing::NEAR_OTHERS || to_surface) {
+    // nodes outside act, too, where a region that moves hands them over
+    const bool all = follows || (to_surface && region_moves());
+    held_by_lines.insert(held_by_lines.end(), c.node, c.node + (all ? c.n : c.inside));
+  }
   return true;
 }
 

@@ -12,6 +12,7 @@
 #include "mpm_image.h"
 #include "mpm_options.h"
 #include "mpm_physics.h"
+#include "mpm_region_motion.h"
 
 #include "comm.h"
 #include "domain.h"
@@ -20,7 +21,6 @@
 #include "region.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -44,17 +44,6 @@ static constexpr double FLOOR = 0.7, WHOLE = 0.75, SURFACE = 0.1, LEAST_SLOPE = 
 static constexpr int LAYERS = 2;
 
 namespace {
-/** Center and unit axis of a region's rotation, which are protected members. */
-struct RegionMotion : public Region {
-  static const double *point_of(const Region *r) { return r->*(&RegionMotion::point); }
-  static const double *axis_of(const Region *r) { return r->*(&RegionMotion::runit); }
-};
-
-std::array<double *, 4> motion_of(Region *region)
-{
-  return {&region->dx, &region->dy, &region->dz, &region->theta};
-}
-
 /** Share of a segment, and of a triangle, in which a linear function is positive. */
 double positive(double a, double b)
 {
@@ -139,7 +128,7 @@ void MPMFlowRegions::start_run()
   });
   for (int w = 0; w < n(); w++) {
     auto &wall = walls[w];
-    for (int k = 0; k < 4; k++) wall.before[k] = *motion_of(wall.region)[k];
+    for (int k = 0; k < 4; k++) wall.before[k] = *MPMRegionMotion::of(wall.region)[k];
     if (wall.body) wall.body->motion(wall.center, wall.shift, wall.spin);
   }
   known = false;
@@ -159,7 +148,7 @@ void MPMFlowRegions::find(double duration)
       evaluate_in_step(lmp, true, [&] {
         wall.region->prematch();
       });
-    const auto motion = motion_of(wall.region);
+    const auto motion = MPMRegionMotion::of(wall.region);
     double end[4];
     for (int k = 0; k < 4; k++) {
       end[k] = *motion[k];
@@ -170,9 +159,9 @@ void MPMFlowRegions::find(double duration)
     if (!(duration > 0.0)) continue;
     for (int d = 0; d < 3; d++) wall.shift[d] = (end[d] - wall.before[d]) / duration;
     if (wall.region->rotateflag) {
-      MathExtra::add3(RegionMotion::point_of(wall.region), wall.before, wall.center);
+      MathExtra::add3(MPMRegionMotion::point_of(wall.region), wall.before, wall.center);
       const double rate = (end[3] - wall.before[3]) / duration;
-      for (int d = 0; d < 3; d++) wall.spin[d] = rate * RegionMotion::axis_of(wall.region)[d];
+      for (int d = 0; d < 3; d++) wall.spin[d] = rate * MPMRegionMotion::axis_of(wall.region)[d];
     }
     std::copy_n(end, 4, wall.before);
   }
@@ -180,7 +169,7 @@ void MPMFlowRegions::find(double duration)
   find_cuts();
   for (auto &wall : walls)
     if (wall.moves)
-      for (int k = 0; k < 4; k++) *motion_of(wall.region)[k] = wall.before[k];
+      for (int k = 0; k < 4; k++) *MPMRegionMotion::of(wall.region)[k] = wall.before[k];
   known = true;
   nbuild = cells.nbuild;
 }
