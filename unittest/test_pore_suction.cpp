@@ -283,6 +283,16 @@ SERIAL_TEST(Geostatic, SuctionAboveTheTable)
   EXPECT_LT(measured("with less suction, force over weight", fall(dry, dt)), 0.05);
 }
 
+// also where the suction of water at rest changes the saturation by orders of magnitude within a cell
+SERIAL_TEST(Geostatic, CapillaryFringeWithinACell)
+{
+  Scene run(column(10,
+                   std::string(SAND) + "retention gardner 4e-3 saturation 0.1 1 geostatic 0.5 0.43",
+                   "2002 linear 1e7 0.3", 1.2, 0.0) +
+            "timestep 4e-5\nrun 200\n");
+  EXPECT_LT(measured("velocity", fall(run, 200 * 4e-5)), 1e-9);
+}
+
 // friction of walls is that of grains: a block slides by its weight without what its water bears at the floor, where pores
 // are full with the saturation Ss, partly full, or full below a water table in the block
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
@@ -373,6 +383,55 @@ SERIAL_TEST(Surface, RainAndSeepage)
     const double came = run.fix("water")->compute_scalar();
     EXPECT_NEAR((mass(run) - before - 1000.0 * came) / before, 0.0, 1e-13);
   }
+}
+
+namespace {
+
+/** A surface that stays full takes water into dry soil, from -10 m: 1 m with n cells. K: of the water. */
+std::string absorbs(int n, double K, double end)
+{
+  const double h = 1.0 / n;
+  return plane("si", "f p", strprintf("0 1 0 %.17g", 2 * h), 1, 0.3 * h) +
+      strprintf("fix grid all mpm %.17g\ncreate_points 1 box ppc 2\n", h) +
+      "fix m all mpm/material density 2000 linear 1e8 0.0\nfix ends all mpm/boundary xlo xhi "
+      "slip\n" +
+      strprintf(
+             "fix water all mpm/pore %g 1000 9810 soil m 0.4 constant 0.1 retention vangenuchten "
+             "%.17g 1.6 saturation 0.1 1 initial -98100 xlo pressure 0\n",
+             K, 3.35 / WEIGHT) +
+      strprintf("fix dt all mpm/dt 0.1 until 0.002\nrun 100000\nfix dt all mpm/dt 0.5 until %g\n"
+                "run 100000\n",
+                end);
+}
+
+}    // namespace
+
+// Absorption into dry soil, whose water grows with the root of the time: 0.0386 m after 0.3 s, 0.0585 and 0.0494 with 10 and 20 finite
+// volumes. The front does not hold it back, also where the water is stiff
+SERIAL_TEST(Surface, FillsDrySoil)
+{
+  for (const double K : {1e6, 1e7}) {
+    double more[2];
+    for (const int n : {10, 20}) {
+      Scene run(absorbs(n, K, 0.3));
+      const double came = run.fix("water")->compute_scalar() * n / 2.0;
+      more[n == 20] = measured(strprintf("K %g, %d cells, water", K, n), came) - 0.0386;
+    }
+    EXPECT_LT(more[0], 0.0585 - 0.0386);
+    EXPECT_LT(more[1], 0.0494 - 0.0386);
+    EXPECT_GT(more[1], 0.0);
+    EXPECT_LT(more[1], 0.6 * more[0]);
+  }
+}
+
+// pressures of points that jump where the last pores fill are told, and water so stiff that its flow needs more stages than there
+// may be is refused
+SERIAL_TEST(Surface, StiffWater)
+{
+  const char *const told = "use a smaller bulk modulus of the water, K, of some 8.8e+05";
+  EXPECT_EQ(lines_that_say(absorbs(10, 1e7, 0.02), told).size(), 0u);
+  EXPECT_GT(lines_that_say(absorbs(10, 1e8, 0.02), told).size(), 0u);
+  expect_error(absorbs(10, 2.2e9, 0.02), "use a smaller bulk modulus of the water");
 }
 
 namespace {

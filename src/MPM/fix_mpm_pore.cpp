@@ -755,8 +755,12 @@ void FixMPMPore::flow()
     error->all(FLERR, Error::NOLASTLINE,
                "The time step {:.6g} is {:.4g} times the explicit limit {:.4g} of the flow of pore "
                "water, which needs more than {} stages: use fix mpm/dt, a smaller timestep, or fix "
-               "mpm/pore ... stages",
-               dt, dt / limit, limit, most_stages);
+               "mpm/pore ... stages{}",
+               dt, dt / limit, limit, most_stages,
+               can_dry()
+                   ? "; where the last pores fill in a soil with retention, use a smaller bulk "
+                     "modulus of the water, K"
+                   : "");
   std::fill(in_step.begin(), in_step.end(), 0.0);
   steps.advance(stages, dt, [this]() {
     std::fill(present.begin(), present.end(), 0.0);

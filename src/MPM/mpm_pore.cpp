@@ -341,6 +341,12 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           to_rows<3>(state[first], n, points.row);
         else
           to_rows<2>(state[first], n, points.row);
+        if (suction && s->of.retention.can_dry()) {
+          const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
+          for (int p = 0; p < n; p++)
+            MPMPoreSuction::limit_slope(s->of, points.row[p][3], along, field.lattice,
+                                        points.row[p]);
+        }
         return true;
       },
       false);

@@ -38,6 +38,13 @@
    than a fifth of the water of a point through a cell in a step is held at that; where pores are full on both
    sides, flow is never so fast but in steps much too long for the scene.
 
+   Slopes. Nodes get p_p + g_p (x_i - x_p) with the gradient g_p of the step before (mpm_pore.cpp). At a front
+   that falls by many 1/alpha within a cell, this made pressures far above those of any point at nodes next to
+   it: the front held its own water back, to a third of what comes into a dry soil at a surface that stays wet, and
+   more of it on finer lattices and with stiffer water. Hence the part of g_p that differs from water at rest changes the
+   pressure of points with suction through a cell by 1/alpha + s at the most, with the suction s, in which S and k_r change
+   by a factor. As sum_i N_ip (x_i - x_p) = 0, any g_p leaves the water of all points what it is.
+
    Surface. Through half a cell next to the surface, water comes in with the mean of the permeabilities at the
    pressure outside and inside: rain on dry soil would otherwise not get in. It leaves with that inside: what
    leaves the nodes at the surface must be able to come to them, or their pressure would fall without bound.
@@ -58,6 +65,9 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double DRIEST = 100.0;    // suction times alpha, beyond which soil gets no drier
+static constexpr double FULLEST =
+    100.0;    // pressure times alpha, above which water that fills the last pores is very stiff
+static constexpr double STIFF_ENOUGH = 300.0;    // bulk modulus of the water times alpha
 static constexpr double MOST_LAG =
     0.1;    // of the water of a point that leaves by its lag in a step
 static constexpr double UNDERSHOOT =
@@ -214,6 +224,17 @@ void MPMPoreSuction::find_conductances(MPMNodeScalar &scalar, const MPMPoreSurfa
 
 /* ---------------------------------------------------------------------- */
 
+void MPMPoreSuction::limit_slope(const MPMPoreSoil &soil, double p, const double *at_rest,
+                                 const Lattice &lattice, double *g)
+{
+  if (!(p < 0.0)) return;
+  double square = 0.0;
+  for (int d = 0; d < lattice.dim; d++) square += (g[d] - at_rest[d]) * (g[d] - at_rest[d]);
+  const double change = lattice.h * sqrt(square), most = 1.0 / soil.retention.alpha - p;
+  if (change <= most) return;
+  for (int d = 0; d < lattice.dim; d++) g[d] = at_rest[d] + most / change * (g[d] - at_rest[d]);
+}
+
 double MPMPoreSuction::take_motion(int i, double more, double dt)
 {
   Point &point = of[i];
@@ -243,7 +264,25 @@ double MPMPoreSuction::take_water(int i, const MPMPoreSoil &soil, double before,
                "(fix mpm/dt), or, where a flux takes water from dry soil, give its suction by "
                "pressure",
                atom->tag[i], soil.material);
-  return MPMPoreMoisture::pressure(soil, content[i] / of[i].full, before, guess, water);
+  const double filling = content[i] / of[i].full;
+  const double now = MPMPoreMoisture::pressure(soil, filling, before, guess, water);
+  if (now * soil.retention.alpha > FULLEST && before < 0.0) tell_of_stiff_water(i, soil, now);
+  return now;
+}
+
+/** Once on each rank that has such a point. */
+void MPMPoreSuction::tell_of_stiff_water(int i, const MPMPoreSoil &soil, double p)
+{
+  if (told) return;
+  told = true;
+  const double alpha = soil.retention.alpha;
+  error->warning(
+      FLERR,
+      "Fix mpm/pore: the water that fills the last pores of point {} of soil {} raises its "
+      "pressure to {:.4g} in a step, {:.4g} times 1/alpha of its retention: pressures and "
+      "stresses at fronts of water jump, use a smaller bulk modulus of the water, K, of "
+      "some {:.2g}, or shorter steps",
+      atom->tag[i], soil.material, p, p * alpha, STIFF_ENOUGH / alpha);
 }
 
 double MPMPoreSuction::memory_usage() const

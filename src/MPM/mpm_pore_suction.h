@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_PORE_SUCTION_H
 #define LMP_MPM_PORE_SUCTION_H
 
+#include "lattice/grid.h"
 #include "mpm_node_scalar.h"
 #include "mpm_pore_soil.h"
 #include "mpm_pore_surface.h"
@@ -61,6 +62,10 @@ class MPMPoreSuction : protected Pointers {
    *  V: volume of the point. */
   void begin_point(int i, const MPMPoreSoil &, double J, double V, double p, double &capacity,
                    double &conductance, double &through, double &in_forces);
+  /** At fronts the pressure of a point with suction goes to nodes by a gradient that is less steep, see mpm_pore_suction.cpp. p, g: of the
+   *  point, g in place; at_rest: the gradient of water at rest [pressure/length]. */
+  static void limit_slope(const MPMPoreSoil &, double p, const double *at_rest,
+                          const MPM_NS::Lattice &, double *g);
   /** The pressure of point i is this much above that of the nodes. */
   void set_lag(int i, double lag) { of[i].lag = lag; }
   /** At surfaces: sums of the soil at nodes, by the permeability that it has with the pressure outside. */
@@ -109,6 +114,9 @@ class MPMPoreSuction : protected Pointers {
   double usual = 0.0, waves = 0.0, slowest = 0.0;    // rates
   double longest = 1.0;                              // greatest factor of all ranks
   MPMPoreSurface::Wet wet;
+  bool told = false;    // of water that is very stiff
+
+  void tell_of_stiff_water(int i, const MPMPoreSoil &, double p);
 };
 
 }    // namespace LAMMPS_NS

@@ -131,14 +131,19 @@ void MPMTimeLimit::check()
   if (!(field.step_dt() <= limit)) {
     int i = 0;
     while (i < atom->nlocal - 1 && atom->tag[i] != tag) i++;
+    const char *const remedy = "use timestep, fix mpm/dt, or fix mpm ... dtcheck no";
+    if (c == 0.0)
+      error->one(
+          FLERR,
+          "Time step {:.6g} is above the limit {:.6g} of other physics, such as heat or pore "
+          "water that flows, at step {}: {}; {}",
+          field.step_dt(), limit, update->ntimestep, field.guard->describe(i), remedy);
     error->one(FLERR,
-               "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave "
-               "speed {:.6g}; use timestep, fix mpm/dt, or fix mpm ... dtcheck no",
+               "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave speed {:.6g}; "
+               "{}",
                field.step_dt(),
-               c == 0.0                      ? "of other physics, such as conduction of heat,"
-                   : field.frame->is_total() ? "s h/c (s: smallest stretch)"
-                                             : "h/(c+|v|)",
-               limit, update->ntimestep, field.guard->describe(i), c);
+               field.frame->is_total() ? "s h/c (s: smallest stretch)" : "h/(c+|v|)", limit,
+               update->ntimestep, field.guard->describe(i), c, remedy);
   }
 }
 
