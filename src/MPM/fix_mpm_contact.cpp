@@ -622,43 +622,105 @@ void FixMPMContact::warn_overlap()
 }
 
 /* ----------------------------------------------------------------------
-   first step of a run: a body that is all surface or line, and another one that is not. The first fills no volume, so that the
-   nodes between are not full. And it has a gradient towards it on both of its sides: below what lies on it, its
-   normal is the wrong one, and contact with the mean of both normals pulls the body through. With weights by volume
-   the normal is that of the body.
+   first step of a run: bodies that are all surface or line of fix mpm/elements
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::warn_thin()
 {
-  if (normal_by != COLINEAR && (!gap || full <= 0.5)) return;
-  std::vector<const Fix *> thin;
+  std::vector<const Fix *> meshes;
   for (Fix *ifix : modify->get_fix_list()) {
     const auto *mesh = dynamic_cast<FixMPMElements *>(ifix);
-    if (mesh && mesh->is_thin()) thin.push_back(ifix);
+    if (mesh && mesh->is_thin()) meshes.push_back(ifix);
   }
-  if (thin.empty()) return;
+  if (meshes.empty()) return;
   std::vector<bigint> mine(2 * bodies.size(), 0),
-      all(mine.size());    // points of thin bodies, others
+      all(mine.size());    // points of such meshes, others
   for (int i = 0; i < atom->nlocal; i++)
     for (std::size_t k = 0; k < bodies.size(); k++) {
       if (!bodies[k].field->is_point(i)) continue;
-      const bool is_thin = std::any_of(thin.begin(), thin.end(), [&](const Fix *mesh) {
+      const bool is_thin = std::any_of(meshes.begin(), meshes.end(), [&](const Fix *mesh) {
         return atom->mask[i] & mesh->groupbit;
       });
       mine[2 * k + (is_thin ? 0 : 1)]++;
     }
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_LMP_BIGINT, MPI_SUM, world);
-  for (std::size_t a = 0; a < bodies.size(); a++)
-    for (std::size_t b = 0; b < bodies.size(); b++)
-      if (all[2 * a] > 0 && all[2 * a + 1] == 0 && all[2 * b + 1] > 0) {
-        if (comm->me == 0)
-          error->warning(FLERR,
-                         "Fix mpm/contact {}: {} is a surface or line of fix mpm/elements, and {} "
-                         "is not, which can pass through what is so thin: use gap no normal "
-                         "volume",
-                         id, bodies[a].field->id(), bodies[b].field->id());
-        return;
-      }
+  std::vector<int> thin, others;
+  for (int k = 0; k < (int) bodies.size(); k++)
+    if (all[2 * k + 1] > 0)
+      others.push_back(k);
+    else if (all[2 * k] > 0)
+      thin.push_back(k);
+  if (!thin.empty() && !others.empty()) warn_of_thin_body(thin[0], others[0]);
+  if (thin.size() > 1) warn_of_thin_pair(thin);
+}
+
+/* ----------------------------------------------------------------------
+   A thin body fills no volume, so that the nodes between it and another one are not full. And it has a gradient towards it on both of
+   its sides: below what lies on it, its normal is the wrong one, and contact with the mean of both normals pulls the body through. With
+   weights by volume the normal is that of the body.
+------------------------------------------------------------------------- */
+
+void FixMPMContact::warn_of_thin_body(int thin, int other)
+{
+  if (comm->me || (normal_by != COLINEAR && (!gap || full <= 0.5))) return;
+  error->warning(FLERR,
+                 "Fix mpm/contact {}: {} is a surface or line of fix mpm/elements, and {} is not, "
+                 "which can pass through what is so thin: use gap no normal volume",
+                 id, bodies[thin].field->id(), bodies[other].field->id());
+}
+
+/* ----------------------------------------------------------------------
+   Two of them never touch where nodes must be full, however near they are. Without this, only nodes that both reach hold them: the others
+   fall freely in each step, as nothing joins the rows of nodes around a single row of points. FLIP then sinks with g dt times the ratio of
+   the shares of both kinds of nodes, and affine velocities go on to fall at all nodes
+------------------------------------------------------------------------- */
+
+void FixMPMContact::warn_of_thin_pair(const std::vector<int> &thin)
+{
+  const double enough = gap ? full : 1.0;
+  std::vector<double> most;
+  for (const int k : thin) most.push_back(most_filled(bodies[k]));
+  for (std::size_t a = 0; a < thin.size(); a++)
+    for (std::size_t b = a + 1; b < thin.size(); b++) {
+      if (most[a] + most[b] >= enough) continue;
+      if (comm->me) return;
+      const char *const ids[] = {bodies[thin[a]].field->id(), bodies[thin[b]].field->id()};
+      if (gap)
+        error->warning(FLERR,
+                       "Fix mpm/contact {}: {} and {} are surfaces or lines of fix mpm/elements, "
+                       "and never touch: where they meet they fill {:.2g} of the volume of a node, "
+                       "and gap yes waits for {:.2g}; move them with fix nve, not fix mpm, and use "
+                       "pair_style mpm/sheet, or leave one of them out",
+                       id, ids[0], ids[1], most[a] + most[b], full);
+      else
+        error->warning(FLERR,
+                       "Fix mpm/contact {}: {} and {} are surfaces or lines of fix mpm/elements, "
+                       "which gap no holds apart for a short time only: under a load that stays "
+                       "they go through each other, slowly with transfer flip, and at once with "
+                       "apic; move them with fix nve, not fix mpm, and use pair_style mpm/sheet",
+                       id, ids[0], ids[1]);
+      return;
+    }
+}
+
+/** Collective: the largest share of the volume of a node, as far as it is inside of the box, that a body fills now. */
+double FixMPMContact::most_filled(Body &body)
+{
+  const Grid &grid = body.field->grid;
+  body.near.assign(grid.blocks.size(), 1);
+  map_content(body);
+  double most = 0.0, all;
+  for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      int index[3];
+      bool image = false;
+      grid.node_index(grid.blocks[slot], n, index);
+      const double inside = room.at(index, grid.lattice.dim, image);
+      if (!image && inside > 0.0)
+        most = std::max(most, body.share[slot * NODES_PER_BLOCK + n] / inside);
+    }
+  MPI_Allreduce(&most, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
 }
 
 /* ----------------------------------------------------------------------
@@ -1351,11 +1413,9 @@ void FixMPMContact::act(double dt, Stage stage)
     dt_last = dt;
     nodes.clear();
     pairs.clear();
+    if (look) warn_thin();
     if (may_touch && map_bodies()) {
-      if (look) {
-        warn_overlap();
-        warn_thin();
-      }
+      if (look) warn_overlap();
       find_contacts();
       if (normal_by == LOGISTIC) separate_points();
       if (heating) heating->begin_step();

@@ -220,6 +220,9 @@ class FixMPMContact :
   void gradient_at(const Body &, int slot, int n, double *g) const;
   void warn_overlap();
   void warn_thin();
+  void warn_of_thin_body(int thin, int other);
+  void warn_of_thin_pair(const std::vector<int> &thin);
+  double most_filled(Body &);
   void find_contacts();
   void separate_points();
   bool make_pair(const Common &, int n, int a, int b, double volume_share, Pair &);

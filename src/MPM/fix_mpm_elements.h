@@ -78,15 +78,16 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void setup(int) override
   {
     compute(true);
-    if (!has_lattice) check_dt();
+    if (!has_lattice) check_free_dt();
   }
   void post_neighbor() override
   {
     find_nodes();
-    if (!has_lattice) check_dt();    // which fix mpm does otherwise
+    if (!has_lattice) check_free_dt();    // which fix mpm does otherwise
   }
   void post_force(int) override { compute(false); }
   double compute_scalar() override { return (double) nelements; }
+  double compute_vector(int) override;
   double memory_usage() override;
   int pack_exchange(int, double *) override;
   int unpack_exchange(int, double *) override;
@@ -97,6 +98,9 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void restart(char *) override;
   int pack_reverse_comm(int, int, double *) override;
   void unpack_reverse_comm(int, int *, double *) override;
+
+  /** Does a fix mpm move the nodes? */
+  bool on_lattice() const { return has_lattice; }
 
   /** A surface has a pressure inside, or, if it is open, on the side from which its elements go around counterclockwise.
    *  Until the next init(). closed: it must enclose a volume. */
@@ -166,7 +170,9 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   double side =
       0.0;    // of the pressure: 1: on the inside if elements go around counterclockwise; 0: not known
   IDs ids;
-  bool has_lattice = true;    // does a fix mpm move the nodes?
+  bool has_lattice = true;      // does a fix mpm move the nodes?
+  bool warned_slack = false;    // in this run
+  double spent = 0.0;    // by a body without a lattice: plastic work and such, this rank's share
   double pressure_work = 0.0, volume_before = 0.0, pressure_before = 0.0;    // of a closed surface
   double stiffness = 0.0, nu = 0.0, bending_frequency = 0.0;                 // of bending
   double shortest = 0.0;             // length of the smallest element, for artificial viscosity
@@ -223,6 +229,8 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void define_plane_stress();
   template <class Visit> void for_batches(bool moved, Visit) const;
   void material_update(Work &, bool starting);
+  void check_free_dt();
+  void keep_spent(const std::function<void()> &strain);
   void find_forces(const Work &, int start, const MPM_NS::ElementRule &, double (*f)[3]) const;
   void for_trial_batches(const std::function<void(Work &)> &) const;
   int nodes_of(const double *row) const;

@@ -239,9 +239,12 @@ void MPMGuard::check_neighbors() const
   std::vector<int> mine(2 * (ntypes + 1), 0), all(2 * (ntypes + 1));    // points, other atoms
   bigint npoints = 0, npoints_all;
   const int listed = group->bitmask[neighbor->includegroup];    // 0: all
+  int moved = 0;    // groups of lattices: nodes of sheets without one need their pairs
+  for (const auto *other : MPMField::all(lmp)) moved |= other->fix.groupbit;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & listed)) continue;
     const bool point = atom->vfrac[i] > 0.0;
+    if (point && !(atom->mask[i] & moved)) continue;
     mine[2 * atom->type[i] + !point] = 1;
     npoints += point;
   }

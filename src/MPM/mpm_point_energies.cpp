@@ -39,7 +39,7 @@ MPMPointEnergies LAMMPS_NS::point_energies(LAMMPS *lmp)
   int nodes = 0;    // groups of nodes of elements, which store the energy
   for (auto *elements : find_fixes<FixMPMElements>(lmp)) {
     nodes |= elements->groupbit;
-    mine.stored += elements->stored_energy();
+    if (elements->on_lattice()) mine.stored += elements->stored_energy();
   }
   visit_point_batches(lmp, 1,
                       [&](const Batch &batch, const int *list, const FixMPMMaterial &material) {
