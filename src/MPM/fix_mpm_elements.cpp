@@ -357,7 +357,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
       for (int d = 0; d < dim; d++) r[2 + maxnode + m * dim + d] = X[m][d];
     }
     if (bends(r)) {
-      define_bending(r, X, rough);
+      define_bending(r, X, element.inside, rough);
       continue;
     }
     double frequency = 0.0, size = 0.0;
@@ -1049,7 +1049,8 @@ void FixMPMElements::add_pressure(bool starting)
    bending: a row has what mesh/bending.h knows of the patch or corner
 ------------------------------------------------------------------------- */
 
-void FixMPMElements::define_bending(double *r, const double (*X)[3], bigint &rough) const
+void FixMPMElements::define_bending(double *r, const double (*X)[3], bool inside,
+                                    bigint &rough) const
 {
   double *const to = state_of(r, 0);
   if (type_of(r) == ElementType::EDGE) {
@@ -1064,7 +1065,7 @@ void FixMPMElements::define_bending(double *r, const double (*X)[3], bigint &rou
     int slots[PATCH_NODES];
     double nodes_of_all[PATCH_NODES];
     for (int k = 0; k < PATCH_NODES - 3; k++) has[k] = r[2 + 3 + k] != r[2];
-    rough += bent.define(X, has, slots) > ROUGH;
+    rough += bent.define(X, has, inside, slots) > ROUGH;
     memcpy(to, &bent, sizeof(bent));
     std::copy_n(r + 2, PATCH_NODES, nodes_of_all);
     for (int m = 0; m < bent.n; m++) {

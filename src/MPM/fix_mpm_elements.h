@@ -235,7 +235,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void add_sums(Work &);
   void add_pressure(bool starting);
   template <class Visit> void for_faces(Visit) const;
-  void define_bending(double *row, const double (*X)[3], bigint &rough) const;
+  void define_bending(double *row, const double (*X)[3], bool inside, bigint &rough) const;
   template <class Visit> void for_bending(Visit) const;
   double bend(const double *row, const double (*x)[3], double (*f)[3]) const;
   void add_bending();
