@@ -76,29 +76,34 @@ void BentTriangle::relax(double nu, double *change) const
 
 double BentTriangle::bend(double D, double nu, const double (*x)[3], double (*f)[3]) const
 {
-  double normal[3], g[3][3], B[MOST][3] = {{0.0}}, change[MOST], moment[MOST];
+  double normal[3], g[3][3], up[PATCH_NODES], force[PATCH_NODES] = {0.0}, change[MOST],
+                                              moment[MOST], turn[3] = {0.0}, energy = 0.0;
   normal_of(x, normal, g);
+  for (int k = 0; k < n; k++) up[k] = dot(x[k], normal);
   for (int c = 0; c < nrow; c++) {
-    for (int k = 0; k < n; k++)
-      for (int d = 0; d < 3; d++) B[c][d] += h[k][c] * x[k][d];
-    change[c] = dot(B[c], normal) - rest[c];
+    change[c] = -rest[c];
+    for (int k = 0; k < n; k++) change[c] += h[c][k] * up[k];
   }
   if (nfree) relax(nu, change);
-  moment[0] = D * (change[0] + nu * change[1]);
-  moment[1] = D * (change[1] + nu * change[0]);
-  moment[2] = 2.0 * D * (1.0 - nu) * change[2];
-  for (int c = 3; c < nrow; c++) moment[c] = SHORT * D * change[c];
-  for (int k = 0; k < n; k++) {
-    double factor = 0.0;
-    for (int c = 0; c < nrow; c++) {
-      factor += moment[c] * h[k][c];
-      if (k < 3) factor -= moment[c] * dot(B[c], g[k]);    // turns the normal
-    }
-    for (int d = 0; d < 3; d++) f[k][d] -= area * factor * normal[d];
+  moment[0] = change[0] + nu * change[1];
+  moment[1] = change[1] + nu * change[0];
+  moment[2] = 2.0 * (1.0 - nu) * change[2];
+  for (int c = 3; c < nrow; c++) moment[c] = SHORT * change[c];
+  for (int c = 0; c < nrow; c++) {
+    moment[c] *= area * D;
+    energy += 0.5 * moment[c] * change[c];
+    for (int k = 0; k < n; k++) force[k] += moment[c] * h[c][k];
   }
-  double twice = 0.0;
-  for (int c = 0; c < nrow; c++) twice += moment[c] * change[c];
-  return 0.5 * area * twice;
+
+  // what turns the normal
+
+  for (int k = 0; k < n; k++)
+    for (int d = 0; d < 3; d++) turn[d] += force[k] * x[k][d];
+  for (int k = 0; k < 3; k++) force[k] -= dot(turn, g[k]);
+
+  for (int k = 0; k < n; k++)
+    for (int d = 0; d < 3; d++) f[k][d] -= force[k] * normal[d];
+  return energy;
 }
 
 void BentTriangle::stiffness_sums(double nu, double *sum) const
@@ -106,8 +111,8 @@ void BentTriangle::stiffness_sums(double nu, double *sum) const
   double size[PATCH_NODES], wave[PATCH_NODES], all = 0.0, waves = 0.0;
   for (int k = 0; k < n; k++) {
     double square = 0.0;
-    for (int c = 3; c < nrow; c++) square += h[k][c] * h[k][c];
-    size[k] = std::sqrt(h[k][0] * h[k][0] + h[k][1] * h[k][1] + 2.0 * h[k][2] * h[k][2]);
+    for (int c = 3; c < nrow; c++) square += h[c][k] * h[c][k];
+    size[k] = std::sqrt(h[0][k] * h[0][k] + h[1][k] * h[1][k] + 2.0 * h[2][k] * h[2][k]);
     wave[k] = std::sqrt(square);
     all += size[k];
     waves += wave[k];

@@ -43,9 +43,8 @@ struct BentTriangle {
   int n;        ///< nodes with a part
   int nfree;    ///< rims without moment
   int nrow;     ///< 3, and the number of short waves that resist
-  double h
-      [PATCH_NODES]
-      [MOST];    ///< coefficients of curvatures xx, yy, xy along axes in the plane of the triangle, and of short waves [1/length^2]
+  // coefficients of curvatures xx, yy, xy along axes in the plane of the triangle, and of short waves [1/length^2]
+  double h[MOST][PATCH_NODES];
   double m[2][2];       ///< normals of those rims
   double rest[MOST];    ///< curvatures, and short waves, without moment
   double area;

@@ -272,6 +272,7 @@ double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool aw
 
   nrow = 3;
   if (away && nfree == 0) nrow += add_short_waves(all, area, coefficients);
+  for (auto &row : h) std::fill_n(row, PATCH_NODES, 0.0);
   n = 0;
   for (int a = 0; a < PATCH_NODES; a++) {
     const double *const from = coefficients[a];
@@ -279,14 +280,14 @@ double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool aw
           return c == 0.0;
         }))
       continue;
-    std::copy_n(from, MOST, h[n]);
+    for (int c = 0; c < MOST; c++) h[c][n] = from[c];
     slots[n++] = a;
   }
   double normal[3];
   normal_of(X[0], X[1], X[2], normal);
   for (int c = 0; c < MOST; c++) {
     rest[c] = 0.0;
-    for (int k = 0; k < n; k++) rest[c] += h[k][c] * dot(X[slots[k]], normal);
+    for (int k = 0; k < n; k++) rest[c] += h[c][k] * dot(X[slots[k]], normal);
   }
   return worst;
 }
