@@ -41,6 +41,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -176,9 +177,9 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   material = find_material();
   variables = names_of_history();
   nhistory = material->nhistory;
-  stride = 2 + maxnode * (1 + dim) +
-      std::max(maxpoint * point_size(),
-               bending && along == 2 ? (int) (sizeof(BentTriangle) / sizeof(double)) : 0);
+  stride = 2 + maxnode +
+      std::max(maxnode * dim + maxpoint * point_size(),
+               bending && along == 2 ? 1 + (int) (sizeof(BentTriangle) / sizeof(double)) : 0);
   width = 18 + nhistory;
   comm_reverse = width;
   work->history.resize((std::size_t) std::max(1, nhistory) * BATCH);
@@ -355,10 +356,10 @@ void FixMPMElements::make_elements(const Mesh &mesh)
                       X[m]);
       nearest_image(*domain, X[m]);
       r[2 + m] = (double) (ids.low + element.node[m]);
-      for (int d = 0; d < dim; d++) r[2 + maxnode + m * dim + d] = X[m][d];
+      for (int d = 0; d < dim && !bends(r); d++) r[2 + maxnode + m * dim + d] = X[m][d];
     }
     if (bends(r)) {
-      define_bending(r, X, rough);
+      define_bending(r, X, element.inside, rough);
       continue;
     }
     double frequency = 0.0, size = 0.0;
@@ -553,8 +554,11 @@ double FixMPMElements::largest_extent() const
     const auto &rule = rule_of(r);
     const double *const X = r + 2 + maxnode;
     double square = 0.0, stretch = 0.0;
-    const int nnode = nodes_of(r);
-    for (int k = 0; k < nnode; k++)
+    if (bends(r)) {
+      widest = std::max(widest, extent_of(r));
+      continue;
+    }
+    for (int k = 0; k < rule.nnode; k++)
       for (int j = 0; j < k; j++) {
         double s = 0.0;
         for (int d = 0; d < dim; d++)
@@ -567,7 +571,6 @@ double FixMPMElements::largest_extent() const
       for (int c = 0; c < (dim == 3 ? 9 : 5); c++) s += F[c] * F[c];
       stretch = std::max(stretch, s);
     }
-    if (bends(r)) widest = std::max(widest, square);
     most = std::max(most, stretch);
     largest = std::max(largest, sqrt(square * stretch));
   }
@@ -696,7 +699,7 @@ int FixMPMElements::nodes_of(const double *r) const
 {
   if (type_of(r) != ElementType::PATCH) return rule_of(r).nnode;
   BentTriangle bent;
-  memcpy(&bent.n, state_of(const_cast<double *>(r), 0), sizeof(bent.n));
+  memcpy(&bent.n, bent_of(r), sizeof(bent.n));
   return bent.n;
 }
 
@@ -1057,9 +1060,13 @@ void FixMPMElements::add_pressure(bool starting)
    bending: a row has what mesh/bending.h knows of the patch or corner
 ------------------------------------------------------------------------- */
 
-void FixMPMElements::define_bending(double *r, const double (*X)[3], bigint &rough) const
+void FixMPMElements::define_bending(double *r, const double (*X)[3], bool inside,
+                                    bigint &rough) const
 {
-  double *const to = state_of(r, 0);
+  double *const to = bent_of(r);
+  double nodes_of_all[PATCH_NODES], square = 0.0;
+  int slots[PATCH_NODES];
+  std::iota(slots, slots + PATCH_NODES, 0);
   if (type_of(r) == ElementType::EDGE) {
     static_assert(sizeof(SharedStrain) <= sizeof(BentTriangle), "does not fit into a row");
     SharedStrain edge;
@@ -1069,16 +1076,11 @@ void FixMPMElements::define_bending(double *r, const double (*X)[3], bigint &rou
     static_assert(sizeof(BentTriangle) % sizeof(double) == 0, "does not fit into a row");
     BentTriangle bent;
     bool has[PATCH_NODES - 3];
-    int slots[PATCH_NODES];
-    double nodes_of_all[PATCH_NODES];
     for (int k = 0; k < PATCH_NODES - 3; k++) has[k] = r[2 + 3 + k] != r[2];
-    rough += bent.define(X, has, slots) > ROUGH;
+    rough += bent.define(X, has, inside, slots) > ROUGH;
     memcpy(to, &bent, sizeof(bent));
     std::copy_n(r + 2, PATCH_NODES, nodes_of_all);
-    for (int m = 0; m < bent.n; m++) {
-      r[2 + m] = nodes_of_all[slots[m]];
-      std::copy_n(X[slots[m]], 3, r + 2 + maxnode + 3 * m);
-    }
+    for (int m = 0; m < bent.n; m++) r[2 + m] = nodes_of_all[slots[m]];
   } else {
     BentLine bent;
     bent.define(dim, X);
@@ -1090,12 +1092,20 @@ void FixMPMElements::define_bending(double *r, const double (*X)[3], bigint &rou
           id, (bigint) r[0]);
     memcpy(to, &bent, sizeof(bent));
   }
+  const int nnode = nodes_of(r);
+  for (int k = 0; k < nnode; k++)
+    for (int m = 0; m < k; m++) {
+      double s = 0.0;
+      for (int d = 0; d < dim; d++) s += pow(X[slots[k]][d] - X[slots[m]][d], 2);
+      square = std::max(square, s);
+    }
+  extent_of(r) = square;
 }
 
 /** Energy of a row, and forces. */
 double FixMPMElements::bend(const double *r, const double (*x)[3], double (*f)[3]) const
 {
-  const double *const from = state_of(const_cast<double *>(r), 0);
+  const double *const from = bent_of(r);
   if (type_of(r) == ElementType::PATCH) {
     BentTriangle bent;
     memcpy(&bent, from, sizeof(bent));
@@ -1144,11 +1154,11 @@ double FixMPMElements::largest_bending_frequency() const
     if (!bends(r) || type_of(r) == ElementType::EDGE) continue;    // which makes nothing stiffer
     if (type_of(r) == ElementType::PATCH) {
       BentTriangle bent;
-      memcpy(&bent, state_of(r, 0), sizeof(bent));
+      memcpy(&bent, bent_of(r), sizeof(bent));
       bent.stiffness_sums(nu, mine);
     } else {
       BentLine bent;
-      memcpy(&bent, state_of(r, 0), sizeof(bent));
+      memcpy(&bent, bent_of(r), sizeof(bent));
       bent.stiffness_sums(mine);
     }
     for (int m = 0; m < nodes_of(r); m++) sum[(bigint) r[2 + m] - ids.low] += stiffness * mine[m];

@@ -185,7 +185,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   // A row of the pool: label and type of an element, tags of its nodes [maxnode], their reference
   // positions relative to the first one [maxnode][dim], and for each integration point F [9],
   // tau [6], history, and, of surfaces and lines, the gradient of the motion along them [9]. What bends
-  // has a row, too, with a BentTriangle or BentLine in the place of the points.
+  // has a row, too, with the square of its extent and a BentTriangle, BentLine, or SharedStrain in the place of positions and points.
 
   double *first, *count;    // of an atom: its elements in the pool
   std::vector<double> pool;
@@ -205,6 +205,8 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   {
     return row + 2 + maxnode * (1 + dim) + q * point_size();
   }
+  double &extent_of(double *row) const { return row[2 + maxnode]; }
+  double *bent_of(const double *row) const { return const_cast<double *>(row) + 3 + maxnode; }
   int point_size() const { return 15 + nhistory + (thin ? 9 : 0); }
   double *motion_of(double *state) const { return state + 15 + nhistory; }    // of surfaces, lines
   FixMPMMaterial *find_material() const;
@@ -243,7 +245,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void add_sums(Work &);
   void add_pressure(bool starting);
   template <class Visit> void for_faces(Visit) const;
-  void define_bending(double *row, const double (*X)[3], bigint &rough) const;
+  void define_bending(double *row, const double (*X)[3], bool inside, bigint &rough) const;
   template <class Visit> void for_bending(Visit) const;
   double bend(const double *row, const double (*x)[3], double (*f)[3]) const;
   void add_bending();

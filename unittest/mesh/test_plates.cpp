@@ -315,6 +315,65 @@ SERIAL_TEST(Bending, PinchedHemisphere)
   }
 }
 
+// two opposite forces on single nodes of a cylinder between rigid diaphragms: 1.8248e-5 for a force of 1 (R 300, length 600, t 3, E 3e6), with equal squares, twice as large as
+// the dent that is sqrt(R t) wide
+SERIAL_TEST(Bending, PinchedCylinder)
+{
+  const int around = 32, rows = 10;
+  const double R = 300.0, L = 600.0, F = 1000.0;
+  Plate shell;
+  shell.thickness = 3.0;
+  shell.E = 3e6;
+  shell.nu = 0.3;
+  for (int j = 0; j <= rows; j++)
+    for (int i = 0; i < around; i++) {
+      const double angle = 2.0 * PI * i / around;
+      shell.x.push_back({R * cos(angle), R * sin(angle), ((double) j / rows - 0.5) * L});
+      if (j == rows) continue;
+      const int a = j * around + i, b = j * around + (i + 1) % around;
+      shell.elements.push_back({a, b, b + around});
+      shell.elements.push_back({a, b + around, a + around});
+    }
+  std::string load = "region span block INF INF INF INF -299 299\ngroup span region span\n"
+                     "group ends subtract all span\nfix move all nve\n";
+  for (int k = 0; k < 2; k++)
+    load += strprintf("region p%d block %s -1 1 -1 1\ngroup p%d region p%d\n"
+                      "fix f%d p%d addforce %g 0 0\n",
+                      k, k ? "INF -299" : "299 INF", k, k, k, k, k ? F : -F);
+  const double u = in_equilibrium(
+      shell, 0.2, load, "fix hold ends setforce 0 0 NULL\ncompute w p1 reduce ave c_u[1]\n");
+  EXPECT_NEAR(measured("displacement, 32 squares around", u / (1.8248e-5 * F)), 1.0, 0.05);
+}
+
+// a force on one node of a supported square, 0.0116008 F L^2/D, also where nodes are moved
+SERIAL_TEST(Bending, ForceOnOneNode)
+{
+  const int n = 10;
+  const double t = 0.1, E = 1e6, D = E * t * t * t / (12.0 * 0.91), w0 = 0.01 * t, in = 0.49;
+  for (const double disorder : {0.0, 0.2}) {
+    Plate plate = sheet_of(n, n, [&](double u, double v) {
+      const bool moved =
+          u > 0.01 && v > 0.01 && u < 0.99 && v < 0.99 && hypot(u - 0.5, v - 0.5) > 0.01;
+      const double by = moved ? disorder / n : 0.0;
+      return Node{u - 0.5 + by * sin(70.0 * u * v * n), v - 0.5 + by * cos(50.0 * u + 30.0 * v),
+                  0.0};
+    });
+    plate.thickness = t;
+    plate.E = E;
+    plate.nu = 0.3;
+    const double w =
+        -in_equilibrium(plate, 2.0 * PI * PI * sqrt(D / (DENSITY * t)),
+                        strprintf("region span block %g %g %g %g INF INF\ngroup span region span\n"
+                                  "group rim subtract all span\nfix move all nve\n"
+                                  "region p block -0.01 0.01 -0.01 0.01 INF INF\ngroup p region p\n"
+                                  "fix load p addforce 0 0 %.17g\n",
+                                  -in, in, -in, in, -w0 * D / 0.0116008),
+                        "fix hold rim setforce NULL NULL 0\ncompute w all reduce min c_u[3]\n");
+    EXPECT_NEAR(measured(strprintf("deflection, 10 squares across, moved by %g", disorder), w / w0),
+                1.0, disorder > 0.0 ? 0.045 : 0.035);
+  }
+}
+
 // the Scordelis-Lo roof under a hundredth of its weight on rigid diaphragms, 0.3024 for all of it in the middle of its free edges
 SERIAL_TEST(Bending, ScordelisLoRoof)
 {

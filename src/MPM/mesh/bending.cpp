@@ -76,35 +76,49 @@ void BentTriangle::relax(double nu, double *change) const
 
 double BentTriangle::bend(double D, double nu, const double (*x)[3], double (*f)[3]) const
 {
-  double normal[3], g[3][3], B[3][3] = {{0.0}}, change[3];
+  double normal[3], g[3][3], up[PATCH_NODES], force[PATCH_NODES] = {0.0}, change[MOST],
+                                              moment[MOST], turn[3] = {0.0}, energy = 0.0;
   normal_of(x, normal, g);
-  for (int c = 0; c < 3; c++) {
-    for (int k = 0; k < n; k++)
-      for (int d = 0; d < 3; d++) B[c][d] += h[k][c] * x[k][d];
-    change[c] = dot(B[c], normal) - rest[c];
+  for (int k = 0; k < n; k++) up[k] = dot(x[k], normal);
+  for (int c = 0; c < nrow; c++) {
+    change[c] = -rest[c];
+    for (int k = 0; k < n; k++) change[c] += h[c][k] * up[k];
   }
   if (nfree) relax(nu, change);
-  const double moment[3] = {D * (change[0] + nu * change[1]), D * (change[1] + nu * change[0]),
-                            2.0 * D * (1.0 - nu) * change[2]};
-  for (int k = 0; k < n; k++) {
-    double factor = 0.0;
-    for (int c = 0; c < 3; c++) {
-      factor += moment[c] * h[k][c];
-      if (k < 3) factor -= moment[c] * dot(B[c], g[k]);    // turns the normal
-    }
-    for (int d = 0; d < 3; d++) f[k][d] -= area * factor * normal[d];
+  moment[0] = change[0] + nu * change[1];
+  moment[1] = change[1] + nu * change[0];
+  moment[2] = 2.0 * (1.0 - nu) * change[2];
+  for (int c = 3; c < nrow; c++) moment[c] = SHORT * change[c];
+  for (int c = 0; c < nrow; c++) {
+    moment[c] *= area * D;
+    energy += 0.5 * moment[c] * change[c];
+    for (int k = 0; k < n; k++) force[k] += moment[c] * h[c][k];
   }
-  return 0.5 * area * (moment[0] * change[0] + moment[1] * change[1] + moment[2] * change[2]);
+
+  // what turns the normal
+
+  for (int k = 0; k < n; k++)
+    for (int d = 0; d < 3; d++) turn[d] += force[k] * x[k][d];
+  for (int k = 0; k < 3; k++) force[k] -= dot(turn, g[k]);
+
+  for (int k = 0; k < n; k++)
+    for (int d = 0; d < 3; d++) f[k][d] -= force[k] * normal[d];
+  return energy;
 }
 
 void BentTriangle::stiffness_sums(double nu, double *sum) const
 {
-  double size[PATCH_NODES], all = 0.0;
+  double size[PATCH_NODES], wave[PATCH_NODES], all = 0.0, waves = 0.0;
   for (int k = 0; k < n; k++) {
-    size[k] = std::sqrt(h[k][0] * h[k][0] + h[k][1] * h[k][1] + 2.0 * h[k][2] * h[k][2]);
+    double square = 0.0;
+    for (int c = 3; c < nrow; c++) square += h[c][k] * h[c][k];
+    size[k] = std::sqrt(h[0][k] * h[0][k] + h[1][k] * h[1][k] + 2.0 * h[2][k] * h[2][k]);
+    wave[k] = std::sqrt(square);
     all += size[k];
+    waves += wave[k];
   }
-  for (int k = 0; k < n; k++) sum[k] = (1.0 + std::fabs(nu)) * area * size[k] * all;
+  for (int k = 0; k < n; k++)
+    sum[k] = area * ((1.0 + std::fabs(nu)) * size[k] * all + SHORT * wave[k] * waves);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -184,9 +198,12 @@ void Mesh::add_bending()
     } else
       throw problem(e, "is a quadrangle: bending is for triangles and lines");
   }
-  for (const auto &[nodes, parts] : rims)
+  std::vector<char> at_rim(this->nodes.size(), 0);
+  for (const auto &[nodes, parts] : rims) {
     if (parts.size() > 2)
       throw problem(parts[0].first, "has a rim with more than two elements: these cannot bend");
+    if (parts.size() == 1) at_rim[nodes.first] = at_rim[nodes.second] = 1;
+  }
   for (std::size_t e = 0; e < n; e++) {
     const MeshElement element = elements[e];    // a copy, as the list grows
     if (element.type == ElementType::LINE) continue;
@@ -210,6 +227,9 @@ void Mesh::add_bending()
       patch.node[6 + 2 * k] = across(next, a, patch.node[3 + k]);
       patch.node[7 + 2 * k] = across(next, patch.node[3 + k], b);
     }
+    patch.inside = std::none_of(patch.node, patch.node + PATCH_NODES, [&](int k) {
+      return at_rim[k];
+    });
     elements.push_back(patch);
   }
   for (const auto &[nodes, parts] : rims) {

@@ -23,26 +23,35 @@ inline bool is_smooth(const double *n, const double *m)
  *  i + 1 to i + 2, and 6 + 2i and 7 + 2i of the neighbors of that one, across its edges from i + 1 to 3 + i and from 3 + i to i + 2. */
 constexpr int PATCH_NODES = 12;
 
+/** Waves that are short for the mesh change the curvatures of triangles less than they do that of a surface, so that a force on one node finds too little resistance. They
+ *  show in what no polynomial of third order has at the nodes of a patch: for values w, in sum(s w) with unit vectors s that are normal to all of these. Each of
+ *  these resists with the energy SHORT D (q^2 sum(s w)/area)^2 area/2, which vanishes with the fourth power of the size of elements where a surface bends smoothly. q, four times the
+ *  area over the square of the longest edge, is 1 at most, and less for triangles that are narrower than half a square: along these curvatures are smaller than w/area.
+ *  Returns how many vectors there are: 2 for 12 nodes, 1 for 11, as a rule, and never more than 2. */
+int above_cubic(const double (*at)[2], int n, double (*s)[2]);
+
 /** Curvature of a triangle from slopes across its edges, of which triangles on both sides have the same: the theorem of Gauss gives
  *  b A = sum_i l_i m_i x slope_i, with the length l_i and the outward normal m_i of edge i (Morley's triangle: L.S.D. Morley, Aeronaut. Q. 19
  *  (1968) 149, without slopes as unknowns). A slope is the mean of those of the two triangles at the edge (basic shell triangle: E. Onate, F.
  *  Zarate, Int. J. Numer. Methods Eng. 47 (2000) 557) plus the smallest sum over the nodes around that makes it exact for
  *  all surfaces of second order; at a rim it is that of the triangle, plus such a sum. Triangles are unfolded to the plane of this one for that. Where no sum
  *  is exact at a rim, there is no moment across it. With coefficients h_k the curvature is b = n . sum_k h_k x_k, where n is the present normal, which is zero for a
- *  plane, and does not change by rotations. */
+ *  plane, and does not change by rotations. The same holds for short waves, see above. */
 struct BentTriangle {
+  static constexpr double SHORT = 2.7;
+  static constexpr int MOST = 5;
   int n;        ///< nodes with a part
   int nfree;    ///< rims without moment
-  double h
-      [PATCH_NODES]
-      [3];    ///< coefficients of curvatures xx, yy, xy along axes in the plane of the triangle [1/length^2]
-  double m[2][2];    ///< normals of those rims
-  double rest[3];    ///< curvatures without moment
+  int nrow;     ///< 3, and the number of short waves that resist
+  // coefficients of curvatures xx, yy, xy along axes in the plane of the triangle, and of short waves [1/length^2]
+  double h[MOST][PATCH_NODES];
+  double m[2][2];       ///< normals of those rims
+  double rest[MOST];    ///< curvatures, and short waves, without moment
   double area;
 
-  /** From the positions X[PATCH_NODES] without moment; has: is there a node 3, 4 ... 11? slots: which nodes have a part, the first three of them those of
+  /** From the positions X[PATCH_NODES] without moment; has: is there a node 3, 4 ... 11? inside: is no node on a rim, next to which triangles are stiff enough? slots: which nodes have a part, the first three of them those of
    *  the triangle; these are the nodes of what follows. Returns the largest error of a slope inside, in parts of what the curvature makes of it over the size of the patch. */
-  double define(const double (*X)[3], const bool *has, int *slots);
+  double define(const double (*X)[3], const bool *has, bool inside, int *slots);
 
   /** Energy of bending of a plate with stiffness D and Poisson's ratio nu; adds forces on the nodes to f[n]. */
   double bend(double D, double nu, const double (*x)[3], double (*f)[3]) const;

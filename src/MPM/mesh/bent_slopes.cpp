@@ -186,15 +186,39 @@ double correct(const Place *at, const int *node, int n, double *c)
   return left < EXACT ? 0.0 : left;
 }
 
+/** Append short waves to the coefficients of a patch that has all nodes, without creases; returns their number. A node of which there are two is one. */
+int add_short_waves(const Unfolded &all, double area, double (*coefficients)[BentTriangle::MOST])
+{
+  double at[PATCH_NODES][2], s[PATCH_NODES][2];
+  int node[PATCH_NODES], n = 0;
+  for (int a = 0; a < PATCH_NODES; a++) {
+    if (!all.has[a] || !all.smooth[a]) return 0;
+    const auto same = [&](int b) {
+      return std::equal(all.X[a], all.X[a] + 3, all.X[b]);
+    };
+    if (std::any_of(node, node + n, same)) continue;
+    at[n][0] = all.p[a].x;
+    at[n][1] = all.p[a].y;
+    node[n++] = a;
+  }
+  const int found = above_cubic(at, n, s);
+  const double l = std::max({length(all.p[0], all.p[1]), length(all.p[1], all.p[2]),
+                             length(all.p[2], all.p[0])}),
+               narrow = std::min(1.0, 4.0 * area / (l * l)), scale = narrow * narrow / area;
+  for (int k = 0; k < n; k++)
+    for (int c = 0; c < found; c++) coefficients[node[k]][3 + c] = scale * s[k][c];
+  return found;
+}
+
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
 
-double BentTriangle::define(const double (*X)[3], const bool *neighbors, int *slots)
+double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool away, int *slots)
 {
   const Unfolded all(X, neighbors);
   const Place *const p = all.p;
-  double coefficients[PATCH_NODES][3] = {{0.0}}, worst = 0.0;
+  double coefficients[PATCH_NODES][MOST] = {{0.0}}, worst = 0.0;
   area = 0.5 * (p[1].x * p[2].y - p[2].x * p[1].y);
   nfree = 0;
   for (int i = 0; i < 3; i++) {
@@ -246,18 +270,24 @@ double BentTriangle::define(const double (*X)[3], const bool *neighbors, int *sl
     }
   }
 
+  nrow = 3;
+  if (away && nfree == 0) nrow += add_short_waves(all, area, coefficients);
+  for (auto &row : h) std::fill_n(row, PATCH_NODES, 0.0);
   n = 0;
   for (int a = 0; a < PATCH_NODES; a++) {
     const double *const from = coefficients[a];
-    if (a >= 3 && from[0] == 0.0 && from[1] == 0.0 && from[2] == 0.0) continue;
-    std::copy_n(from, 3, h[n]);
+    if (a >= 3 && std::all_of(from, from + MOST, [](double c) {
+          return c == 0.0;
+        }))
+      continue;
+    for (int c = 0; c < MOST; c++) h[c][n] = from[c];
     slots[n++] = a;
   }
   double normal[3];
   normal_of(X[0], X[1], X[2], normal);
-  for (int c = 0; c < 3; c++) {
+  for (int c = 0; c < MOST; c++) {
     rest[c] = 0.0;
-    for (int k = 0; k < n; k++) rest[c] += h[k][c] * dot(X[slots[k]], normal);
+    for (int k = 0; k < n; k++) rest[c] += h[c][k] * dot(X[slots[k]], normal);
   }
   return worst;
 }

@@ -62,9 +62,10 @@ constexpr int element_dimension(ElementType t)
 /** An element of a mesh; plain data, so that a mesh can be sent as bytes. */
 struct MeshElement {
   ElementType type;
-  int physical;     ///< tag of its physical group, 0 for none (the first one of several)
-  int64_t label;    ///< its number in the file
-  int node[12];     ///< places in Mesh::nodes
+  int physical;           ///< tag of its physical group, 0 for none (the first one of several)
+  int64_t label;          ///< its number in the file
+  int node[12];           ///< places in Mesh::nodes
+  bool inside = false;    ///< of a PATCH: is none of its nodes on a rim of the surface?
 };
 
 /** Elements that have a name together. */

@@ -20,7 +20,7 @@ namespace MPM_NS {
  *  strains toward SMALL this ends. Nodes are 0 and 1 of the edge, 2 of the triangle with the edge from 0 to 1, and 3 of that with the
  *  edge from 1 to 0. */
 struct SharedStrain {
-  static constexpr double PART = 0.75, SMALL = 0.05;
+  static constexpr double PART = 0.7, SMALL = 0.05;
   double g[2][3][2];    ///< gradients of the functions of both triangles: nodes 0 1 2 and 1 0 3
   double weight;    ///< PART of a third of A1 A2/(A1 + A2); 0: they are not of one smooth surface
 
