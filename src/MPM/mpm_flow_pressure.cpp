@@ -132,7 +132,6 @@ void MPMFlowPressure::set_mobility(const std::vector<double> *of_faces)
 void MPMFlowPressure::find_weights()
 {
   wet.clear();
-  inverse_diagonal.assign(cells.size(), 0.0);
   const int sides = 2 * cells.lattice.dim;
   for (int k = 0; k < (int) cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
@@ -153,10 +152,8 @@ void MPMFlowPressure::find_weights()
       one.diagonal += one.weight[s];
     }
     if (one.diagonal == 0.0) one.diagonal = 1.0;    // walls all around
-    inverse_diagonal[cell.number] = 1.0 / one.diagonal;
     wet.push_back(one);
   }
-  cells.publish(inverse_diagonal.data(), 1);
   levels_are_there = false;
 }
 
@@ -187,19 +184,18 @@ void MPMFlowPressure::apply(const double *x, double *y)
   const int sides = 2 * cells.lattice.dim;
   for (const auto &one : wet) {
     const int number = cells.cells[one.cell].number;
-    double sum = (one.diagonal + screen) * x[number];
+    double sum = one.diagonal * x[number];
     for (int s = 0; s < sides; s++)
       if (one.near[s] >= 0) sum -= one.weight[s] * x[one.near[s]];
     y[number] = sum;
   }
-  if (bodies && screen == 0.0) bodies->add(x, y);    // points that spread do not push them
+  if (bodies) bodies->add(x, y);
   cells.publish(y, 1);
 }
 
 void MPMFlowPressure::precondition(const double *r, double *z)
 {
-  if (screen == 0.0) return multigrid.precondition(r, z);
-  for (int64_t k = 0; k < size(); k++) z[k] = inverse_diagonal[k] * r[k];
+  multigrid.precondition(r, z);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -305,8 +301,12 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
     lightness = nullptr;
     find_weights();
   }
-  right_side.assign(size(), 0.0);
-  excess.assign(size(), 0.0);
+  const double screen = 1.0 / (SPREAD * SPREAD * h * h);
+  inverse_root.assign(size(), 0.0);
+  for (const auto &one : wet)
+    inverse_root[cells.cells[one.cell].number] = 1.0 / std::sqrt(one.diagonal + screen);
+  cells.publish(inverse_root.data(), 1);
+  equal_filling.begin(inverse_root.data());
   for (const auto &one : wet) {
     const auto &cell = cells.cells[one.cell];
     double more = share_of[cell.number] - 1.0;
@@ -314,12 +314,11 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
       more = std::max(0.0, more - UNSURE);
     else if (more < 0.0 && !is_deep(cell))
       more = 0.0;
-    right_side[cell.number] = rate * std::min(more, 1.0);
+    equal_filling.add({cell.number, one.near, one.weight, rate * std::min(more, 1.0)});
   }
-  cells.publish(right_side.data(), 1);
-  screen = 1.0 / (SPREAD * SPREAD * h * h);
-  const SolveReport report = method.solve(*this, right_side.data(), excess.data(), goal);
-  screen = 0.0;
+  excess.assign(size(), 0.0);
+  const SolveReport report = equal_filling.solve(excess.data(), goal);
+  cells.publish(excess.data(), 1);
   subtract_gradient(excess, nullptr, displacement, known);
   return report;
 }
@@ -395,8 +394,8 @@ double MPMFlowPressure::at_wall(int axis, int side) const
 double MPMFlowPressure::memory_usage() const
 {
   return (psi.capacity() + lift.capacity() + excess.capacity() + flag.capacity() +
-          right_side.capacity() + inverse_diagonal.capacity()) *
+          right_side.capacity() + inverse_root.capacity()) *
       sizeof(double) +
       wet.capacity() * sizeof(Wet) + method.memory_usage() + coefficients.memory_usage() +
-      multigrid.memory_usage();
+      multigrid.memory_usage() + equal_filling.memory_usage();
 }

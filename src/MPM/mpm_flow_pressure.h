@@ -10,6 +10,7 @@
 #define LMP_MPM_FLOW_PRESSURE_H
 
 #include "mpm_flow_lattice.h"
+#include "mpm_flow_spread.h"
 #include "mpm_lattice_ranks.h"
 #include "mpm_node_system.h"
 #include "solve/cell_multigrid.h"
@@ -30,12 +31,14 @@ class MPMFlowRegions;
  *
  *  The unknown is the potential psi = dt p/density, whose gradient velocities lose, times that density over the one at the face where there
  *  are several. Its solve has a multigrid preconditioner,
- *  which is the faster one from the smallest flows on; that of points that spread reaches but a few cells, and the diagonal is enough. */
+ *  which is the faster one from the smallest flows on; that of points that spread reaches but a few cells, and the diagonal is enough
+ *  (MPMFlowSpread). */
 class MPMFlowPressure : public MPMNodeSystem {
  public:
   MPMFlowPressure(class LAMMPS *lmp, const MPMFlowLattice &cells) :
       MPMNodeSystem(lmp, cells.grid, 1), cells(cells),
-      ranks(lmp, cells.grid, cells.halo_of_cells()), coefficients(cells.grid, ranks)
+      ranks(lmp, cells.grid, cells.halo_of_cells()), coefficients(cells.grid, ranks),
+      equal_filling(lmp, cells)
   {
   }
 
@@ -116,10 +119,10 @@ class MPMFlowPressure : public MPMNodeSystem {
   MPM_NS::CellMultigrid multigrid;
   bool levels_are_there = false;    // for the cells that are wet now
   std::vector<Wet> wet;
-  std::vector<double> excess, lift, flag, right_side, inverse_diagonal;
+  std::vector<double> excess, lift, flag, right_side, inverse_root;
   const double *share_of = nullptr;
   const std::vector<double> *mobility = nullptr;
-  double screen = 0.0;    // 1/length^2
+  MPMFlowSpread equal_filling;
   MPM_NS::ConjugateGradients method;
 
   void find_lift(const std::vector<double> &surface);

@@ -36,6 +36,11 @@ class MPMHalo : protected Pointers {
   /** Sum reals [lane, lane+nlane) of all records of shared nodes. */
   void sum(double *nodes, int nreal, int lane, int nlane);
 
+  /** Other ranks that have nodes of this one, ascending, and which ones [slot*64+n]: both list them in the same order. */
+  int sharers() const { return (int) peers.size(); }
+  int rank_of(int sharer) const { return peers[sharer].rank; }
+  const std::vector<int> &shared_with(int sharer) const { return peers[sharer].nodes; }
+
   bigint bytes_sent = 0, messages_sent = 0;    ///< since the last reset by the caller
   double memory_usage() const;
 
