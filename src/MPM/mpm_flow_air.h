@@ -25,12 +25,16 @@ class MPMFlowAir {
   void extend(int layers, std::vector<double> &velocity, std::vector<double> &known);
   double memory_usage() const
   {
-    return (all_velocity.capacity() + all_known.capacity()) * sizeof(double);
+    return all.capacity() * sizeof(double) + unknown.capacity() * sizeof(Face);
   }
 
  private:
+  struct Face {
+    int cell, axis;    // in the list of cells
+  };
   const MPMFlowLattice &cells;
-  std::vector<double> all_velocity, all_known;
+  std::vector<double> all;
+  std::vector<Face> unknown;
 };
 
 }    // namespace LAMMPS_NS

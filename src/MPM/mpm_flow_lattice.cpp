@@ -145,6 +145,9 @@ void MPMFlowLattice::find_cells()
     }
   }
 
+  // what ranks share is what they reach and the layers around it; where there are periodic images, all of their blocks
+
+  std::vector<uint64_t> shared;
   constexpr int STENCIL = 2, LOWER = 1;    // of points that have a width
   const int margin_of_all = DRIFT + HALF + wants_more;
   const auto cover = [&](const Range &r, int margin, bool reached) {
@@ -161,8 +164,10 @@ void MPMFlowLattice::find_cells()
       for (b[1] = low[1] >> bits; b[1] <= high[1] >> bits; b[1]++)
         for (b[2] = low[2] >> bits; b[2] <= high[2] >> bits; b[2]++) {
           const int slot = grid.activate(b);
-          if (reached)
-            grid.blocks[slot].reached |= grid.nodes_between(grid.blocks[slot], low, high);
+          const uint64_t nodes = grid.nodes_between(grid.blocks[slot], low, high);
+          shared.resize(std::max(shared.size(), (std::size_t) slot + 1), 0);
+          shared[slot] |= nodes;
+          if (reached) grid.blocks[slot].reached |= nodes;
         }
   };
   for (const auto &range : ranges) {
@@ -180,9 +185,13 @@ void MPMFlowLattice::find_cells()
   }
   grid.close_periodic();
   grid.finish();
-  halo.setup(grid, [](const Grid::Block &) {
-    return true;
-  });
+  shared.resize(grid.blocks.size(), 0);
+  const bool *const periodic = lattice.periodic;
+  if (std::any_of(periodic, periodic + lattice.dim, [](bool is) {
+        return is;
+      }))
+    std::fill(shared.begin(), shared.end(), ~uint64_t(0));
+  halo.setup(grid, shared);
   list_cells();
   list_images();
   valid = true;

@@ -28,8 +28,8 @@ struct MPMFlowWall {
 /** The cells of a staggered lattice in reach of the points of a group: a Grid whose node i stands for the cell between nodes
  *  i and i + 1 of the lattice and for its lower faces, see lattice/staggered.h.
  *
- *  All ranks with a block have all its values. Each cell is owned by one rank, which has its neighbors, too: values are made
- *  by owners, and publish() brings them to the others.
+ *  All ranks have all values in reach of their points, and in the layers around it that they want (overlap). Each cell is owned by one rank, which
+ *  has its neighbors, too: values are made by owners, and publish() brings them to the others.
  *
  *  Beyond walls there is a layer of images of cells, so that velocities are of second order next to walls: normal components
  *  are odd, tangential ones even (slip) or odd about the velocity of the wall (stick). */

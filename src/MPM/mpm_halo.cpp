@@ -64,6 +64,14 @@ static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outb
 
 void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &whole)
 {
+  std::vector<uint64_t> wanted;
+  for (const auto &block : grid.blocks)
+    wanted.push_back(whole(block) ? ~uint64_t(0) : block.reached);
+  setup(grid, wanted);
+}
+
+void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted)
+{
   peers.clear();
   several.clear();
   first.assign(1, 0);
@@ -78,7 +86,7 @@ void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &
   std::vector<int> procs;
   for (int s = 0; s < nblocks; s++) {
     const auto &block = grid.blocks[s];
-    had[s] = (whole(block) ? ~uint64_t(0) : block.reached) & ~block.alias;
+    had[s] = wanted[s] & ~block.alias;
     if (!had[s]) continue;
     const uint64_t key = Grid::block_key(block);
     mine.push_back({key, had[s], block.reached, comm->me});

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <utility>
 
@@ -166,10 +167,16 @@ struct CellMultigrid::Levels {
   std::vector<int> of_ranks;    // coarse cells of the pieces of all ranks, rank by rank
   std::vector<double> partial, of_all, node_values;
 
+  // the same for cells that this rank owns
+  std::vector<int> part;           // [place in vectors]
+  std::vector<int> part_number;    // [part] the coarse cell
+  std::vector<int> parts_of_ranks, bytes_of_ranks;
+
   struct Level {
     CellGraph graph;
     std::vector<int> next;    // [cell] of the next level
-    std::vector<double> x, b, r;
+    std::vector<double> x, b;
+    bool proper;    // neighbors have different colors
   };
   std::vector<Level> coarse;
   EnvelopeFactors factors;
@@ -180,6 +187,7 @@ struct CellMultigrid::Levels {
   std::vector<double> cells_of_pool;
 
   void first_coarse();
+  void find_parts();
   void more_levels();
   void factorize();
   void find_pools(const std::vector<int> &component, const std::vector<char> &closed);
@@ -241,6 +249,27 @@ void CellMultigrid::Levels::first_coarse()
   auto flows = fine->ranks.gather(coarse_flows(graph, mine, number));
   coarse.emplace_back();
   coarse[0].graph = coarse_graph(joined, flows);
+  find_parts();
+}
+
+void CellMultigrid::Levels::find_parts()
+{
+  const auto &graph = fine->cells();
+  std::vector<int> of_piece(number.size(), -1);
+  part.assign(fine->grid.nnodes(), -1);
+  part_number.clear();
+  for (int cell = 0; cell < graph.size(); cell++) {
+    if (!fine->grid.owns(graph.where[cell])) continue;
+    int &which = of_piece[piece[cell]];
+    if (which < 0) {
+      which = part_number.size();
+      part_number.push_back(number[piece[cell]]);
+    }
+    part[graph.where[cell]] = which;
+  }
+  const std::vector<int> bytes(1, (int) (part_number.size() * sizeof(double)));
+  bytes_of_ranks = fine->ranks.gather(bytes);
+  parts_of_ranks = fine->ranks.gather(part_number);
 }
 
 void CellMultigrid::Levels::more_levels()
@@ -248,7 +277,8 @@ void CellMultigrid::Levels::more_levels()
   while (true) {
     auto &level = coarse.back();
     const int n = level.graph.size();
-    for (auto *vector : {&level.x, &level.b, &level.r}) vector->resize(n);
+    for (auto *vector : {&level.x, &level.b}) vector->resize(n);
+    level.proper = level.graph.is_proper();
     if (n <= FEW || level.graph.neighbor.empty()) break;
     Pieces pieces(level.graph, n, true);
     std::vector<int> same(pieces.all.size());
@@ -409,29 +439,61 @@ void CellMultigrid::Levels::cycle(std::size_t which)
     return;
   }
 
-  const int n = graph.size();
+  // a color whose neighbors have changed has no residual after its sweep, if no two of its cells are neighbors; another sweep
+  // of it changes nothing
+
   double *const x = level.x.data();
+  const double *const b = level.b.data();
   const auto sweep = [&](int color) {
-    for (const int cell : graph.colored[color])
-      x[cell] += graph.inverse[cell] * (level.b[cell] - graph.flow(cell, x));
+    for (const int cell : graph.colored[color]) {
+      double sum = b[cell];
+      for (int k = graph.first[cell]; k < graph.first[cell + 1]; k++)
+        sum += graph.face[k] * x[graph.neighbor[k]];
+      x[cell] = graph.inverse[cell] * sum;
+    }
   };
+  const bool proper = level.proper;
   std::fill(level.x.begin(), level.x.end(), 0.0);
   for (int correction = 0; correction < CORRECTIONS; correction++) {
     for (int s = 0; s < SWEEPS; s++) {
-      sweep(0);
+      if (correction == 0 || s > 0 || !proper) sweep(0);
       sweep(1);
     }
     auto &next = coarse[which + 1];
     std::fill(next.b.begin(), next.b.end(), 0.0);
-    for (int cell = 0; cell < n; cell++)
-      next.b[level.next[cell]] += level.b[cell] - graph.flow(cell, x);
+    for (int color = 0; color < (proper ? 1 : 2); color++)
+      for (const int cell : graph.colored[color])
+        next.b[level.next[cell]] += b[cell] - graph.flow(cell, x);
     cycle(which + 1);
-    for (int cell = 0; cell < n; cell++) x[cell] += next.x[level.next[cell]];
+    for (int cell = 0; cell < graph.size(); cell++) x[cell] += next.x[level.next[cell]];
     for (int s = 0; s < SWEEPS; s++) {
       sweep(1);
       sweep(0);
     }
   }
+}
+
+int CellMultigrid::parts() const
+{
+  return on->part_number.size();
+}
+
+int CellMultigrid::part_of(int64_t place) const
+{
+  return on->part[place];
+}
+
+void CellMultigrid::correct(std::vector<double> &parts)
+{
+  const auto &bytes = on->fine->ranks.gather_sizes(parts.data(), on->bytes_of_ranks);
+  on->of_all.resize(on->parts_of_ranks.size());
+  if (!bytes.empty()) std::memcpy(on->of_all.data(), bytes.data(), bytes.size());
+  auto &first = on->coarse[0];
+  std::fill(first.b.begin(), first.b.end(), 0.0);
+  for (std::size_t k = 0; k < on->of_all.size(); k++)
+    first.b[on->parts_of_ranks[k]] += on->of_all[k];
+  on->cycle(0);
+  for (std::size_t k = 0; k < parts.size(); k++) parts[k] = first.x[on->part_number[k]];
 }
 
 void CellMultigrid::precondition(const double *r, double *z)
@@ -465,7 +527,8 @@ int CellMultigrid::levels() const
 double CellMultigrid::memory_usage() const
 {
   double bytes = (on->piece.capacity() + on->number.capacity() + on->of_ranks.capacity() +
-                  on->pool.capacity()) *
+                  on->pool.capacity() + on->part.capacity() + on->part_number.capacity() +
+                  on->parts_of_ranks.capacity()) *
           sizeof(int) +
       (on->partial.capacity() + on->of_all.capacity() + on->node_values.capacity() +
        on->cells_of_pool.capacity()) *
@@ -473,6 +536,6 @@ double CellMultigrid::memory_usage() const
       on->factors.memory_usage();
   for (const auto &level : on->coarse)
     bytes += level.graph.memory_usage() + level.next.capacity() * sizeof(int) +
-        3 * level.x.capacity() * sizeof(double);
+        2 * level.x.capacity() * sizeof(double);
   return bytes;
 }
