@@ -14,6 +14,8 @@
 #include "mpm_flow_spread.h"
 #include "mpm_lattice_ranks.h"
 
+#include "comm.h"
+
 using namespace MPM_TEST;
 using namespace MPM_NS;
 
@@ -75,6 +77,40 @@ struct Cells {
 };
 
 }    // namespace
+
+// of the cells that several ranks reach each has its part, and all cells belong to one
+TEST(Rows, CellsOfRanksAreAsManyAsTheirParts)
+{
+  for (const char *faces : {"f f", "p p"}) {
+    Cells of(2, 40, faces, 0.1);
+    const double mine = of.rows.size();
+    double all;
+    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, of.scene.lmp->world);
+    EXPECT_EQ(all, 1600.0) << faces;
+    EXPECT_EQ(of.most(mine), 1600.0 / of.scene.lmp->comm->nprocs) << faces;
+  }
+}
+
+// values that owners change come to ranks that have those from before
+TEST(Rows, ValuesAreRenewed)
+{
+  Cells of(3, 10, "f f f", 0.1);
+  auto &cells = of.cells;
+  std::vector<double> values(2 * cells.size(), 0.0);
+  for (int time = 0; time < 2; time++) {
+    for (const auto &cell : cells.cells)
+      for (int k = 0; k < 2; k++)
+        values[2 * (int64_t) cell.number + k] =
+            (time + 1) * (k + 1) * noise(cells.grid, cell.number);
+    time ? cells.renew(values.data(), 2) : cells.publish(values.data(), 2);
+    for (const auto &cell : cells.cells)
+      for (int s = 0; s < 6; s++)
+        for (int k = 0; k < 2; k++)
+          if (!(cell.walls >> s & 1))
+            EXPECT_EQ(values[2 * (int64_t) cell.near[s] + k],
+                      (time + 1) * (k + 1) * noise(cells.grid, cell.near[s]));
+  }
+}
 
 // also where the period is odd, so that two neighbors belong to the same half
 TEST(Rows, SpreadSolvesTheEquations)

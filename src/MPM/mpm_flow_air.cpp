@@ -11,7 +11,8 @@
 using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
-   both in one message, [cell][velocity, known]; a layer adds to what is not known yet, which are few
+   both in one message, [cell][velocity, known]; a layer adds to what is not known yet, which are few, once all of it is
+   found
 ------------------------------------------------------------------------- */
 
 void MPMFlowAir::extend(int layers, std::vector<double> &velocity, std::vector<double> &known)
@@ -22,34 +23,35 @@ void MPMFlowAir::extend(int layers, std::vector<double> &velocity, std::vector<d
     for (int c = 0; c < dim; c++)
       if (!(known[(int64_t) cells.cells[k].number * dim + c] > 0.0)) unknown.push_back({k, c});
   all.resize(velocity.size() * 2);
-  for (int layer = 0; layer <= layers; layer++) {
-    for (int64_t k = 0; k < cells.size(); k++)
-      for (int c = 0; c < dim; c++) {
-        all[k * width + c] = velocity[k * dim + c];
-        all[k * width + dim + c] = known[k * dim + c];
-      }
-    cells.publish(all.data(), width);
-    if (layer == layers) break;
+  for (int64_t k = 0; k < cells.size(); k++)
+    for (int c = 0; c < dim; c++) {
+      all[k * width + c] = velocity[k * dim + c];
+      all[k * width + dim + c] = known[k * dim + c];
+    }
+  cells.publish(all.data(), width);
+  for (int layer = 0; layer < layers; layer++) {
+    found.clear();
     std::size_t left = 0;
     for (const auto &face : unknown) {
       const auto &cell = cells.cells[face.cell];
-      const int c = face.axis;
       double sum = 0.0, n = 0.0;
       for (int s = 0; s < 2 * dim; s++) {
         if (cell.walls >> s & 1) continue;    // nothing beyond, and not the face in the wall itself
-        const double *const other = &all[(int64_t) cell.near[s] * width + c];
+        const double *const other = &all[(int64_t) cell.near[s] * width + face.axis];
         sum += other[dim] * other[0];
         n += other[dim];
       }
-      if (n == 0.0) {
+      if (n == 0.0)
         unknown[left++] = face;
-        continue;
-      }
-      const int64_t number = (int64_t) cell.number * dim + c;
-      velocity[number] = sum / n;
-      known[number] = 1.0;
+      else
+        found.push_back({(int64_t) cell.number * width + face.axis, sum / n});
     }
     unknown.resize(left);
+    for (const auto &[place, value] : found) {
+      all[place] = value;
+      all[place + dim] = 1.0;
+    }
+    cells.renew(all.data(), width);
   }
   for (int64_t k = 0; k < cells.size(); k++)
     for (int c = 0; c < dim; c++) {

@@ -191,11 +191,29 @@ void MPMFlowLattice::find_cells()
         return is;
       }))
     std::fill(shared.begin(), shared.end(), ~uint64_t(0));
-  halo.setup(grid, shared);
+  if (comm->nprocs > 1) comm->coord2proc_setup();
+  halo.setup(grid, shared, [this](int number) {
+    return rank_around(number);
+  });
+  borrowed.clear();
+  for (int p = 0; p < halo.sharers(); p++)
+    for (const int number : halo.shared_with(p))
+      if (!grid.owns(number)) borrowed.push_back(number);
   list_cells();
   list_images();
   valid = true;
   nbuild++;
+}
+
+/** Whose part of the box has the middle of a cell: ranks have about as many of the cells that several reach. */
+int MPMFlowLattice::rank_around(int number) const
+{
+  int index[3], unused[3];
+  double x[3];
+  grid.node_index(number, index);
+  lattice.node_position(index, x);
+  for (int d = 0; d < lattice.dim; d++) x[d] += 0.5 * lattice.h;
+  return comm->coord2proc(x, unused[0], unused[1], unused[2]);
 }
 
 bool MPMFlowLattice::is_inside(int64_t number) const
@@ -336,6 +354,12 @@ void MPMFlowLattice::publish(double *values, int width) const
 {
   halo.sum(values, width, 0, width);
   grid.copy_aliases(values, width);
+}
+
+void MPMFlowLattice::renew(double *values, int width) const
+{
+  for (const int number : borrowed) std::fill_n(values + (int64_t) number * width, width, 0.0);
+  publish(values, width);
 }
 
 void MPMFlowLattice::keep_owned(double *values, int width) const

@@ -94,6 +94,8 @@ class MPMFlowLattice : protected Pointers {
   void sum_freely(double *values, int width) const;
   /** Values of owners to other ranks and periodic images; the values of all others must be zero. */
   void publish(double *values, int width) const;
+  /** The same for values that all ranks have already, of which owners have changed some. */
+  void renew(double *values, int width) const;
   /** Who shares cells, for solves. */
   MPMHalo &halo_of_cells() const { return halo; }
   /** Zero for all cells that are not in the list. */
@@ -149,7 +151,10 @@ class MPMFlowLattice : protected Pointers {
   };
   std::vector<AtWall> at_walls;    // cells whose lower face is one
 
+  std::vector<int> borrowed;    // cells of other ranks that this one has, too
+
   void base_of(const double *x, int base[3]) const;
+  int rank_around(int number) const;
   void list_cells();
   void list_images();
 };

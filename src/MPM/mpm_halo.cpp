@@ -70,7 +70,8 @@ void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &
   setup(grid, wanted);
 }
 
-void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted)
+void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
+                    const std::function<int(int)> &prefers)
 {
   peers.clear();
   several.clear();
@@ -132,7 +133,16 @@ void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted)
       lowest = false;
     }
     const uint64_t by_nobody = lowest ? ~(by_others | block.reached) : 0;
-    block.owned &= (block.reached & ~by_lower) | by_nobody;
+    uint64_t by_me = (block.reached & ~by_lower) | by_nobody;
+    for (uint64_t left = prefers ? block.reached & by_others & ~block.alias : 0; left;
+         left &= left - 1) {
+      const int node = __builtin_ctzll(left), rank = prefers(s * NODES_PER_BLOCK + node);
+      const uint64_t bit = left & -left;
+      if (rank == comm->me) by_me |= bit;
+      for (const int i : of_slot[s])
+        if (sharer[i].rank == rank && sharer[i].reached & bit) by_me &= ~bit;
+    }
+    block.owned &= by_me;
 
     // who adds to a node, in the order of ranks
 

@@ -33,8 +33,10 @@ class MPMHalo : protected Pointers {
    *  this rank's points, too. */
   void setup(MPM_NS::Grid &, const std::function<bool(const MPM_NS::Grid::Block &)> &whole);
 
-  /** The same for any nodes [slot] of blocks that this rank wants to have, those that its points reach among them. */
-  void setup(MPM_NS::Grid &, const std::vector<uint64_t> &wanted);
+  /** The same for any nodes [slot] of blocks that this rank wants to have, those that its points reach among them. A node
+   *  that several ranks reach belongs to the rank that prefers() tells for its number [slot*64+n], where it is one of these. */
+  void setup(MPM_NS::Grid &, const std::vector<uint64_t> &wanted,
+             const std::function<int(int)> &prefers = nullptr);
 
   /** Sum reals [lane, lane+nlane) of all records of shared nodes. */
   void sum(double *nodes, int nreal, int lane, int nlane);

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 using namespace MPM_NS;
@@ -138,6 +139,72 @@ CellGraph coarse_graph(const std::vector<Piece> &pieces, std::vector<Flow> &flow
   return graph;
 }
 
+/** Sums over the neighbors of cells, color by color, with as many places for each cell: what sweeps do most of the time. */
+class ColoredSums {
+ public:
+  /** Of a graph whose places in vectors are its cells. */
+  void setup(const CellGraph &graph)
+  {
+    width = 0;
+    for (int cell = 0; cell < graph.size(); cell++)
+      width = std::max(width, graph.first[cell + 1] - graph.first[cell]);
+    width = width <= 4 ? 4 : width <= 6 ? 6 : width;
+    for (int color = 0; color < 2; color++) {
+      auto &of = colors[color];
+      of.cell = graph.colored[color];
+      of.neighbor.assign(of.cell.size() * width, 0);
+      of.face.assign(of.cell.size() * width, 0.0);
+      for (std::size_t i = 0; i < of.cell.size(); i++) {
+        const int first = graph.first[of.cell[i]], last = graph.first[of.cell[i] + 1];
+        std::copy(graph.neighbor.begin() + first, graph.neighbor.begin() + last,
+                  of.neighbor.begin() + i * width);
+        std::copy(graph.face.begin() + first, graph.face.begin() + last,
+                  of.face.begin() + i * width);
+      }
+    }
+  }
+  /** put(cell, sum of face times x of its neighbors) for the cells of a color, one after the other. */
+  template <class Put> void visit(int color, const double *x, const Put &put) const
+  {
+    if (width == 4)
+      visit_all(colors[color], x, put, std::integral_constant<int, 4>());
+    else if (width == 6)
+      visit_all(colors[color], x, put, std::integral_constant<int, 6>());
+    else
+      visit_all(colors[color], x, put, width);
+  }
+  double memory_usage() const
+  {
+    double bytes = 0.0;
+    for (const auto &of : colors)
+      bytes += (of.cell.capacity() + of.neighbor.capacity()) * sizeof(int) +
+          of.face.capacity() * sizeof(double);
+    return bytes;
+  }
+
+ private:
+  struct Color {
+    std::vector<int> cell, neighbor;
+    std::vector<double> face;
+  };
+  Color colors[2];
+  int width = 0;
+
+  template <class Put, class Width>
+  static void visit_all(const Color &of, const double *x, const Put &put, const Width &width)
+  {
+    const int *other = of.neighbor.data();
+    const double *face = of.face.data();
+    for (const int cell : of.cell) {
+      double sum = 0.0;
+      for (int k = 0; k < width; k++) sum += face[k] * x[other[k]];
+      other += width;
+      face += width;
+      put(cell, sum);
+    }
+  }
+};
+
 /** What flows between pieces: to b = -1, to the outside. */
 std::vector<Flow> coarse_flows(const CellGraph &graph, const Pieces &pieces,
                                const std::vector<int> &number)
@@ -174,8 +241,9 @@ struct CellMultigrid::Levels {
 
   struct Level {
     CellGraph graph;
+    ColoredSums sums;
     std::vector<int> next;    // [cell] of the next level
-    std::vector<double> x, b;
+    std::vector<double> x, b, diagonal, to_be;
     bool proper;    // neighbors have different colors
   };
   std::vector<Level> coarse;
@@ -278,8 +346,11 @@ void CellMultigrid::Levels::more_levels()
     auto &level = coarse.back();
     const int n = level.graph.size();
     for (auto *vector : {&level.x, &level.b}) vector->resize(n);
-    level.proper = level.graph.is_proper();
     if (n <= FEW || level.graph.neighbor.empty()) break;
+    level.proper = level.graph.is_proper();
+    if (!level.proper) level.to_be.resize(n);
+    level.sums.setup(level.graph);
+    for (int cell = 0; cell < n; cell++) level.diagonal.push_back(level.graph.diagonal(cell));
     Pieces pieces(level.graph, n, true);
     std::vector<int> same(pieces.all.size());
     std::iota(same.begin(), same.end(), 0);
@@ -439,33 +510,40 @@ void CellMultigrid::Levels::cycle(std::size_t which)
     return;
   }
 
-  // a color whose neighbors have changed has no residual after its sweep, if no two of its cells are neighbors; another sweep
-  // of it changes nothing
+  // a color whose neighbors have changed has no residual after its sweep, if no two of its cells are neighbors: another sweep
+  // of it changes nothing, and what it was before does not matter
 
   double *const x = level.x.data();
-  const double *const b = level.b.data();
+  const double *const b = level.b.data(), *const diagonal = level.diagonal.data(),
+                      *const inverse = graph.inverse.data();
+  const int colors = level.proper ? 1 : 2;    // with a residual
+  double *const to_be =
+      level.proper ? x : level.to_be.data();    // in no order within a color: symmetric
   const auto sweep = [&](int color) {
-    for (const int cell : graph.colored[color]) {
-      double sum = b[cell];
-      for (int k = graph.first[cell]; k < graph.first[cell + 1]; k++)
-        sum += graph.face[k] * x[graph.neighbor[k]];
-      x[cell] = graph.inverse[cell] * sum;
-    }
+    level.sums.visit(color, x, [=](int cell, double sum) {
+      to_be[cell] = inverse[cell] * (b[cell] + sum);
+    });
+    if (to_be != x)
+      for (const int cell : graph.colored[color]) x[cell] = to_be[cell];
   };
-  const bool proper = level.proper;
   std::fill(level.x.begin(), level.x.end(), 0.0);
   for (int correction = 0; correction < CORRECTIONS; correction++) {
     for (int s = 0; s < SWEEPS; s++) {
-      if (correction == 0 || s > 0 || !proper) sweep(0);
+      if (correction == 0 || s > 0 || !level.proper) sweep(0);
       sweep(1);
     }
     auto &next = coarse[which + 1];
+    double *const next_b = next.b.data();
+    const double *const next_x = next.x.data();
+    const int *const to = level.next.data();
     std::fill(next.b.begin(), next.b.end(), 0.0);
-    for (int color = 0; color < (proper ? 1 : 2); color++)
-      for (const int cell : graph.colored[color])
-        next.b[level.next[cell]] += b[cell] - graph.flow(cell, x);
+    for (int color = 0; color < colors; color++)
+      level.sums.visit(color, x, [=](int cell, double sum) {
+        next_b[to[cell]] += b[cell] + sum - diagonal[cell] * x[cell];
+      });
     cycle(which + 1);
-    for (int cell = 0; cell < graph.size(); cell++) x[cell] += next.x[level.next[cell]];
+    for (int color = 0; color < colors; color++)
+      for (const int cell : graph.colored[color]) x[cell] += next_x[to[cell]];
     for (int s = 0; s < SWEEPS; s++) {
       sweep(1);
       sweep(0);
@@ -535,7 +613,9 @@ double CellMultigrid::memory_usage() const
           sizeof(double) +
       on->factors.memory_usage();
   for (const auto &level : on->coarse)
-    bytes += level.graph.memory_usage() + level.next.capacity() * sizeof(int) +
-        2 * level.x.capacity() * sizeof(double);
+    bytes += level.graph.memory_usage() + level.sums.memory_usage() +
+        level.next.capacity() * sizeof(int) +
+        (2 * level.x.capacity() + level.diagonal.capacity() + level.to_be.capacity()) *
+            sizeof(double);
   return bytes;
 }
