@@ -25,12 +25,22 @@ class MPMFlowAir {
   void extend(int layers, std::vector<double> &velocity, std::vector<double> &known);
   double memory_usage() const
   {
-    return (all_velocity.capacity() + all_known.capacity()) * sizeof(double);
+    return all.capacity() * sizeof(double) + unknown.capacity() * sizeof(Face) +
+        found.capacity() * sizeof(Found);
   }
 
  private:
+  struct Face {
+    int cell, axis;    // in the list of cells
+  };
+  struct Found {
+    int64_t place;    // in all
+    double value;
+  };
   const MPMFlowLattice &cells;
-  std::vector<double> all_velocity, all_known;
+  std::vector<double> all;
+  std::vector<Face> unknown;
+  std::vector<Found> found;
 };
 
 }    // namespace LAMMPS_NS

@@ -145,6 +145,9 @@ void MPMFlowLattice::find_cells()
     }
   }
 
+  // what ranks share is what they reach and the layers around it; where there are periodic images, all of their blocks
+
+  std::vector<uint64_t> shared;
   constexpr int STENCIL = 2, LOWER = 1;    // of points that have a width
   const int margin_of_all = DRIFT + HALF + wants_more;
   const auto cover = [&](const Range &r, int margin, bool reached) {
@@ -161,8 +164,10 @@ void MPMFlowLattice::find_cells()
       for (b[1] = low[1] >> bits; b[1] <= high[1] >> bits; b[1]++)
         for (b[2] = low[2] >> bits; b[2] <= high[2] >> bits; b[2]++) {
           const int slot = grid.activate(b);
-          if (reached)
-            grid.blocks[slot].reached |= grid.nodes_between(grid.blocks[slot], low, high);
+          const uint64_t nodes = grid.nodes_between(grid.blocks[slot], low, high);
+          shared.resize(std::max(shared.size(), (std::size_t) slot + 1), 0);
+          shared[slot] |= nodes;
+          if (reached) grid.blocks[slot].reached |= nodes;
         }
   };
   for (const auto &range : ranges) {
@@ -180,13 +185,35 @@ void MPMFlowLattice::find_cells()
   }
   grid.close_periodic();
   grid.finish();
-  halo.setup(grid, [](const Grid::Block &) {
-    return true;
+  shared.resize(grid.blocks.size(), 0);
+  const bool *const periodic = lattice.periodic;
+  if (std::any_of(periodic, periodic + lattice.dim, [](bool is) {
+        return is;
+      }))
+    std::fill(shared.begin(), shared.end(), ~uint64_t(0));
+  if (comm->nprocs > 1) comm->coord2proc_setup();
+  halo.setup(grid, shared, [this](int number) {
+    return rank_around(number);
   });
+  borrowed.clear();
+  for (int p = 0; p < halo.sharers(); p++)
+    for (const int number : halo.shared_with(p))
+      if (!grid.owns(number)) borrowed.push_back(number);
   list_cells();
   list_images();
   valid = true;
   nbuild++;
+}
+
+/** Whose part of the box has the middle of a cell: ranks have about as many of the cells that several reach. */
+int MPMFlowLattice::rank_around(int number) const
+{
+  int index[3], unused[3];
+  double x[3];
+  grid.node_index(number, index);
+  lattice.node_position(index, x);
+  for (int d = 0; d < lattice.dim; d++) x[d] += 0.5 * lattice.h;
+  return comm->coord2proc(x, unused[0], unused[1], unused[2]);
 }
 
 bool MPMFlowLattice::is_inside(int64_t number) const
@@ -327,6 +354,12 @@ void MPMFlowLattice::publish(double *values, int width) const
 {
   halo.sum(values, width, 0, width);
   grid.copy_aliases(values, width);
+}
+
+void MPMFlowLattice::renew(double *values, int width) const
+{
+  for (const int number : borrowed) std::fill_n(values + (int64_t) number * width, width, 0.0);
+  publish(values, width);
 }
 
 void MPMFlowLattice::keep_owned(double *values, int width) const

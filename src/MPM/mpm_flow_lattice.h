@@ -28,8 +28,8 @@ struct MPMFlowWall {
 /** The cells of a staggered lattice in reach of the points of a group: a Grid whose node i stands for the cell between nodes
  *  i and i + 1 of the lattice and for its lower faces, see lattice/staggered.h.
  *
- *  All ranks with a block have all its values. Each cell is owned by one rank, which has its neighbors, too: values are made
- *  by owners, and publish() brings them to the others.
+ *  All ranks have all values in reach of their points, and in the layers around it that they want (overlap). Each cell is owned by one rank, which
+ *  has its neighbors, too: values are made by owners, and publish() brings them to the others.
  *
  *  Beyond walls there is a layer of images of cells, so that velocities are of second order next to walls: normal components
  *  are odd, tangential ones even (slip) or odd about the velocity of the wall (stick). */
@@ -94,6 +94,8 @@ class MPMFlowLattice : protected Pointers {
   void sum_freely(double *values, int width) const;
   /** Values of owners to other ranks and periodic images; the values of all others must be zero. */
   void publish(double *values, int width) const;
+  /** The same for values that all ranks have already, of which owners have changed some. */
+  void renew(double *values, int width) const;
   /** Who shares cells, for solves. */
   MPMHalo &halo_of_cells() const { return halo; }
   /** Zero for all cells that are not in the list. */
@@ -149,7 +151,10 @@ class MPMFlowLattice : protected Pointers {
   };
   std::vector<AtWall> at_walls;    // cells whose lower face is one
 
+  std::vector<int> borrowed;    // cells of other ranks that this one has, too
+
   void base_of(const double *x, int base[3]) const;
+  int rank_around(int number) const;
   void list_cells();
   void list_images();
 };

@@ -132,7 +132,6 @@ void MPMFlowPressure::set_mobility(const std::vector<double> *of_faces)
 void MPMFlowPressure::find_weights()
 {
   wet.clear();
-  inverse_diagonal.assign(cells.size(), 0.0);
   const int sides = 2 * cells.lattice.dim;
   for (int k = 0; k < (int) cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
@@ -153,11 +152,43 @@ void MPMFlowPressure::find_weights()
       one.diagonal += one.weight[s];
     }
     if (one.diagonal == 0.0) one.diagonal = 1.0;    // walls all around
-    inverse_diagonal[cell.number] = 1.0 / one.diagonal;
     wet.push_back(one);
   }
-  cells.publish(inverse_diagonal.data(), 1);
-  levels_are_there = false;
+  rows_are_there = levels_are_there = false;
+}
+
+/** Who has which of them, and what ranks send each other. */
+void MPMFlowPressure::find_rows()
+{
+  if (rows_are_there) return;
+  rows.begin();
+  for (const auto &one : wet) rows.add(cells.cells[one.cell].number, one.near);
+  rows.arrange();
+  rows_are_there = true;
+}
+
+/** The equations by rows; screen: 1/length^2. */
+void MPMFlowPressure::weigh_rows(double screen, std::vector<double> &of_cell,
+                                 std::vector<double> &of_sides) const
+{
+  const int sides = rows.sides();
+  of_cell.resize(rows.size());
+  of_sides.resize((std::size_t) rows.size() * sides);
+  for (int i = 0; i < rows.size(); i++) {
+    const auto &one = wet[rows.row_at(i)];
+    of_cell[i] = one.diagonal + screen;
+    for (int s = 0; s < sides; s++)
+      of_sides[(std::size_t) i * sides + s] = one.near[s] < 0 ? 0.0 : one.weight[s];
+  }
+}
+
+/** Values of rows to all cells of all ranks. */
+void MPMFlowPressure::to_cells(const std::vector<double> &of_rows,
+                               std::vector<double> &of_cells) const
+{
+  of_cells.assign(size(), 0.0);
+  for (int i = 0; i < rows.size(); i++) of_cells[rows.cell_at(i)] = of_rows[i];
+  cells.publish(of_cells.data(), 1);
 }
 
 /** The same equations for the multigrid preconditioner: owners of cells give what flows through their upper faces. */
@@ -177,29 +208,11 @@ void MPMFlowPressure::find_levels()
     coefficients.outside[number] = inside + outside > 0.0 ? outside : one.diagonal;
   }
   coefficients.finish();
-  multigrid.setup(coefficients);
+  poisson.multigrid.setup(coefficients);
+  find_rows();
+  weigh_rows(0.0, poisson.diagonal, poisson.weight);
+  poisson.begin();
   levels_are_there = true;
-}
-
-void MPMFlowPressure::apply(const double *x, double *y)
-{
-  std::fill_n(y, size(), 0.0);
-  const int sides = 2 * cells.lattice.dim;
-  for (const auto &one : wet) {
-    const int number = cells.cells[one.cell].number;
-    double sum = (one.diagonal + screen) * x[number];
-    for (int s = 0; s < sides; s++)
-      if (one.near[s] >= 0) sum -= one.weight[s] * x[one.near[s]];
-    y[number] = sum;
-  }
-  if (bodies && screen == 0.0) bodies->add(x, y);    // points that spread do not push them
-  cells.publish(y, 1);
-}
-
-void MPMFlowPressure::precondition(const double *r, double *z)
-{
-  if (screen == 0.0) return multigrid.precondition(r, z);
-  for (int64_t k = 0; k < size(); k++) z[k] = inverse_diagonal[k] * r[k];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -209,7 +222,6 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
 {
   const double h = cells.lattice.h;
   right_side.assign(size(), 0.0);
-  psi.assign(size(), 0.0);
   for (const auto &one : wet) {
     const auto &cell = cells.cells[one.cell];
     right_side[cell.number] = -outflow(before, cell) / h;
@@ -217,8 +229,13 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
   if (surface) find_lift(*surface);
   cells.publish(right_side.data(), 1);
   find_levels();
-  multigrid.project(right_side.data());
-  const SolveReport report = method.solve(*this, right_side.data(), psi.data(), goal);
+  poisson.multigrid.project(right_side.data());
+  poisson.bodies = bodies;
+  solution.assign(2 * (std::size_t) rows.size(), 0.0);
+  double *const load = solution.data() + rows.size();
+  for (int i = 0; i < rows.size(); i++) load[i] = right_side[rows.cell_at(i)];
+  const SolveReport report = method.solve(poisson, load, solution.data(), goal);
+  to_cells(solution, psi);
   for (int64_t k = 0; surface && k < size(); k++) psi[k] += lift[k];
   subtract_gradient(psi, before, after, known, surface);
   return report;
@@ -250,7 +267,7 @@ void MPMFlowPressure::find_lift(const std::vector<double> &surface)
     mine[0] += sum / weight;
     mine[1] += 1.0;
   }
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, lmp->world);
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
   for (const auto &one : wet) {
     const int number = cells.cells[one.cell].number;
     visit(one, weight, sum);
@@ -305,21 +322,22 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
     lightness = nullptr;
     find_weights();
   }
-  right_side.assign(size(), 0.0);
-  excess.assign(size(), 0.0);
-  for (const auto &one : wet) {
-    const auto &cell = cells.cells[one.cell];
+  const double screen = 1.0 / (SPREAD * SPREAD * h * h);
+  find_rows();
+  weigh_rows(screen, diagonal, weight);
+  solution.resize(rows.size());
+  for (int i = 0; i < rows.size(); i++) {
+    const auto &cell = cells.cells[wet[rows.row_at(i)].cell];
     double more = share_of[cell.number] - 1.0;
     if (regions && regions->room(cell.number) < 1.0)
       more = std::max(0.0, more - UNSURE);
     else if (more < 0.0 && !is_deep(cell))
       more = 0.0;
-    right_side[cell.number] = rate * std::min(more, 1.0);
+    solution[i] = rate * std::min(more, 1.0);
   }
-  cells.publish(right_side.data(), 1);
-  screen = 1.0 / (SPREAD * SPREAD * h * h);
-  const SolveReport report = method.solve(*this, right_side.data(), excess.data(), goal);
-  screen = 0.0;
+  const SolveReport report =
+      equal_filling.solve(diagonal, weight, solution.data(), solution.data(), goal);
+  to_cells(solution, excess);
   subtract_gradient(excess, nullptr, displacement, known);
   return report;
 }
@@ -394,9 +412,10 @@ double MPMFlowPressure::at_wall(int axis, int side) const
 
 double MPMFlowPressure::memory_usage() const
 {
-  return (psi.capacity() + lift.capacity() + excess.capacity() + flag.capacity() +
-          right_side.capacity() + inverse_diagonal.capacity()) *
-      sizeof(double) +
-      wet.capacity() * sizeof(Wet) + method.memory_usage() + coefficients.memory_usage() +
-      multigrid.memory_usage();
+  double reals = 0.0;
+  for (const auto *list : {&psi, &lift, &excess, &flag, &right_side, &solution, &diagonal, &weight})
+    reals += list->capacity();
+  return reals * sizeof(double) + wet.capacity() * sizeof(Wet) + method.memory_usage() +
+      coefficients.memory_usage() + rows.memory_usage() + poisson.memory_usage() +
+      equal_filling.memory_usage();
 }

@@ -10,9 +10,11 @@
 #define LMP_MPM_FLOW_PRESSURE_H
 
 #include "mpm_flow_lattice.h"
+#include "mpm_flow_poisson.h"
+#include "mpm_flow_rows.h"
+#include "mpm_flow_spread.h"
 #include "mpm_lattice_ranks.h"
-#include "mpm_node_system.h"
-#include "solve/cell_multigrid.h"
+#include "solve/cell_operator.h"
 #include "solve/krylov.h"
 
 #include <vector>
@@ -30,12 +32,14 @@ class MPMFlowRegions;
  *
  *  The unknown is the potential psi = dt p/density, whose gradient velocities lose, times that density over the one at the face where there
  *  are several. Its solve has a multigrid preconditioner,
- *  which is the faster one from the smallest flows on; that of points that spread reaches but a few cells, and the diagonal is enough. */
-class MPMFlowPressure : public MPMNodeSystem {
+ *  which is the faster one from the smallest flows on; that of points that spread reaches but a few cells, and the diagonal is enough
+ *  (MPMFlowSpread). */
+class MPMFlowPressure : protected Pointers {
  public:
   MPMFlowPressure(class LAMMPS *lmp, const MPMFlowLattice &cells) :
-      MPMNodeSystem(lmp, cells.grid, 1), cells(cells),
-      ranks(lmp, cells.grid, cells.halo_of_cells()), coefficients(cells.grid, ranks)
+      Pointers(lmp), cells(cells), ranks(lmp, cells.grid, cells.halo_of_cells()),
+      coefficients(cells.grid, ranks), rows(lmp, cells), poisson(lmp, cells, rows),
+      equal_filling(lmp, rows)
   {
   }
 
@@ -98,9 +102,6 @@ class MPMFlowPressure : public MPMNodeSystem {
   /** Integral of psi over the wall of an axis, the share of this rank. */
   double at_wall(int axis, int side) const;
 
-  void apply(const double *x, double *y) override;
-  void precondition(const double *r, double *z) override;
-
   double memory_usage() const;
 
  private:
@@ -113,15 +114,21 @@ class MPMFlowPressure : public MPMNodeSystem {
   const MPMFlowLattice &cells;
   MPMLatticeRanks ranks;
   MPM_NS::CellOperator coefficients;    // as the multigrid preconditioner has them
-  MPM_NS::CellMultigrid multigrid;
-  bool levels_are_there = false;    // for the cells that are wet now
+  MPMFlowRows rows;                     // of the wet cells
+  MPMFlowPoisson poisson;
+  bool rows_are_there = false, levels_are_there = false;    // for the cells that are wet now
   std::vector<Wet> wet;
-  std::vector<double> excess, lift, flag, right_side, inverse_diagonal;
+  std::vector<double> excess, lift, flag, right_side, solution;
   const double *share_of = nullptr;
   const std::vector<double> *mobility = nullptr;
-  double screen = 0.0;    // 1/length^2
+  MPMFlowSpread equal_filling;
+  std::vector<double> diagonal, weight;    // of its rows
   MPM_NS::ConjugateGradients method;
 
+  int64_t size() const { return cells.size(); }
+  void find_rows();
+  void weigh_rows(double screen, std::vector<double> &diagonal, std::vector<double> &weight) const;
+  void to_cells(const std::vector<double> &of_rows, std::vector<double> &of_cells) const;
   void find_lift(const std::vector<double> &surface);
   double weight_to(int64_t wet_cell, int64_t other) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;

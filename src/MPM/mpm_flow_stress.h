@@ -10,6 +10,7 @@
 #define LMP_MPM_FLOW_STRESS_H
 
 #include "mpm_flow_pressure.h"
+#include "mpm_node_system.h"
 
 #include <vector>
 

@@ -64,6 +64,15 @@ static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outb
 
 void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &whole)
 {
+  std::vector<uint64_t> wanted;
+  for (const auto &block : grid.blocks)
+    wanted.push_back(whole(block) ? ~uint64_t(0) : block.reached);
+  setup(grid, wanted);
+}
+
+void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
+                    const std::function<int(int)> &prefers)
+{
   peers.clear();
   several.clear();
   first.assign(1, 0);
@@ -78,7 +87,7 @@ void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &
   std::vector<int> procs;
   for (int s = 0; s < nblocks; s++) {
     const auto &block = grid.blocks[s];
-    had[s] = (whole(block) ? ~uint64_t(0) : block.reached) & ~block.alias;
+    had[s] = wanted[s] & ~block.alias;
     if (!had[s]) continue;
     const uint64_t key = Grid::block_key(block);
     mine.push_back({key, had[s], block.reached, comm->me});
@@ -124,7 +133,16 @@ void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &
       lowest = false;
     }
     const uint64_t by_nobody = lowest ? ~(by_others | block.reached) : 0;
-    block.owned &= (block.reached & ~by_lower) | by_nobody;
+    uint64_t by_me = (block.reached & ~by_lower) | by_nobody;
+    for (uint64_t left = prefers ? block.reached & by_others & ~block.alias : 0; left;
+         left &= left - 1) {
+      const int node = __builtin_ctzll(left), rank = prefers(s * NODES_PER_BLOCK + node);
+      const uint64_t bit = left & -left;
+      if (rank == comm->me) by_me |= bit;
+      for (const int i : of_slot[s])
+        if (sharer[i].rank == rank && sharer[i].reached & bit) by_me &= ~bit;
+    }
+    block.owned &= by_me;
 
     // who adds to a node, in the order of ranks
 

@@ -33,8 +33,18 @@ class MPMHalo : protected Pointers {
    *  this rank's points, too. */
   void setup(MPM_NS::Grid &, const std::function<bool(const MPM_NS::Grid::Block &)> &whole);
 
+  /** The same for any nodes [slot] of blocks that this rank wants to have, those that its points reach among them. A node
+   *  that several ranks reach belongs to the rank that prefers() tells for its number [slot*64+n], where it is one of these. */
+  void setup(MPM_NS::Grid &, const std::vector<uint64_t> &wanted,
+             const std::function<int(int)> &prefers = nullptr);
+
   /** Sum reals [lane, lane+nlane) of all records of shared nodes. */
   void sum(double *nodes, int nreal, int lane, int nlane);
+
+  /** Other ranks that have nodes of this one, ascending, and which ones [slot*64+n]: both list them in the same order. */
+  int sharers() const { return (int) peers.size(); }
+  int rank_of(int sharer) const { return peers[sharer].rank; }
+  const std::vector<int> &shared_with(int sharer) const { return peers[sharer].nodes; }
 
   bigint bytes_sent = 0, messages_sent = 0;    ///< since the last reset by the caller
   double memory_usage() const;

@@ -46,12 +46,22 @@ const std::vector<char> &MPMLatticeRanks::gather_bytes(const void *mine, std::si
         FLERR,
         "Solve on the lattice is too large for its coarse levels, which all ranks have: use a "
         "larger node spacing");
-  counts.resize(nprocs);
+  counts.assign(of_ranks.begin(), of_ranks.end());
+  return gather_counts(mine);
+}
+
+const std::vector<char> &MPMLatticeRanks::gather_sizes(const void *mine,
+                                                       const std::vector<int> &sizes)
+{
+  counts = sizes;
+  return gather_counts(mine);
+}
+
+const std::vector<char> &MPMLatticeRanks::gather_counts(const void *mine)
+{
+  const int nprocs = lmp->comm->nprocs;
   first.resize(nprocs + 1);
-  for (int p = 0; p < nprocs; p++) {
-    counts[p] = of_ranks[p];
-    first[p + 1] = first[p] + counts[p];
-  }
+  for (int p = 0; p < nprocs; p++) first[p + 1] = first[p] + counts[p];
   all.resize(first[nprocs]);
   MPI_Allgatherv(mine, counts[lmp->comm->me], MPI_BYTE, all.data(), counts.data(), first.data(),
                  MPI_BYTE, lmp->world);

@@ -28,6 +28,7 @@ class MPMLatticeRanks : public MPM_NS::LatticeRanks {
   void sum(double *values, int width) override;
   /** Stops with an error where it is more than an int can count. */
   const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) override;
+  const std::vector<char> &gather_sizes(const void *mine, const std::vector<int> &sizes) override;
 
  private:
   class LAMMPS *const lmp;
@@ -36,6 +37,8 @@ class MPMLatticeRanks : public MPM_NS::LatticeRanks {
   std::vector<bigint> of_ranks;
   std::vector<int> counts, first;
   std::vector<char> all;
+
+  const std::vector<char> &gather_counts(const void *mine);
 };
 
 }    // namespace LAMMPS_NS

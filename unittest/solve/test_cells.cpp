@@ -76,7 +76,7 @@ TEST(CellOperator, IsTheEquations)
 TEST(CellMultigrid, IsSymmetric)
 {
   for (const int dim : {2, 3})
-    for (const int n : {11, 23}) {
+    for (const int n : {11, 23, 58}) {
       auto scene = odd_scene(dim);
       scene.n = n;
       if (dim == 3 && n > 11) continue;

@@ -28,6 +28,8 @@ struct CellGraph {
 
   int size() const { return where.size(); }
   void color();    ///< make the lists of colors
+  /** Have neighbors different colors? For graphs whose places in vectors are their cells. */
+  bool is_proper() const;
 
   /** This rank's part of (A x) at a cell. */
   double flow(int cell, const double *x) const

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 using namespace MPM_NS;
@@ -137,6 +139,72 @@ CellGraph coarse_graph(const std::vector<Piece> &pieces, std::vector<Flow> &flow
   return graph;
 }
 
+/** Sums over the neighbors of cells, color by color, with as many places for each cell: what sweeps do most of the time. */
+class ColoredSums {
+ public:
+  /** Of a graph whose places in vectors are its cells. */
+  void setup(const CellGraph &graph)
+  {
+    width = 0;
+    for (int cell = 0; cell < graph.size(); cell++)
+      width = std::max(width, graph.first[cell + 1] - graph.first[cell]);
+    width = width <= 4 ? 4 : width <= 6 ? 6 : width;
+    for (int color = 0; color < 2; color++) {
+      auto &of = colors[color];
+      of.cell = graph.colored[color];
+      of.neighbor.assign(of.cell.size() * width, 0);
+      of.face.assign(of.cell.size() * width, 0.0);
+      for (std::size_t i = 0; i < of.cell.size(); i++) {
+        const int first = graph.first[of.cell[i]], last = graph.first[of.cell[i] + 1];
+        std::copy(graph.neighbor.begin() + first, graph.neighbor.begin() + last,
+                  of.neighbor.begin() + i * width);
+        std::copy(graph.face.begin() + first, graph.face.begin() + last,
+                  of.face.begin() + i * width);
+      }
+    }
+  }
+  /** put(cell, sum of face times x of its neighbors) for the cells of a color, one after the other. */
+  template <class Put> void visit(int color, const double *x, const Put &put) const
+  {
+    if (width == 4)
+      visit_all(colors[color], x, put, std::integral_constant<int, 4>());
+    else if (width == 6)
+      visit_all(colors[color], x, put, std::integral_constant<int, 6>());
+    else
+      visit_all(colors[color], x, put, width);
+  }
+  double memory_usage() const
+  {
+    double bytes = 0.0;
+    for (const auto &of : colors)
+      bytes += (of.cell.capacity() + of.neighbor.capacity()) * sizeof(int) +
+          of.face.capacity() * sizeof(double);
+    return bytes;
+  }
+
+ private:
+  struct Color {
+    std::vector<int> cell, neighbor;
+    std::vector<double> face;
+  };
+  Color colors[2];
+  int width = 0;
+
+  template <class Put, class Width>
+  static void visit_all(const Color &of, const double *x, const Put &put, const Width &width)
+  {
+    const int *other = of.neighbor.data();
+    const double *face = of.face.data();
+    for (const int cell : of.cell) {
+      double sum = 0.0;
+      for (int k = 0; k < width; k++) sum += face[k] * x[other[k]];
+      other += width;
+      face += width;
+      put(cell, sum);
+    }
+  }
+};
+
 /** What flows between pieces: to b = -1, to the outside. */
 std::vector<Flow> coarse_flows(const CellGraph &graph, const Pieces &pieces,
                                const std::vector<int> &number)
@@ -166,10 +234,17 @@ struct CellMultigrid::Levels {
   std::vector<int> of_ranks;    // coarse cells of the pieces of all ranks, rank by rank
   std::vector<double> partial, of_all, node_values;
 
+  // the same for cells that this rank owns
+  std::vector<int> part;           // [place in vectors]
+  std::vector<int> part_number;    // [part] the coarse cell
+  std::vector<int> parts_of_ranks, bytes_of_ranks;
+
   struct Level {
     CellGraph graph;
+    ColoredSums sums;
     std::vector<int> next;    // [cell] of the next level
-    std::vector<double> x, b, r;
+    std::vector<double> x, b, diagonal, to_be;
+    bool proper;    // neighbors have different colors
   };
   std::vector<Level> coarse;
   EnvelopeFactors factors;
@@ -180,6 +255,7 @@ struct CellMultigrid::Levels {
   std::vector<double> cells_of_pool;
 
   void first_coarse();
+  void find_parts();
   void more_levels();
   void factorize();
   void find_pools(const std::vector<int> &component, const std::vector<char> &closed);
@@ -241,6 +317,27 @@ void CellMultigrid::Levels::first_coarse()
   auto flows = fine->ranks.gather(coarse_flows(graph, mine, number));
   coarse.emplace_back();
   coarse[0].graph = coarse_graph(joined, flows);
+  find_parts();
+}
+
+void CellMultigrid::Levels::find_parts()
+{
+  const auto &graph = fine->cells();
+  std::vector<int> of_piece(number.size(), -1);
+  part.assign(fine->grid.nnodes(), -1);
+  part_number.clear();
+  for (int cell = 0; cell < graph.size(); cell++) {
+    if (!fine->grid.owns(graph.where[cell])) continue;
+    int &which = of_piece[piece[cell]];
+    if (which < 0) {
+      which = part_number.size();
+      part_number.push_back(number[piece[cell]]);
+    }
+    part[graph.where[cell]] = which;
+  }
+  const std::vector<int> bytes(1, (int) (part_number.size() * sizeof(double)));
+  bytes_of_ranks = fine->ranks.gather(bytes);
+  parts_of_ranks = fine->ranks.gather(part_number);
 }
 
 void CellMultigrid::Levels::more_levels()
@@ -248,8 +345,12 @@ void CellMultigrid::Levels::more_levels()
   while (true) {
     auto &level = coarse.back();
     const int n = level.graph.size();
-    for (auto *vector : {&level.x, &level.b, &level.r}) vector->resize(n);
+    for (auto *vector : {&level.x, &level.b}) vector->resize(n);
     if (n <= FEW || level.graph.neighbor.empty()) break;
+    level.proper = level.graph.is_proper();
+    if (!level.proper) level.to_be.resize(n);
+    level.sums.setup(level.graph);
+    for (int cell = 0; cell < n; cell++) level.diagonal.push_back(level.graph.diagonal(cell));
     Pieces pieces(level.graph, n, true);
     std::vector<int> same(pieces.all.size());
     std::iota(same.begin(), same.end(), 0);
@@ -409,29 +510,68 @@ void CellMultigrid::Levels::cycle(std::size_t which)
     return;
   }
 
-  const int n = graph.size();
+  // a color whose neighbors have changed has no residual after its sweep, if no two of its cells are neighbors: another sweep
+  // of it changes nothing, and what it was before does not matter
+
   double *const x = level.x.data();
+  const double *const b = level.b.data(), *const diagonal = level.diagonal.data(),
+                      *const inverse = graph.inverse.data();
+  const int colors = level.proper ? 1 : 2;    // with a residual
+  double *const to_be =
+      level.proper ? x : level.to_be.data();    // in no order within a color: symmetric
   const auto sweep = [&](int color) {
-    for (const int cell : graph.colored[color])
-      x[cell] += graph.inverse[cell] * (level.b[cell] - graph.flow(cell, x));
+    level.sums.visit(color, x, [=](int cell, double sum) {
+      to_be[cell] = inverse[cell] * (b[cell] + sum);
+    });
+    if (to_be != x)
+      for (const int cell : graph.colored[color]) x[cell] = to_be[cell];
   };
   std::fill(level.x.begin(), level.x.end(), 0.0);
   for (int correction = 0; correction < CORRECTIONS; correction++) {
     for (int s = 0; s < SWEEPS; s++) {
-      sweep(0);
+      if (correction == 0 || s > 0 || !level.proper) sweep(0);
       sweep(1);
     }
     auto &next = coarse[which + 1];
+    double *const next_b = next.b.data();
+    const double *const next_x = next.x.data();
+    const int *const to = level.next.data();
     std::fill(next.b.begin(), next.b.end(), 0.0);
-    for (int cell = 0; cell < n; cell++)
-      next.b[level.next[cell]] += level.b[cell] - graph.flow(cell, x);
+    for (int color = 0; color < colors; color++)
+      level.sums.visit(color, x, [=](int cell, double sum) {
+        next_b[to[cell]] += b[cell] + sum - diagonal[cell] * x[cell];
+      });
     cycle(which + 1);
-    for (int cell = 0; cell < n; cell++) x[cell] += next.x[level.next[cell]];
+    for (int color = 0; color < colors; color++)
+      for (const int cell : graph.colored[color]) x[cell] += next_x[to[cell]];
     for (int s = 0; s < SWEEPS; s++) {
       sweep(1);
       sweep(0);
     }
   }
+}
+
+int CellMultigrid::parts() const
+{
+  return on->part_number.size();
+}
+
+int CellMultigrid::part_of(int64_t place) const
+{
+  return on->part[place];
+}
+
+void CellMultigrid::correct(std::vector<double> &parts)
+{
+  const auto &bytes = on->fine->ranks.gather_sizes(parts.data(), on->bytes_of_ranks);
+  on->of_all.resize(on->parts_of_ranks.size());
+  if (!bytes.empty()) std::memcpy(on->of_all.data(), bytes.data(), bytes.size());
+  auto &first = on->coarse[0];
+  std::fill(first.b.begin(), first.b.end(), 0.0);
+  for (std::size_t k = 0; k < on->of_all.size(); k++)
+    first.b[on->parts_of_ranks[k]] += on->of_all[k];
+  on->cycle(0);
+  for (std::size_t k = 0; k < parts.size(); k++) parts[k] = first.x[on->part_number[k]];
 }
 
 void CellMultigrid::precondition(const double *r, double *z)
@@ -465,14 +605,17 @@ int CellMultigrid::levels() const
 double CellMultigrid::memory_usage() const
 {
   double bytes = (on->piece.capacity() + on->number.capacity() + on->of_ranks.capacity() +
-                  on->pool.capacity()) *
+                  on->pool.capacity() + on->part.capacity() + on->part_number.capacity() +
+                  on->parts_of_ranks.capacity()) *
           sizeof(int) +
       (on->partial.capacity() + on->of_all.capacity() + on->node_values.capacity() +
        on->cells_of_pool.capacity()) *
           sizeof(double) +
       on->factors.memory_usage();
   for (const auto &level : on->coarse)
-    bytes += level.graph.memory_usage() + level.next.capacity() * sizeof(int) +
-        3 * level.x.capacity() * sizeof(double);
+    bytes += level.graph.memory_usage() + level.sums.memory_usage() +
+        level.next.capacity() * sizeof(int) +
+        (2 * level.x.capacity() + level.diagonal.capacity() + level.to_be.capacity()) *
+            sizeof(double);
   return bytes;
 }

@@ -34,6 +34,14 @@ class CellMultigrid {
   void setup(const CellOperator &);
   /** z: one cycle for A z = r.  Collective. */
   void precondition(const double *r, double *z);
+
+  /** For who has the finest level in vectors of its own: cells of this rank belong to so many of its parts() of cells of the next level. */
+  int parts() const;
+  /** Part of a cell that this rank owns, by its place in vectors. */
+  int part_of(int64_t place) const;
+  /** [part] sums of the residuals of the cells of this rank become what is added to their x.  Collective. */
+  void correct(std::vector<double> &parts);
+
   /** Closed pools get the mean of 0, and cells that are not in the system 0: solvable right sides, and pressures that are
    *  unique.  Returns the largest mean that there was, by absolute value.  Collective. */
   double project(double *x);

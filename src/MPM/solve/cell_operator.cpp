@@ -21,6 +21,18 @@ void CellGraph::color()
   }
 }
 
+bool CellGraph::is_proper() const
+{
+  const auto color_of = [this](int64_t cell) {
+    const int *const i = index.data() + 3 * cell;
+    return (i[0] + i[1] + i[2]) & 1;
+  };
+  for (int cell = 0; cell < size(); cell++)
+    for (int k = first[cell]; k < first[cell + 1]; k++)
+      if (color_of(neighbor[k]) == color_of(cell)) return false;
+  return true;
+}
+
 double CellGraph::memory_usage() const
 {
   double bytes = (where.capacity() + neighbor.capacity()) * sizeof(int64_t) +

@@ -31,6 +31,12 @@ class LatticeRanks {
   /** What ranks give, in order of ranks.  Valid until the next call.  Collective. */
   virtual const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) = 0;
 
+  /** The same where ranks give as much as sizes [rank] tells. */
+  virtual const std::vector<char> &gather_sizes(const void *mine, const std::vector<int> &sizes)
+  {
+    return gather_bytes(mine, sizes[me()]);
+  }
+
   /** The same for lists of any plain type. */
   template <class T> void gather(const std::vector<T> &mine, std::vector<T> &all)
   {

@@ -1,0 +1,56 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_POISSON_H
+#define LMP_MPM_FLOW_POISSON_H
+
+#include "mpm_flow_rows.h"
+#include "solve/cell_multigrid.h"
+#include "solve/linear_system.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMFlowBodies;
+
+/** The equations of the pressure by places of rows, with a cycle of multigrid as their preconditioner. On the finest level it
+ *  is CellMultigrid::precondition(), but where an odd period has two neighbors of the same half:
+ *  after a sweep of Gauss-Seidel from zero odd cells have no residual, and of even ones it is what odd ones give. */
+class MPMFlowPoisson : public MPM_NS::LinearSystem {
+ public:
+  MPMFlowPoisson(class LAMMPS *lmp, const MPMFlowLattice &cells, MPMFlowRows &rows) :
+      lmp(lmp), cells(cells), rows(rows)
+  {
+  }
+
+  std::vector<double> diagonal, weight;     ///< [place], [place][side]
+  MPM_NS::CellMultigrid multigrid;          ///< for these equations
+  const MPMFlowBodies *bodies = nullptr;    ///< that the pressure moves; null: none
+
+  void begin();    ///< all of these are there
+
+  int64_t size() const override { return rows.size(); }
+  void apply(const double *x, double *y) override;
+  void precondition(const double *r, double *z) override;
+  void products(int n, const double *const *a, const double *const *b, double *value) override;
+
+  double memory_usage() const;
+
+ private:
+  class LAMMPS *const lmp;
+  const MPMFlowLattice &cells;
+  MPMFlowRows &rows;
+  std::vector<int> part;    // [place] of multigrid
+  std::vector<double> inverse, sum, parts, mine, of_ranks;
+  std::vector<double> of_cells[2];    // on the lattice
+
+  const double *on_lattice(const double *of, std::vector<double> &to) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,87 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_ROWS_H
+#define LMP_MPM_FLOW_ROWS_H
+
+#include "mpm_flow_lattice.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** Cells with equations in a list without gaps, for solves: those of this rank, and what is next to them on other ranks. Vectors on
+ *  the lattice have all cells of its blocks, and those near others on several ranks; here each has its own, and gets what it
+ *  needs and nothing else.
+ *
+ *  A list has two halves: neighbors of a cell with an even sum of indices (EVEN) have an odd one. Where a period has an odd
+ *  number of cells, its last one is EVEN with some neighbors that are, too; ODD cells never have ODD neighbors. */
+class MPMFlowRows {
+ public:
+  enum Half { EVEN, ODD };
+
+  /** Values at places: EVEN cells of this rank, ODD ones, those of other ranks, and a zero. */
+  std::vector<double> values;
+
+  MPMFlowRows(class LAMMPS *lmp, const MPMFlowLattice &cells) : lmp(lmp), cells(cells) {}
+
+  void begin();    ///< no cells
+  /** A cell that this rank owns; near: [2 dim] numbers of neighbors with equations, -1: none. */
+  void add(int number, const int *near);
+  /** All cells are there: puts them in order.  Collective. */
+  void arrange();
+
+  int size() const { return (int) row.size(); }    ///< of this rank
+  int size_of(Half half) const { return half == EVEN ? neven : size() - neven; }
+  int first_of(Half half) const { return half == EVEN ? 0 : neven; }
+  /** Number of the cell at a place, and its place in the order of add(). */
+  int cell_at(int place) const { return number[row[place]]; }
+  int row_at(int place) const { return row[place]; }
+  int sides() const { return nsides; }
+  /** Place of a neighbor of a cell at a place. */
+  int near(int place, int side) const { return places[(std::size_t) place * nsides + side]; }
+
+  /** values of a half come from other ranks. The first one only begins this, the second one waits for all that has begun. */
+  void fetch(Half half);
+  void wait();
+  /** sum: [place in a half] sums of factor [place][side] times values of neighbors.  With values of the other half of other ranks,
+   *  which come meanwhile; those of the own one are there, if any are next to this one's.  Collective. */
+  void sum(Half half, const std::vector<double> &factor, double *sum);
+  /** The same for all cells, with all values of other ranks.  Collective. */
+  void sum_all(const std::vector<double> &factor, double *sum);
+
+  double memory_usage() const;
+
+ private:
+  struct Peer {
+    int rank;
+    std::vector<int> give[2];    // places
+    int first[2], many[2];       // of what it gives
+    std::vector<double> send[2];
+  };
+
+  class LAMMPS *const lmp;
+  const MPMFlowLattice &cells;
+  int nsides = 0, neven = 0;
+  int inner[2] = {0, 0};               // so many of a half have no neighbors on other ranks
+  std::vector<int> number, next_to;    // [row], [row][sides]
+  std::vector<int> row;                // [place]
+  std::vector<int> place_of;           // [cell], -1: none
+  std::vector<int> places;             // [place][sides]
+  std::vector<Peer> peers;
+  std::vector<MPI_Request> requests;
+  int nrequests = 0;
+  std::vector<char> flags_out, flags_in, wanted;
+
+  Half half_of(int64_t cell) const;
+  void find_peers();
+  void sum_some(int first, int last, const std::vector<double> &factor, double *sum) const;
+};
+
+}    // namespace LAMMPS_NS
+#endif
