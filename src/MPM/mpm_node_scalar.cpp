@@ -115,7 +115,7 @@ void MPMNodeScalar::add_terms(int terms, const GiveValues &capacities, std::vect
 {
   first_term = u;
   std::vector<double> &mapped = rate;    // has nothing yet that is needed
-  double values[BATCH], of_points[BATCH];
+  double values[BATCH], of_points[BATCH + SPARE_ROWS];
   double *const tile = tiles[0].data(), *const from = tiles[1].data();
   for (int term = 2; term <= terms; term++) {
     field.nodes.complete(u.data(), 1, 1);
@@ -147,7 +147,7 @@ void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void(
 {
   std::fill(rate.begin(), rate.end(), 0.0);
   field.nodes.complete(value.data(), 1, 1);
-  double q[BATCH][4];
+  double q[BATCH + SPARE_ROWS][4];
   double *const tile = tiles[0].data(), *const from = tiles[1].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
@@ -174,7 +174,7 @@ void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void(
 double MPMNodeScalar::greatest_rate(const Conduct &bound)
 {
   std::fill(rate.begin(), rate.end(), 0.0);
-  double q[BATCH][4];
+  double q[BATCH + SPARE_ROWS][4];
   double *const tile = tiles[0].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
@@ -208,7 +208,7 @@ void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
   if (changes) field.nodes.complete(before.data(), 1, 1);
   const double h = field.lattice.h;
   const double factor = moments ? shape_constants[field.options.shape].inv_moment / (h * h) : 1.0;
-  double q[BATCH][4], old[BATCH];
+  double q[BATCH + SPARE_ROWS][4], old[BATCH + SPARE_ROWS];
   double *const now = tiles[1].data(), *const then = tiles[2].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
@@ -233,7 +233,7 @@ void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
 void MPMNodeScalar::values_to_points(const TakeValues &take)
 {
   field.nodes.complete(value.data(), 1, 1);
-  double values[BATCH];
+  double values[BATCH + SPARE_ROWS];
   double *const tile = tiles[1].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
@@ -251,7 +251,7 @@ void MPMNodeScalar::values_to_points(const TakeValues &take)
 void MPMNodeScalar::gradients_to_points(const Conduct &take)
 {
   field.nodes.complete(value.data(), 1, 1);
-  double q[BATCH][4];
+  double q[BATCH + SPARE_ROWS][4];
   double *const tile = tiles[1].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;

@@ -57,6 +57,12 @@ struct Scene {
   }
 };
 
+/** Room for rows of this width of n points. */
+Reals rows(int width, int n)
+{
+  return Reals(width * (n + SPARE_ROWS), 0.0);
+}
+
 /** Calls f(kernels, plain, dim, shape) for all instruction sets that run here. */
 template <class F> void for_all(const F &f)
 {
@@ -94,19 +100,22 @@ TEST(Scalar, IsThatOfThePlainLoops)
       kernels.add_values(fast, scene.q.data(), one.data());
       plain.add_values(slow, scene.q.data(), two.data());
       EXPECT_LT(difference(one, two), 1e-13);
-      Reals a(4 * scene.n), b(4 * scene.n);
+      Reals a = rows(4, scene.n), b = a;
       kernels.get(fast, scene.tile.data(), a.data());
       plain.get(slow, scene.tile.data(), b.data());
+      a.resize(4 * scene.n), b.resize(4 * scene.n);
       EXPECT_LT(difference(a, b), 1e-13);
-      a.resize(scene.n), b.resize(scene.n);
+      a = rows(1, scene.n), b = a;
       kernels.get_values(fast, scene.tile.data(), a.data());
       plain.get_values(slow, scene.tile.data(), b.data());
+      a.resize(scene.n), b.resize(scene.n);
       EXPECT_LT(difference(a, b), 1e-13);
       if (kind != GRADIENT_SLOPES) continue;
       // the same without any slopes
       const ScalarStencil bare = scene.stencil(kernels, NO_SLOPES);
-      b.assign(scene.n, 0.0);
+      b = rows(1, scene.n);
       kernels.get_values(bare, scene.tile.data(), b.data());
+      b.resize(scene.n);
       EXPECT_EQ(a, b);
       Reals three = scene.tile, four = scene.tile;
       kernels.add_values(bare, scene.q.data(), three.data());
@@ -139,7 +148,7 @@ TEST(Scalar, KeepsSumsAndLinearFields)
     Scene scene(dim, shape, integer(0, 1));
     const ScalarStencil stencil = scene.stencil(kernels, GRADIENT_SLOPES),
                         moments = scene.stencil(kernels, DISTANCE_SLOPES);
-    Reals to(scene.tile.size(), 0.0), got(4 * scene.n);
+    Reals to(scene.tile.size(), 0.0), got = rows(4, scene.n);
     kernels.add(stencil, scene.q.data(), to.data());
     kernels.add(moments, scene.q.data(), to.data());
     double points = 0.0, nodes = 0.0;

@@ -23,14 +23,18 @@ enum SlopeKind {
   NO_SLOPES           ///< for values alone
 };
 
+/** Rows behind those of a batch that transfers may read and write. */
+constexpr int SPARE_ROWS = 8;
+
 /** The nodes that a batch of points reaches, made once for any number of transfers. */
 struct ScalarStencil {
   int n = 0;
   int place[BATCH];    ///< first node in the tile
-  // along the axes: weights, and what takes their place in slopes; of the last axis a row for each point
+  // along the axes: weights, and what takes their place in slopes; of the last axis a row for each point, too. All are
+  // numbers, also behind the last point
 
-  alignas(64) double w[2][4][BATCH];
-  alignas(64) double slope[2][4][BATCH];
+  alignas(64) double w[3][4][BATCH + SPARE_ROWS] = {};
+  alignas(64) double slope[3][4][BATCH + SPARE_ROWS] = {};
   alignas(64) double last_w[BATCH][4];
   alignas(64) double last_slope[BATCH][4];
 
@@ -56,7 +60,8 @@ struct ScalarKernels {
   void (*add)(const ScalarStencil &, const double *q, double *tile);
   /** tile += sum over points of N_ip q[p]. */
   void (*add_values)(const ScalarStencil &, const double *q, double *tile);
-  /** The other way: q[4p+3] = sum over nodes of N_ip tile_i, q[4p ... 4p+2] = that of slope_ip tile_i. */
+  /** The other way: q[4p+3] = sum over nodes of N_ip tile_i, q[4p ... 4p+2] = that of slope_ip tile_i. There must be memory for
+   *  SPARE_ROWS rows behind the last one, which get anything; so in get_values(). */
   void (*get)(const ScalarStencil &, const double *tile, double *q);
   void (*get_values)(const ScalarStencil &, const double *tile, double *q);
   /** As TileIO, with one real for each node. */
