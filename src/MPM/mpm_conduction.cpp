@@ -408,9 +408,12 @@ static void copy_rows(int n, const double *from, double *to)
    temperatures of the nodes
 ------------------------------------------------------------------------- */
 
-double MPMConduction::points_to_nodes(const MPMRows &gradients)
+double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
 {
   const int dim = field.lattice.dim;
+  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
+  at_start = relaxes && starts && !faces.any() ? TO_BE_SEEN : OF_NODES;
+  if (at_start == TO_BE_SEEN) seen.resize(atom->nmax);
   const bool simple = !total && steepest > 0.0;
   double most = 0.0;
   volumes.resize(atom->nmax);
@@ -460,7 +463,7 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
           points.volume[p] = total ? vfrac[p] * field.frame->lattice_jacobian(first + p) : V[p];
         return true;
       },
-      transfer.kind == MPMHeatTransfer::RELAX);
+      relaxes && at_start == OF_NODES);
   if (transfer.kind == MPMHeatTransfer::XPIC) find_unseen();
   if (simple)
     most *= steepest;
@@ -558,6 +561,7 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
 void MPMConduction::find_rates(const double *source, Heats &power)
 {
   scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+    for (int p = 0; at_start == TO_BE_SEEN && p < n; p++) seen[first + p] = q[p][3];
     conduct(*thermal(run.material), first, n, q);
     if (!source) return;
     const double *const V = volumes.data() + first;
@@ -565,6 +569,7 @@ void MPMConduction::find_rates(const double *source, Heats &power)
     for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
     power[SOURCES] += sum;
   });
+  if (at_start == TO_BE_SEEN) at_start = SEEN;
   for (std::size_t k = 0; k < given.size(); k++)
     if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (field.step_dt() * scalar.capacity[k]);
 }
@@ -584,6 +589,7 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
   scalar.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
           const double *before) {
+        if (at_start == SEEN) before = seen.data() + first;
         const Thermal *const t = thermal(run.material);
         Conduction c = t->all;
         double sum = 0.0, *const rows = t->fix->history[first];
@@ -611,7 +617,7 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
           copy_rows<2, 4, 2>(n, q[0], gradients[first]);
         got += sum;
       },
-      relaxes || xpic);
+      (relaxes && at_start == OF_NODES) || xpic);
   return got;
 }
 
@@ -673,5 +679,6 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
 double MPMConduction::memory_usage() const
 {
   return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
-      (volumes.capacity() + shares.capacity() + given.capacity()) * sizeof(double);
+      (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
+      sizeof(double);
 }
