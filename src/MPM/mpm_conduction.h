@@ -131,7 +131,9 @@ class MPMConduction : protected Pointers {
   void keep_present(const std::vector<signed char> &mine);
   double volume_of(int i) const;
   void tensor(const Thermal &, int i, double k[3][3]) const;
+  bool is_plain() const;
   void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q) const;
+  void conduct_plainly(const Thermal &, int first, int n, double *factors) const;
   double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;
   double steepness(int i) const;

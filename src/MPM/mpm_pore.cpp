@@ -261,15 +261,6 @@ MPMPoreResistance MPMPore::at_interface(int i) const
   return {{linear_mean[i], volumes[i] / conductance[i]}, {quadratic_mean[i], quadratic[i]}};
 }
 
-/** Pressures and gradients of n points as MPMNodeScalar has them. */
-template <int DIM> static void to_rows(const double *state, int n, MPMNodeScalar::Rows row)
-{
-  for (int p = 0; p < n; p++, state += 1 + DIM) {
-    for (int d = 0; d < DIM; d++) row[p][d] = state[1 + d];
-    row[p][3] = state[0];
-  }
-}
-
 /** Grains and water of points take more room, or less, since temperatures changed after the step before. */
 void MPMPore::expand(const Soil &s, int first, int n, const double *J, const double *V)
 {
@@ -336,11 +327,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           greatest = room;
         }
         raise_ratio(fastest, n, greatest, C);
-        std::copy_n(C, n, points.capacity);
-        if (dim == 3)
-          to_rows<3>(state[first], n, points.row);
-        else
-          to_rows<2>(state[first], n, points.row);
+        points.at = {state[first] + 1, 1 + dim, state[first], 1 + dim, C};
         return true;
       },
       false);

@@ -19,6 +19,7 @@ namespace MPM_NS {
 enum SlopeKind {
   GRADIENT_SLOPES,    ///< grad N, with respect to the place of the point
   DISTANCE_SLOPES,    ///< N (x_i - x_p), the first moment about the point
+  FIT_SLOPES,         ///< D^-1 of it: fits of moving least squares, of shapes with an inv_moment
   ABSOLUTE_SLOPES,    ///< |dN/dx| along each axis, for bounds; not with domains
   NO_SLOPES           ///< for values alone
 };
@@ -47,6 +48,16 @@ struct ScalarStencil {
   int base[3];
 };
 
+/** What points give to nodes, where they have it: rows of slopes, one real for each axis, and values, both times a
+ *  factor of the point. Widths: reals from one point to the next. */
+struct ScalarSource {
+  const double *slopes;
+  int slope_width;
+  const double *values;
+  int value_width;
+  const double *factors;
+};
+
 /** Transfers of one number between the points of a batch and the tile of their block, an entry of which is one real.
  *  Tiles are those of the other transfers but for that, see kernels.h. Each entry of a tile must be a number,
  *  whether or not a point reaches it.
@@ -58,6 +69,8 @@ struct ScalarKernels {
                   ScalarStencil &, int *box);
   /** tile += sum over points of N_ip q[4p+3] + slope_ip . q[4p ... 4p+2]. */
   void (*add)(const ScalarStencil &, const double *q, double *tile);
+  /** The same with rows of points in memory, and times their factors. */
+  void (*add_times)(const ScalarStencil &, const ScalarSource &, double *tile);
   /** tile += sum over points of N_ip q[p]. */
   void (*add_values)(const ScalarStencil &, const double *q, double *tile);
   /** The other way: q[4p+3] = sum over nodes of N_ip tile_i, q[4p ... 4p+2] = that of slope_ip tile_i. There must be memory for

@@ -98,9 +98,10 @@ MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], Colum
     if (!LESS || k != MIDDLE) weight[k].store(columns[k] + p);
 }
 
+/** unit: what a node spacing is in distances. */
 template <int DIM, Shape SHAPE, SlopeKind KIND, bool BOX>
 void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, const int base[3],
-                  ScalarStencil &out, int *box)
+                  double unit, ScalarStencil &out, int *box)
 {
   using Function = FunctionOf<SHAPE>;
   constexpr bool less = has_middle<SHAPE> && KIND != ABSOLUTE_SLOPES;
@@ -148,10 +149,10 @@ void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, co
         Function::weights(fraction, w);
       store_weights<N, is_last, less>(w, p, out.last_w, out.w[a]);
       if constexpr (KIND == DISTANCE_SLOPES) {
-        const V distance = CELL == 1 ? step.h * (fraction + Function::shift)
-                                     : (CELL * step.h) * fraction;
+        const V distance = CELL == 1 ? unit * (fraction + Function::shift)
+                                     : (CELL * unit) * fraction;
         MPM_UNROLL
-        for (int k = 0; k < N; k++) d[k] = w[k] * (V::all(k * step.h) - distance);
+        for (int k = 0; k < N; k++) d[k] = w[k] * (V::all(k * unit) - distance);
       } else if constexpr (KIND != NO_SLOPES) {
         if constexpr (Function::has_size)
           Function::gradients(fraction, size[a], d);
@@ -188,14 +189,15 @@ template <int DIM, Shape SHAPE, bool BOX>
 void prepare_box(const PointRows &rows, const TransferStep &step, int n, const int base[3],
                  SlopeKind kind, ScalarStencil &out, int *box)
 {
-  if (kind == DISTANCE_SLOPES)
-    prepare_kind<DIM, SHAPE, DISTANCE_SLOPES, BOX>(rows, step, n, base, out, box);
+  const double unit = kind == FIT_SLOPES ? shape_constants[SHAPE].inv_moment * step.inv_h : step.h;
+  if (kind == DISTANCE_SLOPES || kind == FIT_SLOPES)
+    prepare_kind<DIM, SHAPE, DISTANCE_SLOPES, BOX>(rows, step, n, base, unit, out, box);
   else if (kind == GRADIENT_SLOPES)
-    prepare_kind<DIM, SHAPE, GRADIENT_SLOPES, BOX>(rows, step, n, base, out, box);
+    prepare_kind<DIM, SHAPE, GRADIENT_SLOPES, BOX>(rows, step, n, base, unit, out, box);
   else if (kind == NO_SLOPES)
-    prepare_kind<DIM, SHAPE, NO_SLOPES, BOX>(rows, step, n, base, out, box);
+    prepare_kind<DIM, SHAPE, NO_SLOPES, BOX>(rows, step, n, base, unit, out, box);
   else
-    prepare_kind<DIM, SHAPE, ABSOLUTE_SLOPES, BOX>(rows, step, n, base, out, box);
+    prepare_kind<DIM, SHAPE, ABSOLUTE_SLOPES, BOX>(rows, step, n, base, unit, out, box);
 }
 
 template <int DIM, Shape SHAPE>
@@ -284,18 +286,25 @@ template <class F> MPM_INLINE void visit_same(const ScalarStencil &in, const F &
   }
 }
 
-template <int DIM, Shape SHAPE, bool LESS>
-void add_rows(const ScalarStencil &in, const double *q, double *tile)
+/** TIMES: all of a point counts times its factor. */
+template <int DIM, Shape SHAPE, bool LESS, bool TIMES>
+void add_rows(const ScalarStencil &in, const ScalarSource &source, double *tile)
 {
   using Rows = NodeRows<DIM, SHAPE, LESS>;
   constexpr int N = Rows::N, M = Rows::M;
+  const ScalarSource from = source;
   visit_same(in, [&](int first, int last) {
     Rows nodes;
     nodes.clear();
     for (int p = first; p < last; p++) {
-      const double *const mine = q + 4 * p;
-      const V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
-      const V straight = mine[3] * w + mine[Rows::LAST] * s, along_x = mine[0] * w,
+      const double *const mine = from.slopes + from.slope_width * Index(p);
+      const double value = from.values[from.value_width * Index(p)];
+      V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
+      if constexpr (TIMES) {
+        w = from.factors[p] * w;
+        s = from.factors[p] * s;
+      }
+      const V straight = value * w + mine[Rows::LAST] * s, along_x = mine[0] * w,
               along_y = mine[1] * w;
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
@@ -326,10 +335,20 @@ void add_rows(const ScalarStencil &in, const double *q, double *tile)
 
 template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *q, double *tile)
 {
+  const ScalarSource from = {q, 4, q + 3, 4, nullptr};
   if (has_middle<SHAPE> && in.kind != ABSOLUTE_SLOPES)
-    add_rows<DIM, SHAPE, has_middle<SHAPE>>(in, q, tile);
+    add_rows<DIM, SHAPE, has_middle<SHAPE>, false>(in, from, tile);
   else
-    add_rows<DIM, SHAPE, false>(in, q, tile);
+    add_rows<DIM, SHAPE, false, false>(in, from, tile);
+}
+
+template <int DIM, Shape SHAPE>
+void add_times(const ScalarStencil &in, const ScalarSource &from, double *tile)
+{
+  if (has_middle<SHAPE> && in.kind != ABSOLUTE_SLOPES)
+    add_rows<DIM, SHAPE, has_middle<SHAPE>, true>(in, from, tile);
+  else
+    add_rows<DIM, SHAPE, false, true>(in, from, tile);
 }
 
 template <int DIM, Shape SHAPE>
@@ -702,10 +721,15 @@ ScalarKernels MPM_NS::MPM_OF_ISA(mpm_kernels_scalar)(int dim, Shape shape)
     constexpr int DIM = decltype(d)::value;
     return with<Shape, LINEAR, QUADRATIC, CUBIC, GIMP, BERNSTEIN>(shape, [](auto s) {
       constexpr Shape SHAPE = decltype(s)::value;
-      return ScalarKernels{prepare<DIM, SHAPE>,          add<DIM, SHAPE>,
-                           add_values<DIM, SHAPE>,       get<DIM, SHAPE>,
-                           get_values<DIM, SHAPE>,       move_tile<DIM, SHAPE, true>,
-                           move_tile<DIM, SHAPE, false>, divide};
+      return ScalarKernels{prepare<DIM, SHAPE>,
+                           add<DIM, SHAPE>,
+                           add_times<DIM, SHAPE>,
+                           add_values<DIM, SHAPE>,
+                           get<DIM, SHAPE>,
+                           get_values<DIM, SHAPE>,
+                           move_tile<DIM, SHAPE, true>,
+                           move_tile<DIM, SHAPE, false>,
+                           divide};
     });
   });
 }
