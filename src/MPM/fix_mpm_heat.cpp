@@ -743,7 +743,7 @@ int FixMPMHeat::count_stages()
   for (std::size_t k = 0; k < fields.size(); k++) {
     auto &field = *fields[k];
     if (!field.conducts()) continue;
-    mine[NRATE * k] = field.points_to_nodes(gradients);
+    mine[NRATE * k] = field.points_to_nodes(gradients, !solver);
     if (field.faces.any())
       field.faces.begin_step(field.node_capacity(), field.node_volume(),
                              weighs_faces(field.field) ? &body_of(field.field) : nullptr,

@@ -397,21 +397,23 @@ template <class Loop> static void if_plain(bool plain, const Loop &loop)
     loop(std::false_type());
 }
 
-/** The first DIM reals of n rows of these widths. */
-template <int DIM, int WIDTH, int TO_WIDTH>
-static void copy_rows(int n, const double *from, double *to)
+/** The first DIM reals of n rows of four. */
+template <int DIM> static void copy_rows(int n, const double *from, double *to)
 {
   for (int p = 0; p < n; p++)
-    for (int d = 0; d < DIM; d++) to[TO_WIDTH * p + d] = from[WIDTH * p + d];
+    for (int d = 0; d < DIM; d++) to[DIM * p + d] = from[4 * p + d];
 }
 
 /* ----------------------------------------------------------------------
    temperatures of the nodes
 ------------------------------------------------------------------------- */
 
-double MPMConduction::points_to_nodes(const MPMRows &gradients)
+double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
 {
   const int dim = field.lattice.dim;
+  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
+  at_start = relaxes && starts && !faces.any() ? TO_BE_SEEN : OF_NODES;
+  if (at_start == TO_BE_SEEN) seen.resize(atom->nmax);
   const bool simple = !total && steepest > 0.0;
   double most = 0.0;
   volumes.resize(atom->nmax);
@@ -439,29 +441,33 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients)
         double greatest = c.most();
         const double *const history = t->fix->history[first];
         const int width = t->fix->nhistory;
-        if_plain(simple && !t->varies && !layers, [&](auto plain) {
+        points.at.values = history + t->temperature;
+        points.at.value_width = width;
+        if (gradients) {
+          points.at.slopes = gradients[first];
+          points.at.slope_width = dim;
+        }
+        if (simple && !t->varies && !layers) {
+          for (int p = 0; p < n; p++) points.capacity[p] = rmass[p] * c.capacity;
+          for (int p = 0; p < n; p++) room[p] = greatest * V[p];
+        } else {
           for (int p = 0; p < n; p++) {
-            if (!plain && t->varies) {
+            if (t->varies) {
               c = t->fix->material->conduction(history + width * p);
               greatest = c.most();
             }
-            if (!plain && layers) greatest = layers->most(first + p);
-            if (!plain && !simple) most = std::max(most, bound(*t, first + p, V[p]));
+            if (layers) greatest = layers->most(first + p);
+            if (!simple) most = std::max(most, bound(*t, first + p, V[p]));
             points.capacity[p] = rmass[p] * c.capacity;
-            points.row[p][3] = history[width * p + t->temperature];
             room[p] = greatest * V[p];
           }
-        });
+        }
         if (simple) raise_ratio(most, n, room, points.capacity);
-        if (gradients && dim == 3)
-          copy_rows<3, 3, 4>(n, gradients[first], points.row[0]);
-        else if (gradients)
-          copy_rows<2, 2, 4>(n, gradients[first], points.row[0]);
         for (int p = 0; wants_volumes && p < n; p++)
           points.volume[p] = total ? vfrac[p] * field.frame->lattice_jacobian(first + p) : V[p];
         return true;
       },
-      transfer.kind == MPMHeatTransfer::RELAX);
+      relaxes && at_start == OF_NODES);
   if (transfer.kind == MPMHeatTransfer::XPIC) find_unseen();
   if (simple)
     most *= steepest;
@@ -489,35 +495,55 @@ void MPMConduction::find_unseen()
 
 /* ---------------------------------------------------------------------- */
 
+/** Are fluxes along gradients, with a number for each material? */
+bool MPMConduction::is_plain() const
+{
+  return !total && !layers && shares.empty() &&
+      std::none_of(thermals.begin(), thermals.end(), [](const Thermal &t) {
+        return t.varies || t.all.orthotropic;
+      });
+}
+
 /** Gradients of n points become fluxes times volumes, and values 0. */
 void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q) const
 {
   const double *const V = volumes.data() + first;
   const double *const share = shares.empty() ? nullptr : shares.data() + first;
   Conduction room;
-  if_plain(!total && !t.all.orthotropic && !layers && !share && !t.varies, [&](auto plain) {
-    for (int p = 0; p < n; p++) {
-      const double conducting = !plain && share ? V[p] * share[p] : V[p];
-      if (!plain && (total || t.all.orthotropic)) {
-        double k[3][3], flux[3];
-        tensor(t, first + p, k);
-        MathExtra::matvec(k, q[p], flux);
-        for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
-      } else if (!plain && layers) {
-        layers->multiply(first + p, q[p]);
-        for (int d = 0; d < 3; d++) q[p][d] *= -conducting;
-      } else {
-        const auto &c = plain ? t.all : t.at(first + p, room);
-        const double factor = -conducting * c.conductivity;
-        for (int d = 0; d < 4; d++) q[p][d] *= factor;
-      }
-      q[p][3] = 0.0;
+  for (int p = 0; p < n; p++) {
+    const double conducting = share ? V[p] * share[p] : V[p];
+    if (total || t.all.orthotropic) {
+      double k[3][3], flux[3];
+      tensor(t, first + p, k);
+      MathExtra::matvec(k, q[p], flux);
+      for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
+    } else if (layers) {
+      layers->multiply(first + p, q[p]);
+      for (int d = 0; d < 3; d++) q[p][d] *= -conducting;
+    } else {
+      const double factor = -conducting * t.at(first + p, room).conductivity;
+      for (int d = 0; d < 3; d++) q[p][d] *= factor;
     }
-  });
+    q[p][3] = 0.0;
+  }
+}
+
+/** Factors of the gradients of n points. */
+void MPMConduction::conduct_plainly(const Thermal &t, int first, int n, double *factors) const
+{
+  const double *const V = volumes.data() + first;
+  for (int p = 0; p < n; p++) factors[p] = -t.all.conductivity * V[p];
 }
 
 void MPMConduction::find_changes()
 {
+  if (is_plain()) {
+    scalar.find_rates_along([&](const MPMPointMap::Run &run, int first, int n,
+                                const MPMNodeScalar::Rows, double *factors) {
+      conduct_plainly(*thermal(run.material), first, n, factors);
+    });
+    return;
+  }
   scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
     conduct(*thermal(run.material), first, n, q);
   });
@@ -558,14 +584,26 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
 
 void MPMConduction::find_rates(const double *source, Heats &power)
 {
-  scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-    conduct(*thermal(run.material), first, n, q);
-    if (!source) return;
-    const double *const V = volumes.data() + first;
-    double sum = 0.0;
-    for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
-    power[SOURCES] += sum;
-  });
+  const auto see = [&](int first, int n, const MPMNodeScalar::Rows q) {
+    for (int p = 0; at_start == TO_BE_SEEN && p < n; p++) seen[first + p] = q[p][3];
+  };
+  if (!source && is_plain())
+    scalar.find_rates_along([&](const MPMPointMap::Run &run, int first, int n,
+                                const MPMNodeScalar::Rows q, double *factors) {
+      see(first, n, q);
+      conduct_plainly(*thermal(run.material), first, n, factors);
+    });
+  else
+    scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+      see(first, n, q);
+      conduct(*thermal(run.material), first, n, q);
+      if (!source) return;
+      const double *const V = volumes.data() + first;
+      double sum = 0.0;
+      for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
+      power[SOURCES] += sum;
+    });
+  if (at_start == TO_BE_SEEN) at_start = SEEN;
   for (std::size_t k = 0; k < given.size(); k++)
     if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (field.step_dt() * scalar.capacity[k]);
 }
@@ -605,6 +643,7 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
   scalar.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
           const double *before) {
+        if (at_start == SEEN) before = seen.data() + first;
         const Thermal *const t = thermal(run.material);
         Conduction c = t->all;
         double sum = 0.0, *const rows = t->fix->history[first];
@@ -627,12 +666,12 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
           }
         });
         if (gradients && dim == 3)
-          copy_rows<3, 4, 3>(n, q[0], gradients[first]);
+          copy_rows<3>(n, q[0], gradients[first]);
         else if (gradients)
-          copy_rows<2, 4, 2>(n, q[0], gradients[first]);
+          copy_rows<2>(n, q[0], gradients[first]);
         got += sum;
       },
-      relaxes || xpic);
+      (relaxes && at_start == OF_NODES) || xpic);
   return got;
 }
 
@@ -694,5 +733,6 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
 double MPMConduction::memory_usage() const
 {
   return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
-      (volumes.capacity() + shares.capacity() + given.capacity()) * sizeof(double);
+      (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
+      sizeof(double);
 }

@@ -55,8 +55,9 @@ class MPMConduction : protected Pointers {
   void init(double sigma, bool surfaces);
 
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
-   *  the transfers pic and xpic. Returns the bound of the rates of conduction of this rank [1/time]. */
-  double points_to_nodes(const MPMRows &gradients);
+   *  the transfers pic and xpic. starts: the first call of find_rates() will be for these temperatures, but for those that faces hold.
+   *  Returns the bound of the rates of conduction of this rank [1/time]. */
+  double points_to_nodes(const MPMRows &gradients, bool starts);
   /** The bound of the rates of conduction on all ranks. */
   void keep_rate(double conduction) { conducted = conduction; }
   double bound_of_rates() const { return conducted; }
@@ -118,6 +119,9 @@ class MPMConduction : protected Pointers {
 
   std::vector<double> volumes;    // [n] of points in this step
   std::vector<double> at_rest;    // [n][3] velocities of points that give heat, zero
+  // [n] their temperatures by the nodes at its start, if the first rates are those of these temperatures; otherwise nodes keep them
+  std::vector<double> seen;
+  enum { OF_NODES, TO_BE_SEEN, SEEN } at_start = OF_NODES;
   std::unique_ptr<MPMLayerMean>
       layers;               // of materials that conduct differently; null: points have their own
   double greatest = 0.0;    // of all conductivities, with layers
@@ -132,7 +136,9 @@ class MPMConduction : protected Pointers {
   void keep_present(const std::vector<signed char> &mine);
   double volume_of(int i) const;
   void tensor(const Thermal &, int i, double k[3][3]) const;
+  bool is_plain() const;
   void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q) const;
+  void conduct_plainly(const Thermal &, int first, int n, double *factors) const;
   double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;
   double steepness(int i) const;

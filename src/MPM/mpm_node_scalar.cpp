@@ -82,17 +82,17 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
     reset_box(box);
     const auto kind = slopes ? DISTANCE_SLOPES : NO_SLOPES;
     visit(block, kind, box, [&](const auto &run, int first, int n, const auto &prepare) {
+      auto &at = points.at;
+      at = {points.row[0], 4, points.row[0] + 3, 4, points.capacity};
       if (!fill(run, first, n, points)) return false;
       prepare();
       if (slopes) {
-        for (int p = 0; p < n; p++)
-          for (int d = 0; d < 4; d++) points.row[p][d] *= points.capacity[p];
-        kernels.add(stencil, points.row[0], of_value);
+        kernels.add_times(stencil, at, of_value);
       } else {
-        for (int p = 0; p < n; p++) q[p] = points.capacity[p] * points.row[p][3];
+        for (int p = 0; p < n; p++) q[p] = at.factors[p] * at.values[at.value_width * p];
         kernels.add_values(stencil, q, of_value);
       }
-      kernels.add_values(stencil, points.capacity, of_capacity);
+      kernels.add_values(stencil, at.factors, of_capacity);
       if (volumes) kernels.add_values(stencil, points.volume, of_volume);
       return true;
     });
@@ -115,7 +115,7 @@ void MPMNodeScalar::add_terms(int terms, const GiveValues &capacities, std::vect
 {
   first_term = u;
   std::vector<double> &mapped = rate;    // has nothing yet that is needed
-  double values[BATCH], of_points[BATCH];
+  double values[BATCH], of_points[BATCH + SPARE_ROWS];
   double *const tile = tiles[0].data(), *const from = tiles[1].data();
   for (int term = 2; term <= terms; term++) {
     field.nodes.complete(u.data(), 1, 1);
@@ -143,11 +143,12 @@ void MPMNodeScalar::add_terms(int terms, const GiveValues &capacities, std::vect
 
 /* ---------------------------------------------------------------------- */
 
-void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void()> &more)
+template <class F>
+void MPMNodeScalar::find_rates_by(const F &give, const std::function<void()> &more)
 {
   std::fill(rate.begin(), rate.end(), 0.0);
   field.nodes.complete(value.data(), 1, 1);
-  double q[BATCH][4];
+  double q[BATCH + SPARE_ROWS][4];
   double *const tile = tiles[0].data(), *const from = tiles[1].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
@@ -157,8 +158,7 @@ void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void(
           [&](const auto &run, int first, int n, const auto &prepare) {
             prepare();
             kernels.get(stencil, from, q[0]);
-            conduct(run, first, n, q);
-            kernels.add(stencil, q[0], tile);
+            give(run, first, n, q);
             return true;
           });
     kernels.flush(tile, rate.data(), slot, box_of(block));
@@ -169,12 +169,34 @@ void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void(
   kernels.divide(rate.data(), capacity.data(), rate.size());
 }
 
+void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void()> &more)
+{
+  find_rates_by(
+      [&](const auto &run, int first, int n, Rows q) {
+        conduct(run, first, n, q);
+        kernels.add(stencil, q[0], tiles[0].data());
+      },
+      more);
+}
+
+void MPMNodeScalar::find_rates_along(const Factors &find)
+{
+  static constexpr double NONE = 0.0;
+  double factors[BATCH];
+  find_rates_by(
+      [&](const auto &run, int first, int n, Rows q) {
+        find(run, first, n, q, factors);
+        kernels.add_times(stencil, {q[0], 4, &NONE, 0, factors}, tiles[0].data());
+      },
+      nullptr);
+}
+
 /* ---------------------------------------------------------------------- */
 
 double MPMNodeScalar::greatest_rate(const Conduct &bound)
 {
   std::fill(rate.begin(), rate.end(), 0.0);
-  double q[BATCH][4];
+  double q[BATCH + SPARE_ROWS][4];
   double *const tile = tiles[0].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
@@ -206,21 +228,17 @@ void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
 {
   field.nodes.complete(value.data(), 1, 1);
   if (changes) field.nodes.complete(before.data(), 1, 1);
-  const double h = field.lattice.h;
-  const double factor = moments ? shape_constants[field.options.shape].inv_moment / (h * h) : 1.0;
-  double q[BATCH][4], old[BATCH];
+  double q[BATCH + SPARE_ROWS][4], old[BATCH + SPARE_ROWS];
   double *const now = tiles[1].data(), *const then = tiles[2].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
     const int *const slot = field.grid.blocks[block.slot].slot;
     kernels.load(now, value.data(), slot, box_of(block));
     if (changes) kernels.load(then, before.data(), slot, box_of(block));
-    visit(block, moments ? DISTANCE_SLOPES : GRADIENT_SLOPES, nullptr,
+    visit(block, moments ? FIT_SLOPES : GRADIENT_SLOPES, nullptr,
           [&](const auto &run, int first, int n, const auto &prepare) {
             prepare();
             kernels.get(stencil, now, q[0]);
-            for (int p = 0; p < n && moments; p++)
-              for (int d = 0; d < 3; d++) q[p][d] *= factor;
             if (changes) kernels.get_values(stencil, then, old);
             take(run, first, n, q, changes ? old : nullptr);
             return true;
@@ -233,7 +251,7 @@ void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
 void MPMNodeScalar::values_to_points(const TakeValues &take)
 {
   field.nodes.complete(value.data(), 1, 1);
-  double values[BATCH];
+  double values[BATCH + SPARE_ROWS];
   double *const tile = tiles[1].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;
@@ -251,7 +269,7 @@ void MPMNodeScalar::values_to_points(const TakeValues &take)
 void MPMNodeScalar::gradients_to_points(const Conduct &take)
 {
   field.nodes.complete(value.data(), 1, 1);
-  double q[BATCH][4];
+  double q[BATCH + SPARE_ROWS][4];
   double *const tile = tiles[1].data();
   for (const auto &block : field.map->active) {
     if (box_of(block)[0] > box_of(block)[3]) continue;

@@ -35,11 +35,13 @@ class MPMNodeScalar {
  public:
   static constexpr int MORE = 8;    ///< kernels may read a little more
 
-  /** What the points [first,first+n) of a run have. */
+  /** What the points [first,first+n) of a run have: in these rows, or where the user says. */
   struct Points {
     double row[MPM_NS::BATCH][4];    ///< [n][4] gradients g_p x y z, if there are any, and values
     double capacity[MPM_NS::BATCH];
     double volume[MPM_NS::BATCH];    ///< if volumes of nodes are wanted
+    MPM_NS::ScalarSource
+        at;    ///< of gradients, values, and capacities: row and capacity, unless set
   };
   /** What points get: [n][4] gradient x y z, or g_p in nodes_to_points(), and value. */
   using Rows = double (*)[4];
@@ -47,6 +49,9 @@ class MPMNodeScalar {
   using Fill = std::function<bool(const MPMPointMap::Run &, int first, int n, Points &)>;
   /** In: gradient and value at points; out: q_p and s_p. */
   using Conduct = std::function<void(const MPMPointMap::Run &, int first, int n, Rows)>;
+  /** In: gradient and value at points; out: factors k_p of the gradient, q_p = k_p grad u, without sources. */
+  using Factors =
+      std::function<void(const MPMPointMap::Run &, int first, int n, const Rows, double *factors)>;
   /** New slopes g_p and values; before: values at points by the nodes before, or null. */
   using Take =
       std::function<void(const MPMPointMap::Run &, int first, int n, Rows, const double *before)>;
@@ -74,6 +79,8 @@ class MPMNodeScalar {
   /** Rates of the values of nodes. more: adds to their rates times capacity what this rank knows of, before ranks
    *  are summed. */
   void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
+  /** The same for fluxes along gradients alone, with less work. */
+  void find_rates_along(const Factors &);
   /** A bound of the eigenvalues of minus the rates, by the rows of their matrix [1/time], of this rank; not with domains.
    *  bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. */
   double greatest_rate(const Conduct &bound);    // the rows stay in the place of rates
@@ -100,6 +107,8 @@ class MPMNodeScalar {
    *  calls of a step. */
   std::vector<std::array<int, 6>> boxes;
 
+  /** Rates by give(run, first, n, q), which adds what the points with these gradients and values give to a tile. */
+  template <class F> void find_rates_by(const F &give, const std::function<void()> &more);
   template <class F>
   void visit(const MPMPointMap::ActiveBlock &, MPM_NS::SlopeKind, int *box, const F &);
   void sum(std::vector<double> &nodes) const;

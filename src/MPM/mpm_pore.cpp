@@ -261,12 +261,16 @@ MPMPoreResistance MPMPore::at_interface(int i) const
   return {{linear_mean[i], volumes[i] / conductance[i]}, {quadratic_mean[i], quadratic[i]}};
 }
 
-/** Pressures and gradients of n points as MPMNodeScalar has them. */
-template <int DIM> static void to_rows(const double *state, int n, MPMNodeScalar::Rows row)
+/** Gradients and pressures of points whose soil can dry, see MPMPoreSuction::limit_slope(). */
+void MPMPore::limit_slopes(const Soil &s, int first, int n, const MPMRows &state,
+                           MPMNodeScalar::Rows row) const
 {
-  for (int p = 0; p < n; p++, state += 1 + DIM) {
-    for (int d = 0; d < DIM; d++) row[p][d] = state[1 + d];
-    row[p][3] = state[0];
+  const int dim = field.lattice.dim;
+  const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
+  for (int p = 0; p < n; p++) {
+    std::copy_n(state[first + p] + 1, dim, row[p]);
+    row[p][3] = state[first + p][0];
+    MPMPoreSuction::limit_slope(s.of, row[p][3], along, field.lattice, row[p]);
   }
 }
 
@@ -336,16 +340,10 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           greatest = room;
         }
         raise_ratio(fastest, n, greatest, C);
-        std::copy_n(C, n, points.capacity);
-        if (dim == 3)
-          to_rows<3>(state[first], n, points.row);
-        else
-          to_rows<2>(state[first], n, points.row);
+        points.at = {state[first] + 1, 1 + dim, state[first], 1 + dim, C};
         if (suction && s->of.retention.can_dry()) {
-          const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
-          for (int p = 0; p < n; p++)
-            MPMPoreSuction::limit_slope(s->of, points.row[p][3], along, field.lattice,
-                                        points.row[p]);
+          limit_slopes(*s, first, n, state, points.row);
+          points.at = {points.row[0], 4, points.row[0] + 3, 4, C};
         }
         return true;
       },

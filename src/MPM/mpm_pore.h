@@ -163,6 +163,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   void init_layers();
   void find_layers(const MPMRows &state, const double *formula);
   void expand(const Soil &, int first, int n, const double *J, const double *V);
+  void limit_slopes(const Soil &, int first, int n, const MPMRows &state,
+                    MPMNodeScalar::Rows) const;
   void points_to_nodes(const MPMRows &state, const double *formula);
   const Soil *soil(const FixMPMMaterial *) const;
   double rate_of_waves() const;

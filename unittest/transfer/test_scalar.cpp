@@ -26,7 +26,8 @@ struct Scene {
   int dim, n, stride_x, stride_y;
   TransferStep step = random_step();
   int base[3] = {2 * integer(-20, 20), 2 * integer(-20, 20), 2 * integer(-20, 20)};
-  Reals x, size, tile, q;
+  Reals x, size, tile, q, slopes, values, factors;
+  int width = integer(1, 3);    // of values
   PointRows rows = {};
 
   Scene(int dim, Shape shape, bool crowded) : dim(dim), n(integer(1, BATCH)), q(4 * n)
@@ -37,6 +38,10 @@ struct Scene {
     tile.resize(tile_nodes(dim, order) + 8);
     fill(tile);
     fill(q);
+    slopes.resize(dim * n);
+    values.resize(width * n);
+    factors.resize(n);
+    for (Reals *const list : {&slopes, &values, &factors}) fill(*list);
     const double shift = shape_constants[shape].shift;
     const double range = crowded ? 1.0 : block_side(dim) + (shape == BERNSTEIN ? 0.0 : 2.0);
     x.resize(3 * n);
@@ -49,6 +54,10 @@ struct Scene {
     rows.size = size.data();
     rows.guarded = 0;
   }
+  ScalarSource source(int dim) const
+  {
+    return {slopes.data(), dim, values.data(), width, factors.data()};
+  }
   ScalarStencil stencil(const ScalarKernels &kernels, SlopeKind kind, int *box = nullptr)
   {
     ScalarStencil made;
@@ -56,6 +65,12 @@ struct Scene {
     return made;
   }
 };
+
+/** Room for rows of this width of n points. */
+Reals rows(int width, int n)
+{
+  return Reals(width * (n + SPARE_ROWS), 0.0);
+}
 
 /** Calls f(kernels, plain, dim, shape) for all instruction sets that run here. */
 template <class F> void for_all(const F &f)
@@ -81,7 +96,7 @@ TEST(Scalar, IsThatOfThePlainLoops)
 {
   for_all([](const ScalarKernels &kernels, const ScalarKernels &plain, int dim, Shape shape) {
     Scene scene(dim, shape, integer(0, 1));
-    for (const SlopeKind kind : {GRADIENT_SLOPES, DISTANCE_SLOPES, ABSOLUTE_SLOPES}) {
+    for (const SlopeKind kind : {GRADIENT_SLOPES, DISTANCE_SLOPES, FIT_SLOPES, ABSOLUTE_SLOPES}) {
       int box[2][6] = {{127, 127, 127, -127, -127, -127}, {127, 127, 127, -127, -127, -127}};
       const ScalarStencil fast = scene.stencil(kernels, kind, box[0]),
                           slow = scene.stencil(plain, kind, box[1]);
@@ -94,19 +109,26 @@ TEST(Scalar, IsThatOfThePlainLoops)
       kernels.add_values(fast, scene.q.data(), one.data());
       plain.add_values(slow, scene.q.data(), two.data());
       EXPECT_LT(difference(one, two), 1e-13);
-      Reals a(4 * scene.n), b(4 * scene.n);
+      const ScalarSource from = scene.source(dim);
+      kernels.add_times(fast, from, one.data());
+      plain.add_times(slow, from, two.data());
+      EXPECT_LT(difference(one, two), 1e-13);
+      Reals a = rows(4, scene.n), b = a;
       kernels.get(fast, scene.tile.data(), a.data());
       plain.get(slow, scene.tile.data(), b.data());
+      a.resize(4 * scene.n), b.resize(4 * scene.n);
       EXPECT_LT(difference(a, b), 1e-13);
-      a.resize(scene.n), b.resize(scene.n);
+      a = rows(1, scene.n), b = a;
       kernels.get_values(fast, scene.tile.data(), a.data());
       plain.get_values(slow, scene.tile.data(), b.data());
+      a.resize(scene.n), b.resize(scene.n);
       EXPECT_LT(difference(a, b), 1e-13);
       if (kind != GRADIENT_SLOPES) continue;
       // the same without any slopes
       const ScalarStencil bare = scene.stencil(kernels, NO_SLOPES);
-      b.assign(scene.n, 0.0);
+      b = rows(1, scene.n);
       kernels.get_values(bare, scene.tile.data(), b.data());
+      b.resize(scene.n);
       EXPECT_EQ(a, b);
       Reals three = scene.tile, four = scene.tile;
       kernels.add_values(bare, scene.q.data(), three.data());
@@ -132,6 +154,43 @@ TEST(Scalar, IsDividedByWeights)
   });
 }
 
+// times a factor is as with rows that are: the same sums in another order
+TEST(Scalar, IsThatOfRowsTimesFactors)
+{
+  for_all([](const ScalarKernels &kernels, const ScalarKernels &, int dim, Shape shape) {
+    Scene scene(dim, shape, integer(0, 1));
+    const ScalarStencil stencil = scene.stencil(kernels, DISTANCE_SLOPES);
+    const ScalarSource from = scene.source(dim);
+    Reals times = scene.tile, rows = scene.tile, q(4 * scene.n, 0.0);
+    for (int p = 0; p < scene.n; p++) {
+      for (int d = 0; d < dim; d++) q[4 * p + d] = scene.factors[p] * scene.slopes[dim * p + d];
+      q[4 * p + 3] = scene.factors[p] * scene.values[scene.width * p];
+    }
+    kernels.add_times(stencil, from, times.data());
+    kernels.add(stencil, q.data(), rows.data());
+    EXPECT_LT(difference(times, rows), 1e-13);
+  });
+}
+
+// slopes of a fit: a linear field has its gradient
+TEST(Scalar, FitsLinearFields)
+{
+  for_all([](const ScalarKernels &kernels, const ScalarKernels &, int dim, Shape shape) {
+    if (shape != QUADRATIC && shape != CUBIC) return;
+    Scene scene(dim, shape, integer(0, 1));
+    const ScalarStencil stencil = scene.stencil(kernels, FIT_SLOPES);
+    const double slope = uniform(-1.0, 1.0), h = scene.step.h;
+    for (std::size_t k = 0; k < scene.tile.size(); k++)
+      scene.tile[k] = slope * (int) (k / scene.stride_x) * h;
+    Reals got = rows(4, scene.n);
+    kernels.get(stencil, scene.tile.data(), got.data());
+    for (int p = 0; p < scene.n; p++) {
+      EXPECT_NEAR(got[4 * p], slope, 1e-11);
+      for (int d = 1; d < dim; d++) EXPECT_NEAR(got[4 * p + d], 0.0, 1e-11);
+    }
+  });
+}
+
 // values are kept, slopes have no sum, a linear field has its gradient, and both ways are adjoint
 TEST(Scalar, KeepsSumsAndLinearFields)
 {
@@ -139,7 +198,7 @@ TEST(Scalar, KeepsSumsAndLinearFields)
     Scene scene(dim, shape, integer(0, 1));
     const ScalarStencil stencil = scene.stencil(kernels, GRADIENT_SLOPES),
                         moments = scene.stencil(kernels, DISTANCE_SLOPES);
-    Reals to(scene.tile.size(), 0.0), got(4 * scene.n);
+    Reals to(scene.tile.size(), 0.0), got = rows(4, scene.n);
     kernels.add(stencil, scene.q.data(), to.data());
     kernels.add(moments, scene.q.data(), to.data());
     double points = 0.0, nodes = 0.0;

@@ -19,18 +19,23 @@ namespace MPM_NS {
 enum SlopeKind {
   GRADIENT_SLOPES,    ///< grad N, with respect to the place of the point
   DISTANCE_SLOPES,    ///< N (x_i - x_p), the first moment about the point
+  FIT_SLOPES,         ///< D^-1 of it: fits of moving least squares, of shapes with an inv_moment
   ABSOLUTE_SLOPES,    ///< |dN/dx| along each axis, for bounds; not with domains
   NO_SLOPES           ///< for values alone
 };
+
+/** Rows behind those of a batch that transfers may read and write. */
+constexpr int SPARE_ROWS = 8;
 
 /** The nodes that a batch of points reaches, made once for any number of transfers. */
 struct ScalarStencil {
   int n = 0;
   int place[BATCH];    ///< first node in the tile
-  // along the axes: weights, and what takes their place in slopes; of the last axis a row for each point
+  // along the axes: weights, and what takes their place in slopes; of the last axis a row for each point, too. All are
+  // numbers, also behind the last point
 
-  alignas(64) double w[2][4][BATCH];
-  alignas(64) double slope[2][4][BATCH];
+  alignas(64) double w[3][4][BATCH + SPARE_ROWS] = {};
+  alignas(64) double slope[3][4][BATCH + SPARE_ROWS] = {};
   alignas(64) double last_w[BATCH][4];
   alignas(64) double last_slope[BATCH][4];
 
@@ -41,6 +46,16 @@ struct ScalarStencil {
   PointRows points;
   TransferStep step;
   int base[3];
+};
+
+/** What points give to nodes, where they have it: rows of slopes, one real for each axis, and values, both times a
+ *  factor of the point. Widths: reals from one point to the next. */
+struct ScalarSource {
+  const double *slopes;
+  int slope_width;
+  const double *values;
+  int value_width;
+  const double *factors;
 };
 
 /** Transfers of one number between the points of a batch and the tile of their block, an entry of which is one real.
@@ -54,9 +69,12 @@ struct ScalarKernels {
                   ScalarStencil &, int *box);
   /** tile += sum over points of N_ip q[4p+3] + slope_ip . q[4p ... 4p+2]. */
   void (*add)(const ScalarStencil &, const double *q, double *tile);
+  /** The same with rows of points in memory, and times their factors. */
+  void (*add_times)(const ScalarStencil &, const ScalarSource &, double *tile);
   /** tile += sum over points of N_ip q[p]. */
   void (*add_values)(const ScalarStencil &, const double *q, double *tile);
-  /** The other way: q[4p+3] = sum over nodes of N_ip tile_i, q[4p ... 4p+2] = that of slope_ip tile_i. */
+  /** The other way: q[4p+3] = sum over nodes of N_ip tile_i, q[4p ... 4p+2] = that of slope_ip tile_i. There must be memory for
+   *  SPARE_ROWS rows behind the last one, which get anything; so in get_values(). */
   void (*get)(const ScalarStencil &, const double *tile, double *q);
   void (*get_values)(const ScalarStencil &, const double *tile, double *q);
   /** As TileIO, with one real for each node. */

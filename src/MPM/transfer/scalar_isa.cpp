@@ -8,8 +8,8 @@
 
 // Transfers of one number, see ScalarKernels; compiled once for each instruction set.
 //
-// A vector holds up to four nodes along the last axis. Points in a row that share their first node have all rows of
-// nodes in registers, from the first of them to the last.
+// To nodes, a vector holds up to four nodes along the last axis. To points, it holds points in a row that share their first node,
+// and each node is a number for all of them: as many instructions for four or eight points as for one.
 
 #include "transfer/kernels_isa.h"
 #include "transfer/scalar.h"
@@ -78,9 +78,12 @@ constexpr int MIDDLE = 1;
 template <Shape SHAPE>
 constexpr bool has_middle = SHAPE == QUADRATIC || SHAPE == CUBIC || SHAPE == GIMP;
 
-/** Stores the weights of four points along an axis; LESS: none of node MIDDLE but along the last one. */
+/** Weights of all points at a node along an axis. */
+using Columns = double (*)[BATCH + SPARE_ROWS];
+
+/** Stores the weights of four points along an axis; LESS: none of node MIDDLE but in the rows of the last one. */
 template <int N, bool LAST, bool LESS>
-MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], double (*columns)[BATCH])
+MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], Columns columns)
 {
   if constexpr (LAST) {
     V w[4] = {};
@@ -89,16 +92,16 @@ MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], doubl
     transpose(w);
     MPM_UNROLL
     for (int k = 0; k < 4; k++) w[k].store(rows[p + k]);
-  } else {
-    MPM_UNROLL
-    for (int k = 0; k < N; k++)
-      if (!LESS || k != MIDDLE) weight[k].store(columns[k] + p);
   }
+  MPM_UNROLL
+  for (int k = 0; k < N; k++)
+    if (!LESS || k != MIDDLE) weight[k].store(columns[k] + p);
 }
 
+/** unit: what a node spacing is in distances. */
 template <int DIM, Shape SHAPE, SlopeKind KIND, bool BOX>
 void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, const int base[3],
-                  ScalarStencil &out, int *box)
+                  double unit, ScalarStencil &out, int *box)
 {
   using Function = FunctionOf<SHAPE>;
   constexpr bool less = has_middle<SHAPE> && KIND != ABSOLUTE_SLOPES;
@@ -144,12 +147,12 @@ void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, co
         Function::weights(fraction, size[a], w);
       else
         Function::weights(fraction, w);
-      store_weights<N, is_last, less>(w, p, out.last_w, out.w[is_last ? 0 : a]);
+      store_weights<N, is_last, less>(w, p, out.last_w, out.w[a]);
       if constexpr (KIND == DISTANCE_SLOPES) {
-        const V distance = CELL == 1 ? step.h * (fraction + Function::shift)
-                                     : (CELL * step.h) * fraction;
+        const V distance = CELL == 1 ? unit * (fraction + Function::shift)
+                                     : (CELL * unit) * fraction;
         MPM_UNROLL
-        for (int k = 0; k < N; k++) d[k] = w[k] * (V::all(k * step.h) - distance);
+        for (int k = 0; k < N; k++) d[k] = w[k] * (V::all(k * unit) - distance);
       } else if constexpr (KIND != NO_SLOPES) {
         if constexpr (Function::has_size)
           Function::gradients(fraction, size[a], d);
@@ -162,7 +165,7 @@ void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, co
         }
       }
       if constexpr (KIND != NO_SLOPES)
-        store_weights<N, is_last, less>(d, p, out.last_slope, out.slope[is_last ? 0 : a]);
+        store_weights<N, is_last, less>(d, p, out.last_slope, out.slope[a]);
     };
     along(std::integral_constant<int, 0>());
     along(std::integral_constant<int, 1>());
@@ -186,14 +189,15 @@ template <int DIM, Shape SHAPE, bool BOX>
 void prepare_box(const PointRows &rows, const TransferStep &step, int n, const int base[3],
                  SlopeKind kind, ScalarStencil &out, int *box)
 {
-  if (kind == DISTANCE_SLOPES)
-    prepare_kind<DIM, SHAPE, DISTANCE_SLOPES, BOX>(rows, step, n, base, out, box);
+  const double unit = kind == FIT_SLOPES ? shape_constants[SHAPE].inv_moment * step.inv_h : step.h;
+  if (kind == DISTANCE_SLOPES || kind == FIT_SLOPES)
+    prepare_kind<DIM, SHAPE, DISTANCE_SLOPES, BOX>(rows, step, n, base, unit, out, box);
   else if (kind == GRADIENT_SLOPES)
-    prepare_kind<DIM, SHAPE, GRADIENT_SLOPES, BOX>(rows, step, n, base, out, box);
+    prepare_kind<DIM, SHAPE, GRADIENT_SLOPES, BOX>(rows, step, n, base, unit, out, box);
   else if (kind == NO_SLOPES)
-    prepare_kind<DIM, SHAPE, NO_SLOPES, BOX>(rows, step, n, base, out, box);
+    prepare_kind<DIM, SHAPE, NO_SLOPES, BOX>(rows, step, n, base, unit, out, box);
   else
-    prepare_kind<DIM, SHAPE, ABSOLUTE_SLOPES, BOX>(rows, step, n, base, out, box);
+    prepare_kind<DIM, SHAPE, ABSOLUTE_SLOPES, BOX>(rows, step, n, base, unit, out, box);
 }
 
 template <int DIM, Shape SHAPE>
@@ -282,18 +286,25 @@ template <class F> MPM_INLINE void visit_same(const ScalarStencil &in, const F &
   }
 }
 
-template <int DIM, Shape SHAPE, bool LESS>
-void add_rows(const ScalarStencil &in, const double *q, double *tile)
+/** TIMES: all of a point counts times its factor. */
+template <int DIM, Shape SHAPE, bool LESS, bool TIMES>
+void add_rows(const ScalarStencil &in, const ScalarSource &source, double *tile)
 {
   using Rows = NodeRows<DIM, SHAPE, LESS>;
   constexpr int N = Rows::N, M = Rows::M;
+  const ScalarSource from = source;
   visit_same(in, [&](int first, int last) {
     Rows nodes;
     nodes.clear();
     for (int p = first; p < last; p++) {
-      const double *const mine = q + 4 * p;
-      const V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
-      const V straight = mine[3] * w + mine[Rows::LAST] * s, along_x = mine[0] * w,
+      const double *const mine = from.slopes + from.slope_width * Index(p);
+      const double value = from.values[from.value_width * Index(p)];
+      V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
+      if constexpr (TIMES) {
+        w = from.factors[p] * w;
+        s = from.factors[p] * s;
+      }
+      const V straight = value * w + mine[Rows::LAST] * s, along_x = mine[0] * w,
               along_y = mine[1] * w;
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
@@ -324,10 +335,20 @@ void add_rows(const ScalarStencil &in, const double *q, double *tile)
 
 template <int DIM, Shape SHAPE> void add(const ScalarStencil &in, const double *q, double *tile)
 {
+  const ScalarSource from = {q, 4, q + 3, 4, nullptr};
   if (has_middle<SHAPE> && in.kind != ABSOLUTE_SLOPES)
-    add_rows<DIM, SHAPE, has_middle<SHAPE>>(in, q, tile);
+    add_rows<DIM, SHAPE, has_middle<SHAPE>, false>(in, from, tile);
   else
-    add_rows<DIM, SHAPE, false>(in, q, tile);
+    add_rows<DIM, SHAPE, false, false>(in, from, tile);
+}
+
+template <int DIM, Shape SHAPE>
+void add_times(const ScalarStencil &in, const ScalarSource &from, double *tile)
+{
+  if (has_middle<SHAPE> && in.kind != ABSOLUTE_SLOPES)
+    add_rows<DIM, SHAPE, has_middle<SHAPE>, true>(in, from, tile);
+  else
+    add_rows<DIM, SHAPE, false, true>(in, from, tile);
 }
 
 template <int DIM, Shape SHAPE>
@@ -356,6 +377,143 @@ void add_values(const ScalarStencil &in, const double *q, double *tile)
   });
 }
 
+/** Points in a vector, for a given number that is left: those that there are not have weights of other points, and anything comes
+ *  out of them. */
+template <int LANES, class F> MPM_INLINE void visit_lanes(int first, int last, const F &f)
+{
+  if constexpr (LANES > 4) {
+    for (; last - first > 4; first += LANES) f(std::integral_constant<int, LANES>(), first);
+  }
+  for (; first < last; first += 4) f(std::integral_constant<int, 4>(), first);
+}
+constexpr int LANES = REGISTER > 4 ? REGISTER : 4;
+
+/** The nodes of points that share the first one, one by one; LESS: along all axes as their difference from MIDDLE. */
+template <int DIM, Shape SHAPE, bool LESS> struct NodeNumbers {
+  using Rows = NodeRows<DIM, SHAPE, LESS>;
+  static constexpr int N = Rows::N, M = Rows::M;
+  alignas(32) double number[N][M][4];
+
+  MPM_INLINE void load(const double *tile)
+  {
+    Rows rows;
+    rows.load(tile);
+    MPM_UNROLL
+    for (int i = 0; i < N; i++) {
+      MPM_UNROLL
+      for (int j = 0; j < M; j++) {
+        const V row = rows.row[i][j];
+        if constexpr (LESS)
+          shuffle<0, 5, 2, 3>(row - broadcast<MIDDLE>(row), row).store(number[i][j]);
+        else
+          row.store(number[i][j]);
+      }
+    }
+  }
+};
+
+/** Sums over the nodes of a line, of the weights (value) and slopes of points from p on. */
+template <bool SLOPES, int N, bool LESS, int L>
+MPM_INLINE void sum_line(const double *number, const ScalarStencil &in, int axis, int p,
+                         Vec<L> &value, Vec<L> &slope)
+{
+  value = LESS ? Vec<L>::all(number[MIDDLE]) : Vec<L>{};
+  slope = Vec<L>{};
+  MPM_UNROLL
+  for (int k = 0; k < N; k++) {
+    if (LESS && k == MIDDLE) continue;
+    value += number[k] * Vec<L>::load(in.w[axis][k] + p);
+    if constexpr (SLOPES) slope += number[k] * Vec<L>::load(in.slope[axis][k] + p);
+  }
+}
+
+/** Values at the points from p on, and SLOPES. */
+template <int DIM, Shape SHAPE, bool LESS, bool SLOPES, int L>
+MPM_INLINE void get_points(const NodeNumbers<DIM, SHAPE, LESS> &nodes, const ScalarStencil &in,
+                           int p, Vec<L> &value, Vec<L> *slope)
+{
+  using Numbers = NodeNumbers<DIM, SHAPE, LESS>;
+  using Rows = typename Numbers::Rows;
+  using W = Vec<L>;
+  constexpr int N = Numbers::N, M = Numbers::M, LAST = DIM - 1;
+  // barrier: numbers are operands in memory, otherwise GCC has each of them in all lanes of a register, and spills
+  asm volatile("" : : "r"(nodes.number) : "memory");
+  value = slope[0] = slope[1] = slope[2] = W{};
+  MPM_UNROLL
+  for (int i = 0; i < N; i++) {
+    W plane = {}, aside = {}, up = {};
+    if constexpr (DIM == 2) {
+      sum_line<SLOPES, N, LESS>(nodes.number[i][0], in, LAST, p, plane, up);
+    } else {
+      MPM_UNROLL
+      for (int j = 0; j < M; j++) {
+        W line, along;
+        sum_line<SLOPES, N, LESS>(nodes.number[i][j], in, LAST, p, line, along);
+        if (Rows::middle(j)) {
+          plane += line;
+          up += along;
+        } else {
+          const W w = W::load(in.w[1][j] + p);
+          plane += w * line;
+          if constexpr (SLOPES) {
+            up += w * along;
+            aside += W::load(in.slope[1][j] + p) * line;
+          }
+        }
+      }
+    }
+    if (Rows::middle(i)) {
+      value += plane;
+      slope[1] += aside;
+      slope[2] += up;
+    } else {
+      const W w = W::load(in.w[0][i] + p);
+      value += w * plane;
+      if constexpr (SLOPES) {
+        slope[0] += W::load(in.slope[0][i] + p) * plane;
+        slope[1] += w * aside;
+        slope[2] += w * up;
+      }
+    }
+  }
+  if constexpr (DIM == 2) {
+    slope[1] = slope[2];
+    slope[2] = W{};
+  }
+}
+
+/** Points that share their nodes, where these are less than this number, are done one by one: what it takes to have nodes as numbers is
+ *  for all of them. */
+constexpr int FEW = 3;
+
+/** Calls many(nodes, p, lanes) for points that share their nodes, several at a time, and few(first, last) for those that are too
+ *  few for that, in the order of points: the lanes behind the last point of many() are of those that come next. The nodes of some
+ *  groups of points come first, as those of a group would have to be waited for. */
+template <int DIM, Shape SHAPE, bool LESS, class Many, class Few>
+MPM_INLINE void visit_groups(const ScalarStencil &in, const double *tile, const Many &many,
+                             const Few &few)
+{
+  constexpr int GROUPS = 8;
+  NodeNumbers<DIM, SHAPE, LESS> nodes[GROUPS];
+  int first[GROUPS + 1];
+  for (int p = 0; p < in.n;) {
+    int n = 0;
+    for (; n < GROUPS && p < in.n; n++) {
+      const int start = first[n] = p;
+      for (p++; p < in.n && in.place[p] == in.place[start];) p++;
+      if (p - start >= FEW) nodes[n].load(tile + in.place[start]);
+    }
+    first[n] = p;
+    for (int g = 0; g < n; g++)
+      if (first[g + 1] - first[g] < FEW)
+        few(first[g], first[g + 1]);
+      else
+        visit_lanes<LANES>(first[g], first[g + 1], [&](auto lanes, int of) {
+          many(nodes[g], of, lanes);
+        });
+  }
+}
+
 /** Sums of the lanes of four vectors. */
 MPM_INLINE V sums(V a, V b, V c, V d)
 {
@@ -365,45 +523,74 @@ MPM_INLINE V sums(V a, V b, V c, V d)
 }
 
 template <int DIM, Shape SHAPE, bool LESS>
-void get_rows(const ScalarStencil &in, const double *tile, double *q)
+MPM_INLINE void get_rows_of_few(const ScalarStencil &in, const double *tile, int first, int last,
+                                double *q)
 {
   using Rows = NodeRows<DIM, SHAPE, LESS>;
   constexpr int N = Rows::N, M = Rows::M;
-  visit_same(in, [&](int first, int last) {
-    Rows nodes;
-    nodes.load(tile + in.place[first]);
-    for (int p = first; p < last; p++) {
-      V value = {}, along_x = {}, along_y = {};
-      MPM_UNROLL
-      for (int i = 0; i < N; i++) {
-        V plane = {}, aside = {};
-        if constexpr (DIM == 2) {
-          plane = nodes.row[i][0];
-        } else {
-          if (LESS) plane = nodes.row[i][Rows::Y];
-          MPM_UNROLL
-          for (int j = 0; j < M; j++)
-            if (!Rows::middle(j)) {
-              plane += in.w[1][j][p] * nodes.row[i][j];
-              aside += in.slope[1][j][p] * nodes.row[i][j];
-            }
-        }
-        if (Rows::middle(i)) {
-          value += plane;
-          along_y += aside;
-        } else {
-          value += in.w[0][i][p] * plane;
-          along_x += in.slope[0][i][p] * plane;
-          along_y += in.w[0][i][p] * aside;
-        }
+  Rows nodes;
+  nodes.load(tile + in.place[first]);
+  for (int p = first; p < last; p++) {
+    V value = {}, along_x = {}, along_y = {};
+    MPM_UNROLL
+    for (int i = 0; i < N; i++) {
+      V plane = {}, aside = {};
+      if constexpr (DIM == 2) {
+        plane = nodes.row[i][0];
+      } else {
+        if (LESS) plane = nodes.row[i][Rows::Y];
+        MPM_UNROLL
+        for (int j = 0; j < M; j++)
+          if (!Rows::middle(j)) {
+            plane += in.w[1][j][p] * nodes.row[i][j];
+            aside += in.slope[1][j][p] * nodes.row[i][j];
+          }
       }
-      const V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
-      if constexpr (DIM == 2)
-        sums(along_x * w, value * s, V{}, value * w).store(q + 4 * p);
-      else
-        sums(along_x * w, along_y * w, value * s, value * w).store(q + 4 * p);
+      if (Rows::middle(i)) {
+        value += plane;
+        along_y += aside;
+      } else {
+        value += in.w[0][i][p] * plane;
+        along_x += in.slope[0][i][p] * plane;
+        along_y += in.w[0][i][p] * aside;
+      }
     }
-  });
+    const V w = V::load(in.last_w[p]), s = V::load(in.last_slope[p]);
+    if constexpr (DIM == 2)
+      sums(along_x * w, value * s, V{}, value * w).store(q + 4 * p);
+    else
+      sums(along_x * w, along_y * w, value * s, value * w).store(q + 4 * p);
+  }
+}
+
+template <int DIM, Shape SHAPE, bool LESS>
+void get_rows(const ScalarStencil &in, const double *tile, double *q)
+{
+  const auto many = [&](const NodeNumbers<DIM, SHAPE, LESS> &nodes, int p, auto lanes) {
+    constexpr int L = decltype(lanes)::value;
+    Vec<L> value, slope[3];
+    get_points<DIM, SHAPE, LESS, true>(nodes, in, p, value, slope);
+    // in each four points, rows instead of columns
+    const Vec<L> xy = shuffle<0, 4, 2, 6>(slope[0], slope[1]),
+                 zv = shuffle<0, 4, 2, 6>(slope[2], value),
+                 xy2 = shuffle<1, 5, 3, 7>(slope[0], slope[1]),
+                 zv2 = shuffle<1, 5, 3, 7>(slope[2], value);
+    const Vec<L> row[4] = {shuffle<0, 1, 4, 5>(xy, zv), shuffle<0, 1, 4, 5>(xy2, zv2),
+                           shuffle<2, 3, 6, 7>(xy, zv), shuffle<2, 3, 6, 7>(xy2, zv2)};
+    MPM_UNROLL
+    for (int k = 0; k < 4; k++) {
+      if constexpr (L == 4) {
+        row[k].store(q + 4 * (p + k));
+      } else {
+        half<0>(row[k]).store(q + 4 * (p + k));
+        half<1>(row[k]).store(q + 4 * (p + k + 4));
+      }
+    }
+  };
+  const auto few = [&](int first, int last) {
+    get_rows_of_few<DIM, SHAPE, LESS>(in, tile, first, last, q);
+  };
+  visit_groups<DIM, SHAPE, LESS>(in, tile, many, few);
 }
 
 template <int DIM, Shape SHAPE> void get(const ScalarStencil &in, const double *tile, double *q)
@@ -414,38 +601,60 @@ template <int DIM, Shape SHAPE> void get(const ScalarStencil &in, const double *
     get_rows<DIM, SHAPE, false>(in, tile, q);
 }
 
+template <int DIM, Shape SHAPE, bool LESS>
+MPM_INLINE void get_values_of_few(const ScalarStencil &in, const double *tile, int first, int last,
+                                  double *q)
+{
+  using Rows = NodeRows<DIM, SHAPE, LESS>;
+  constexpr int N = Rows::N, M = Rows::M;
+  Rows nodes;
+  nodes.load(tile + in.place[first]);
+  for (int p = first; p < last; p++) {
+    V value = {};
+    MPM_UNROLL
+    for (int i = 0; i < N; i++) {
+      V plane = {};
+      MPM_UNROLL
+      for (int j = 0; j < M; j++) {
+        if (DIM == 2 || Rows::middle(j))
+          plane += nodes.row[i][j];
+        else
+          plane += in.w[1][j][p] * nodes.row[i][j];
+      }
+      if (Rows::middle(i))
+        value += plane;
+      else
+        value += in.w[0][i][p] * plane;
+    }
+    const V sum = value * V::load(in.last_w[p]);
+    const Vec<2> two = half<0>(sum) + half<1>(sum);
+    q[p] = two.lane(0) + two.lane(1);
+    // barrier: GCC 12 puts points together into vectors, wrongly (AVX2, cubic, 3d)
+    asm volatile("" ::: "memory");
+  }
+}
+
+template <int DIM, Shape SHAPE, bool LESS>
+void get_numbers(const ScalarStencil &in, const double *tile, double *q)
+{
+  const auto many = [&](const NodeNumbers<DIM, SHAPE, LESS> &nodes, int p, auto lanes) {
+    Vec<decltype(lanes)::value> value, slope[3];
+    get_points<DIM, SHAPE, LESS, false>(nodes, in, p, value, slope);
+    value.store(q + p);
+  };
+  const auto few = [&](int first, int last) {
+    get_values_of_few<DIM, SHAPE, LESS>(in, tile, first, last, q);
+  };
+  visit_groups<DIM, SHAPE, LESS>(in, tile, many, few);
+}
+
 template <int DIM, Shape SHAPE>
 void get_values(const ScalarStencil &in, const double *tile, double *q)
 {
-  using Rows = NodeRows<DIM, SHAPE, has_middle<SHAPE>>;
-  constexpr int N = Rows::N, M = Rows::M;
-  visit_same(in, [&](int first, int last) {
-    Rows nodes;
-    nodes.load(tile + in.place[first]);
-    for (int p = first; p < last; p++) {
-      V value = {};
-      MPM_UNROLL
-      for (int i = 0; i < N; i++) {
-        V plane = {};
-        MPM_UNROLL
-        for (int j = 0; j < M; j++) {
-          if (DIM == 2 || Rows::middle(j))
-            plane += nodes.row[i][j];
-          else
-            plane += in.w[1][j][p] * nodes.row[i][j];
-        }
-        if (Rows::middle(i))
-          value += plane;
-        else
-          value += in.w[0][i][p] * plane;
-      }
-      const V sum = value * V::load(in.last_w[p]);
-      const Vec<2> two = half<0>(sum) + half<1>(sum);
-      q[p] = two.lane(0) + two.lane(1);
-      // barrier: GCC 12 puts points together into vectors, wrongly (AVX2, cubic, 3d)
-      asm volatile("" ::: "memory");
-    }
-  });
+  if (has_middle<SHAPE> && in.kind != ABSOLUTE_SLOPES)
+    get_numbers<DIM, SHAPE, has_middle<SHAPE>>(in, tile, q);
+  else
+    get_numbers<DIM, SHAPE, false>(in, tile, q);
 }
 
 /** Nothing over nothing is zero over one. */
@@ -512,10 +721,15 @@ ScalarKernels MPM_NS::MPM_OF_ISA(mpm_kernels_scalar)(int dim, Shape shape)
     constexpr int DIM = decltype(d)::value;
     return with<Shape, LINEAR, QUADRATIC, CUBIC, GIMP, BERNSTEIN>(shape, [](auto s) {
       constexpr Shape SHAPE = decltype(s)::value;
-      return ScalarKernels{prepare<DIM, SHAPE>,          add<DIM, SHAPE>,
-                           add_values<DIM, SHAPE>,       get<DIM, SHAPE>,
-                           get_values<DIM, SHAPE>,       move_tile<DIM, SHAPE, true>,
-                           move_tile<DIM, SHAPE, false>, divide};
+      return ScalarKernels{prepare<DIM, SHAPE>,
+                           add<DIM, SHAPE>,
+                           add_times<DIM, SHAPE>,
+                           add_values<DIM, SHAPE>,
+                           get<DIM, SHAPE>,
+                           get_values<DIM, SHAPE>,
+                           move_tile<DIM, SHAPE, true>,
+                           move_tile<DIM, SHAPE, false>,
+                           divide};
     });
   });
 }

@@ -40,12 +40,14 @@ void prepare(const PointRows &points, const TransferStep &step, int n, const int
 /** Calls f(p, node, slopes) for all nodes of the points. */
 template <int DIM, Shape SHAPE, class F> void visit(const ScalarStencil &in, const F &f)
 {
+  const double fit = shape_constants[SHAPE].inv_moment / (in.step.h * in.step.h);
   for (int p = 0; p < in.n; p++) {
     const Stencil<DIM, SHAPE> stencil(in.points, p, in.step, in.base);
     for (const Node &node : stencil.node) {
       double slope[3] = {};
       for (int a = 0; a < DIM; a++)
         slope[a] = in.kind == DISTANCE_SLOPES ? node.w * node.d[a]
+            : in.kind == FIT_SLOPES           ? fit * (node.w * node.d[a])
             : in.kind == ABSOLUTE_SLOPES      ? std::fabs(node.grad[a])
                                               : node.grad[a];
       f(p, node, slope);
@@ -62,6 +64,13 @@ template <int DIM, Shape SHAPE> ScalarKernels table()
       double sum = node.w * q[4 * p + 3];
       for (int a = 0; a < DIM; a++) sum += slope[a] * q[4 * p + a];
       tile[node.index] += sum;
+    });
+  };
+  k.add_times = [](const ScalarStencil &in, const ScalarSource &from, double *tile) {
+    visit<DIM, SHAPE>(in, [&](int p, const Node &node, const double *slope) {
+      double sum = node.w * from.values[from.value_width * p];
+      for (int a = 0; a < DIM; a++) sum += slope[a] * from.slopes[from.slope_width * p + a];
+      tile[node.index] += from.factors[p] * sum;
     });
   };
   k.add_values = [](const ScalarStencil &in, const double *q, double *tile) {
