@@ -177,7 +177,10 @@ def scene_for(lines):
         for name, rest in FIXES.items():
             if re.search(r"\bfix %s\b" % name, text):
                 grid = "fix %s %s\n" % (name, rest)
-    pairs = "pair_style mpm/penalty" in text
+    of_pairs = "mpm/heat penalty" in text
+    pairs = "pair_style mpm/penalty" in text or of_pairs
+    if of_pairs:
+        before += "pair_style mpm/penalty\npair_coeff * * 1.0e7 friction 0.3 0.01\n"
     heat_contact = re.search(r"mpm/heat .*\bcontact ", text)
     if "mpm/contact" in text or pairs or heat_contact:
         named = BODIES[:2] if pairs else [word for word in text.split() if word in BODIES]
