@@ -243,10 +243,11 @@ bool FixMPMBoundary::keeps_distance() const
   return region ? holds_surface() : !decides();
 }
 
-/** Slip on a region in explicit steps, and at rest in implicit ones: lines act where material is in front of it, and nodes where it is inside. */
+/** Stick and slip on a region in explicit steps, and at rest in implicit ones: lines act where material is in front of it, and nodes where it is
+ *  inside. */
 bool FixMPMBoundary::holds_surface() const
 {
-  return kind == SLIP && friction == 0.0 && !follows;
+  return (kind == STICK || (kind == SLIP && friction == 0.0)) && !follows;
 }
 
 bool FixMPMBoundary::acts_on(const MPMField &field) const
@@ -678,14 +679,12 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   const double h = field.lattice.h;
   const bool moves = region_moves(), hands_over = moves && kind != SEPARATE, across = acts_across();
   const double taken = (hands_over ? HAND_OVER : ON_SURFACE) * h;
-  const bool looks = across ||
-      (!too_thin.told() && !region->varshape && (!moves || looks_at_width()));
-  const double far = FAR * h, next = looks ? 1.001 * h : taken;
+  const double far = FAR * h, next = across ? 1.001 * h : taken;
   const bool box_known = region->bboxflag && !moves;
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
   const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   const double radius = 0.5 * (grid.side - 1) * h * sqrt((double) dim);
-  const double beyond = looks ? h : ON_SURFACE * h;
+  const double beyond = across ? h : ON_SURFACE * h;
   std::vector<Single> outside;    // next to the surface
 
   list.singles.clear();
@@ -730,22 +729,19 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
       Single s = {first_node + n};
       if (!region->match(x[0], x[1], x[2])) {
         const double gap = surface->distance(x, next);
-        if (looks && gap > ON_SURFACE * h && gap < next) {
+        if (across && gap > ON_SURFACE * h && gap < next) {
           s.distance = gap;
           outside.push_back(s);
         }
         if (gap >= taken) continue;
         if (gap > ON_SURFACE * h && !follows) s.share = cube(1.0 - cube(gap / taken));
       }
-      if (kind != STICK || region->varshape) surface->normal(x, far, 1.0e-4 * h, s.normal);
+      if (kind != STICK || !follows) surface->normal(x, far, 1.0e-4 * h, s.normal);
       if (region->varshape || across) s.distance = surface->distance(x, far);
       list.singles.push_back(s);
     }
   }
-  if (!across) {
-    list_bare_faces(list, outside);
-    return;
-  }
+  if (!across) return;
   list_crossings(list, outside);
   if ((!hands_over || follows) && !holds_surface()) take_off_lines(list);
 }
@@ -798,34 +794,6 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
                    });
   if (follows && kind == STICK) find_lines_alone(list);
   if (holds_surface()) list_knots(list);
-}
-
-/* ----------------------------------------------------------------------
-   Places where no node that acts is behind a face, because the region is too thin
-------------------------------------------------------------------------- */
-
-void FixMPMBoundary::list_bare_faces(FieldNodes &list, const std::vector<Single> &outside)
-{
-  list.looked_at.clear();
-  const MPMField &field = *list.field;
-  const double h = field.lattice.h;
-  for (Single single : outside) {
-    double x[3];
-    field.grid.node_position(single.node, x);
-    surface->normal(x, FAR * h, 1.0e-4 * h, single.normal);
-    Crossing c = {};
-    if (!find_crossing(list, single, c)) {
-      c = {};
-      if (!looks_at_blade(field, single, c)) continue;
-    }
-    bool bare = true;
-    for (const double deep : {1.0, 2.0}) {
-      double y[3] = {x[0], x[1], x[2]};
-      y[c.axis] -= (c.normal[c.axis] > 0.0 ? deep : -deep) * h;
-      bare = bare && !region->match(y[0], y[1], y[2]);
-    }
-    if (bare) list.looked_at.push_back(c);
-  }
 }
 
 /* ----------------------------------------------------------------------

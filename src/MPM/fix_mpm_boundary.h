@@ -224,8 +224,7 @@ class FixMPMBoundary :
     std::vector<Single> singles;
     std::vector<Crossing> crossings = {};
     std::vector<Knot> knots = {};
-    // lines that do not act but tell where nodes see too little of a region: at blades, wires, and faces
-    // behind which no node acts
+    // lines that do not act but tell where nodes see too little of a region: at blades and wires
     std::vector<Crossing> looked_at = {};
     std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
     std::vector<MPMWallContact> crossed = {};     // with crossings, as far as they have been needed
@@ -405,9 +404,8 @@ class FixMPMBoundary :
   double way_since(const double *then) const;
   void extend_across(MPMField &);
   void list_crossings(FieldNodes &, const std::vector<Single> &outside);
-  static void list_knots(FieldNodes &);
+  void list_knots(FieldNodes &) const;
   void act_on_knot(const FieldNodes &, Knot &);
-  void list_bare_faces(FieldNodes &, const std::vector<Single> &outside);
   void take_off_lines(FieldNodes &);
   bool find_crossing(FieldNodes &, const Single &, Crossing &);
   bool looks_at_blade(const MPMField &, const Single &, Crossing &) const;

@@ -65,20 +65,17 @@ void FixMPMBoundary::couple_topology()
 }
 
 /* ----------------------------------------------------------------------
-   Lines along several axes share nodes: blocks all around. Where lines are only looked at, see check_width(), those
-   next to each other are enough
+   Lines along several axes share nodes: blocks all around
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::extend_across(MPMField &field)
 {
-  const bool moves = region_moves(), known = knows_place(), across = acts_across();
-  if (comm->nprocs == 1 || !(across || (known && !moves))) return;
+  if (comm->nprocs == 1 || !acts_across()) return;
+  const bool moves = region_moves(), known = knows_place();
   Grid &grid = field.grid;
   const int dim = field.lattice.dim;
   const double h = field.lattice.h,
-               reach = (0.5 * grid.side * sqrt((double) dim) + (across ? 4.0 : 2.0) +
-                        (moves ? WIDER : 0.0)) *
-      h;
+               reach = (0.5 * grid.side * sqrt((double) dim) + 4.0 + (moves ? WIDER : 0.0)) * h;
   if (!moves) region->prematch();
   if (moves && known) {
     // others may have looked at the region since the step before
@@ -106,7 +103,7 @@ void FixMPMBoundary::extend_across(MPMField &field)
       for (int j = -rings; j <= rings; j++)
         for (int i = -rings; i <= rings; i++) {
           const int next[3] = {b[0] + i, b[1] + j, b[2] + k};
-          if (across ? is_near(next) : abs(i) + abs(j) + abs(k) == 1) grid.activate(next);
+          if (is_near(next)) grid.activate(next);
         }
   }
 }

@@ -285,19 +285,31 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
     normal += lambda[d] * n[d];
   }
 
-  // what FLIP updates of old normal velocities, as at faces
+  // what FLIP updates of old velocities, as at faces: all that stick prescribes, or the normal ones
 
   const bool hold = now.old_share > 0.0 && to_surface;
-  double change_old[4] = {0.0, 0.0, 0.0, 0.0};
+  double change_old[3][4] = {};
   if (hold) {
-    double old[4];
-    for (int k = 0; k < chain.m; k++) {
-      old[k] = 0.0;
-      for (int d = 0; d < dim; d++) old[k] += n[d] * (chain.r[k][4 + d] - wall.before[d]);
+    double old[3][4] = {}, along[4] = {};
+    for (int k = 0; k < chain.m; k++)
+      for (int d = 0; d < dim; d++) {
+        old[d][k] = chain.r[k][4 + d] - wall.before[d];
+        along[k] += n[d] * old[d][k];
+      }
+    const auto take_away = [&](const double *of, double *by) {
+      const double limit = fabs(of[chain.inner]);
+      for (int k = 0; k < chain.m; k++) relative[k] = std::max(-limit, std::min(of[k], limit));
+      chain.solve(relative, by);
+    };
+    if (kind == STICK) {
+      for (int d = 0; d < dim; d++)
+        if (velocity[d].given) take_away(old[d], change_old[d]);
+    } else {
+      double by[4];
+      take_away(along, by);
+      for (int d = 0; d < dim; d++)
+        for (int k = 0; k < chain.m; k++) change_old[d][k] = by[k] * n[d];
     }
-    const double limit = fabs(old[chain.inner]);
-    for (int k = 0; k < chain.m; k++) relative[k] = std::max(-limit, std::min(old[k], limit));
-    chain.solve(relative, change_old);
   }
 
   double needed = 0.0;
@@ -318,7 +330,8 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
     for (int d = 0; d < dim; d++) along += change[d][k] * n[d];
     for (int d = 0; d < dim; d++) {
       v[d] = chain.r[k][d] + along * n[d] + share * (change[d][k] - along * n[d]);
-      if (hold) old[d] = chain.r[k][4 + d] + change_old[k] * n[d];
+      if (kind == STICK && !velocity[d].given) v[d] = chain.r[k][d];
+      if (hold) old[d] = chain.r[k][4 + d] + change_old[d][k];
     }
     set_velocity(grid, chain.node[k], chain.V[k], v, hold ? old : nullptr);
   }

@@ -14,6 +14,8 @@
 //
 // where each line has a row c = a and, when all of its nodes have mass, a row c = b (fix_mpm_boundary_cut.cpp).  Rows that nearly depend on
 // others are what two lines ask for twice: eigenvectors of G, scaled to 1 on its diagonal, with small eigenvalues are left out.
+//
+// Where material sticks, each component that is prescribed has these equations for itself, with 1 in place of n_r.
 
 #include "fix_mpm_boundary.h"
 
@@ -29,8 +31,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double CORNER =
-    0.1;    // cosine between normals of lines that prescribe different components
+// cosine between normals of lines that prescribe different components, and of those that hold different material
+static constexpr double CORNER = 0.1, BACK = -0.5;
 static constexpr double LEAST = 1.0e-8;    // mass of a node, of the heaviest one
 static constexpr double SMALL = 1.0e-3;    // eigenvalue
 
@@ -38,9 +40,10 @@ static constexpr double SMALL = 1.0e-3;    // eigenvalue
    Lines that share nodes, along different axes and in front of the same material, and lines that share nodes with these
 ------------------------------------------------------------------------- */
 
-void FixMPMBoundary::list_knots(FieldNodes &list)
+void FixMPMBoundary::list_knots(FieldNodes &list) const
 {
   auto &lines = list.crossings;
+  const double apart = kind == STICK ? BACK : CORNER;
   struct Use {
     int64_t node;
     int line;
@@ -63,7 +66,7 @@ void FixMPMBoundary::list_knots(FieldNodes &list)
     for (auto a = first; a != last; a++)
       for (auto b = a + 1; b != last; b++) {
         const Crossing &one = lines[a->line], &other = lines[b->line];
-        if (one.axis == other.axis || MathExtra::dot3(one.normal, other.normal) < CORNER) continue;
+        if (one.axis == other.axis || MathExtra::dot3(one.normal, other.normal) < apart) continue;
         const int low = std::min(root(a->line), root(b->line)),
                   high = std::max(root(a->line), root(b->line));
         parent[high] = low;
@@ -108,11 +111,15 @@ void FixMPMBoundary::act_on_knot(const FieldNodes &list, Knot &knot)
     int line, m;
     int node[4];    // places in knot.node
     double c[4];
-    double sum = 0.0, old = 0.0;    // of what it takes away
+    double sum
+        [3] = {},
+     old[3] =
+         {};    // of what it takes away, of components that stick, or the first one along the normal
   };
   std::vector<Row> rows;
   std::vector<double> share(knot.lines.size(), 0.0);
-  const bool hold = now.old_share > 0.0;
+  const bool hold = now.old_share > 0.0, sticks = kind == STICK;
+  const int ncomponents = sticks ? dim : 1;
   for (std::size_t k = 0; k < knot.lines.size(); k++) {
     Crossing &line = const_cast<Crossing &>(list.crossings[knot.lines[k]]);
     if (!decide_line(grid, line)) continue;
@@ -121,23 +128,27 @@ void FixMPMBoundary::act_on_knot(const FieldNodes &list, Knot &knot)
     line.contact = SLIDING;
     share[k] = 1.0;
     const double *const n = line.normal;
-    double relative[4] = {}, old[4] = {};
+    double relative[3][4] = {}, old[3][4] = {};
     Row row = {(int) k, chain.m, {}, {}};
     for (int j = 0; j < chain.m; j++) {
       const auto at = std::lower_bound(knot.node.begin(), knot.node.end(), chain.node[j]);
       row.node[j] = (int) (at - knot.node.begin());
       for (int d = 0; d < dim; d++) {
-        relative[j] += n[d] * (chain.r[j][d] - chain.V[j][d]);
-        if (hold) old[j] += n[d] * (chain.r[j][4 + d] - wall.before[d]);
+        const int of = sticks ? d : 0;
+        const double by = sticks ? 1.0 : n[d];
+        relative[of][j] += by * (chain.r[j][d] - chain.V[j][d]);
+        if (hold) old[of][j] += by * (chain.r[j][4 + d] - wall.before[d]);
       }
     }
-    const double limit = fabs(old[chain.inner]);
     for (int b = 0; b < (chain.is_straight() ? 2 : 1); b++) {
-      row.sum = row.old = 0.0;
-      for (int j = 0; j < chain.m; j++) {
-        row.c[j] = b ? chain.B[j] : chain.A[j];
-        row.sum += row.c[j] * relative[j];
-        row.old += row.c[j] * std::max(-limit, std::min(old[j], limit));
+      for (int j = 0; j < chain.m; j++) row.c[j] = b ? chain.B[j] : chain.A[j];
+      for (int of = 0; of < ncomponents; of++) {
+        const double limit = fabs(old[of][chain.inner]);
+        row.sum[of] = row.old[of] = 0.0;
+        for (int j = 0; j < chain.m; j++) {
+          row.sum[of] += row.c[j] * relative[of][j];
+          row.old[of] += row.c[j] * std::max(-limit, std::min(old[of][j], limit));
+        }
       }
       rows.push_back(row);
     }
@@ -159,7 +170,7 @@ void FixMPMBoundary::act_on_knot(const FieldNodes &list, Knot &knot)
           for (int k = 0; k < rows[s].m; k++)
             if (rows[r].node[j] == rows[s].node[k])
               sum += rows[r].c[j] * rows[s].c[k] * heaviest / mass[rows[r].node[j]];
-        G(r, s) = G(s, r) = sum * MathExtra::dot3(normal(rows[r]), normal(rows[s]));
+        G(r, s) = G(s, r) = sticks ? sum : sum * MathExtra::dot3(normal(rows[r]), normal(rows[s]));
       }
     const Eigen::VectorXd scale = G.diagonal().cwiseSqrt().cwiseInverse();
     G = scale.asDiagonal() * G * scale.asDiagonal();
@@ -173,17 +184,21 @@ void FixMPMBoundary::act_on_knot(const FieldNodes &list, Knot &knot)
 
   std::vector<double> change(3 * nnodes, 0.0), change_old(hold ? 3 * nnodes : 0, 0.0);
   for (int r = 0; r < n; r++) {
-    double lambda = 0.0, lambda_old = 0.0;
-    for (int s = 0; s < n; s++) {
-      lambda -= knot.inverse[r * n + s] * rows[s].sum;
-      lambda_old -= knot.inverse[r * n + s] * rows[s].old;
-    }
+    double lambda[3] = {}, lambda_old[3] = {};
+    for (int s = 0; s < n; s++)
+      for (int of = 0; of < ncomponents; of++) {
+        lambda[of] -= knot.inverse[r * n + s] * rows[s].sum[of];
+        lambda_old[of] -= knot.inverse[r * n + s] * rows[s].old[of];
+      }
     for (int j = 0; j < rows[r].m; j++) {
       const int i = rows[r].node[j];
       const double by = rows[r].c[j] * heaviest / mass[i];
       for (int d = 0; d < dim; d++) {
-        change[3 * i + d] += lambda * by * normal(rows[r])[d];
-        if (hold) change_old[3 * i + d] += lambda_old * by * normal(rows[r])[d];
+        if (sticks && !velocity[d].given) continue;
+        const int of = sticks ? d : 0;
+        const double along = by * (sticks ? 1.0 : normal(rows[r])[d]);
+        change[3 * i + d] += lambda[of] * along;
+        if (hold) change_old[3 * i + d] += lambda_old[of] * along;
       }
     }
   }
