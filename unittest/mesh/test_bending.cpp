@@ -223,11 +223,58 @@ TEST(Bending, ShortWaves)
   EXPECT_LT(other(9.0), other(1.0));
 }
 
+// with diagonals that change direction, a wave of six edges has its exact energy within 8 % in all directions, in place of less than 0.88 of it by curvatures alone, and one of
+// twelve within 3 %, also where nodes are moved
+TEST(Bending, WavesWhereDiagonalsChangeDirection)
+{
+  const int n = 30;
+  for (const double disorder : {0.0, 0.1})
+    for (const double degrees : {0.0, 30.0, 45.0})
+      for (const double kh : {0.5, 1.0}) {
+        const Mesh mesh = sheet(n, disorder);
+        const double angle = degrees * std::acos(-1.0) / 180.0, k = kh * n, small = 1e-7;
+        const auto phase = [&](double x, double y) {
+          return k * (x * std::cos(angle) + y * std::sin(angle));
+        };
+        double sum[2] = {0.0, 0.0}, exact = 0.0;
+        for (const auto &e : mesh.elements) {
+          if (e.type != ElementType::PATCH || !e.inside) continue;
+          double X[PATCH_NODES][3], x[PATCH_NODES][3], f[PATCH_NODES][3] = {{0.0}};
+          places(mesh, e, same, X);
+          bool has[PATCH_NODES - 3];
+          std::fill_n(has, PATCH_NODES - 3, true);
+          for (const bool with : {false, true}) {
+            int slots[PATCH_NODES];
+            BentTriangle bent;
+            bent.define(X, has, with, slots);
+            EXPECT_EQ(bent.nrow, with ? 7 : 3);
+            if (with) EXPECT_EQ(bent.n, 10);
+            for (int m = 0; m < bent.n; m++) {
+              std::copy_n(X[slots[m]], 3, x[m]);
+              x[m][2] = small * std::sin(phase(x[m][0], x[m][1]));
+            }
+            sum[with] += bent.bend(1.0, 0.3, x, f);
+            if (!with) continue;
+            // of three points, exact to second order
+            for (int m = 0; m < 3; m++) {
+              const double *const a = X[m], *const b = X[(m + 1) % 3],
+                                  s = std::sin(phase(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])));
+              exact += bent.area / 3.0 * 0.5 * std::pow(k, 4) * small * small * s * s;
+            }
+          }
+        }
+        const double off = kh < 0.8 ? 0.03 : 0.08;
+        EXPECT_LT(sum[0] / exact, kh < 0.8 ? 0.97 : 0.88);
+        EXPECT_NEAR(sum[1] / exact, 1.0, off) << degrees << " " << kh;
+      }
+}
+
 // short waves end at creases, as curvatures do, and rotations of a surface that is bent at rest do not make any
 TEST(Bending, ShortWavesOfSurfacesThatAreNotPlane)
 {
-  for (const bool crease : {false, true}) {
-    Mesh mesh = sheet(10, 0.1, false);
+  for (const int kind : {0, 1, 2, 3}) {
+    const bool crease = kind % 2, alternate = kind > 1;
+    Mesh mesh = sheet(10, 0.1, alternate);
     for (auto &x : mesh.nodes) {
       if (std::fabs(x[0] - 0.5) < 0.02) x[0] = 0.5;
       x[2] = 0.1 * std::sin(3.0 * x[0] + 2.0 * x[1]);
@@ -247,8 +294,9 @@ TEST(Bending, ShortWavesOfSurfacesThatAreNotPlane)
       }
       BentTriangle bent;
       bent.define(X, has, true, slots);
-      EXPECT_EQ(bent.nrow, crease && sides[0] > 0 && sides[1] > 0 ? 3 : 5);
-      with += bent.nrow == 5;
+      const bool folded = crease && sides[0] > 0 && sides[1] > 0;
+      EXPECT_EQ(bent.nrow, folded ? 3 : alternate ? 7 : 5);
+      with += bent.nrow > 3;
     }
     EXPECT_GT(with, 20);
     EXPECT_NEAR(energy(mesh, 0.3, turned), 0.0, 1e-24);

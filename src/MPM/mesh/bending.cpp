@@ -82,17 +82,17 @@ double BentTriangle::bend(double D, double nu, const double (*x)[3], double (*f)
   for (int k = 0; k < n; k++) up[k] = dot(x[k], normal);
   for (int c = 0; c < nrow; c++) {
     change[c] = -rest[c];
-    for (int k = 0; k < n; k++) change[c] += h[c][k] * up[k];
+    for (int k = 0; k < n; k++) change[c] += h[c * n + k] * up[k];
   }
   if (nfree) relax(nu, change);
   moment[0] = change[0] + nu * change[1];
   moment[1] = change[1] + nu * change[0];
   moment[2] = 2.0 * (1.0 - nu) * change[2];
-  for (int c = 3; c < nrow; c++) moment[c] = SHORT * change[c];
+  for (int c = 3; c < nrow; c++) moment[c] = change[c];
   for (int c = 0; c < nrow; c++) {
     moment[c] *= area * D;
     energy += 0.5 * moment[c] * change[c];
-    for (int k = 0; k < n; k++) force[k] += moment[c] * h[c][k];
+    for (int k = 0; k < n; k++) force[k] += moment[c] * h[c * n + k];
   }
 
   // what turns the normal
@@ -111,14 +111,15 @@ void BentTriangle::stiffness_sums(double nu, double *sum) const
   double size[PATCH_NODES], wave[PATCH_NODES], all = 0.0, waves = 0.0;
   for (int k = 0; k < n; k++) {
     double square = 0.0;
-    for (int c = 3; c < nrow; c++) square += h[c][k] * h[c][k];
-    size[k] = std::sqrt(h[0][k] * h[0][k] + h[1][k] * h[1][k] + 2.0 * h[2][k] * h[2][k]);
+    for (int c = 3; c < nrow; c++) square += h[c * n + k] * h[c * n + k];
+    const double xx = h[k], yy = h[n + k], xy = h[2 * n + k];
+    size[k] = std::sqrt(xx * xx + yy * yy + 2.0 * xy * xy);
     wave[k] = std::sqrt(square);
     all += size[k];
     waves += wave[k];
   }
   for (int k = 0; k < n; k++)
-    sum[k] = area * ((1.0 + std::fabs(nu)) * size[k] * all + SHORT * wave[k] * waves);
+    sum[k] = area * ((1.0 + std::fabs(nu)) * size[k] * all + wave[k] * waves);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -24,11 +24,15 @@ inline bool is_smooth(const double *n, const double *m)
 constexpr int PATCH_NODES = 12;
 
 /** Waves that are short for the mesh change the curvatures of triangles less than they do that of a surface, so that a force on one node finds too little resistance. They
- *  show in what no polynomial of third order has at the nodes of a patch: for values w, in sum(s w) with unit vectors s that are normal to all of these. Each of
- *  these resists with the energy SHORT D (q^2 sum(s w)/area)^2 area/2, which vanishes with the fourth power of the size of elements where a surface bends smoothly. q, four times the
- *  area over the square of the longest edge, is 1 at most, and less for triangles that are narrower than half a square: along these curvatures are smaller than w/area.
- *  Returns how many vectors there are: 2 for 12 nodes, 1 for 11, as a rule, and never more than 2. */
-int above_cubic(const double (*at)[2], int n, double (*s)[2]);
+ *  show in what no polynomial has at the nodes of a patch: for values w, in sum(s w) with unit vectors s that are normal to all polynomials of an order. Each of
+ *  these resists with the energy D (q^2 sum(s w)/area)^2 area/2 times ABOVE_THIRD for polynomials of third order, which vanishes with the fourth power of the size of elements where a surface bends smoothly. Where
+ *  nodes with four triangles leave no more than ten nodes, as diagonals do that change direction, it is ABOVE_SECOND for second order: this takes most of the error off that curvatures have
+ *  in waves there, which is of second order. q, four times the area over the square of the longest edge, is 1 at most, and less for triangles that are narrower than half a square: along these curvatures are smaller
+ *  than w/area. */
+constexpr double ABOVE_THIRD = 2.7, ABOVE_SECOND = 0.6;
+
+/** Vectors s[.][k] above all polynomials of an order, 2 or 3, for n nodes, and never more than most; returns how many there are. */
+int above_polynomials(int order, const double (*at)[2], int n, int most, double (*s)[4]);
 
 /** Curvature of a triangle from slopes across its edges, of which triangles on both sides have the same: the theorem of Gauss gives
  *  b A = sum_i l_i m_i x slope_i, with the length l_i and the outward normal m_i of edge i (Morley's triangle: L.S.D. Morley, Aeronaut. Q. 19
@@ -38,13 +42,12 @@ int above_cubic(const double (*at)[2], int n, double (*s)[2]);
  *  is exact at a rim, there is no moment across it. With coefficients h_k the curvature is b = n . sum_k h_k x_k, where n is the present normal, which is zero for a
  *  plane, and does not change by rotations. The same holds for short waves, see above. */
 struct BentTriangle {
-  static constexpr double SHORT = 2.7;
-  static constexpr int MOST = 5;
-  int n;        ///< nodes with a part
-  int nfree;    ///< rims without moment
-  int nrow;     ///< 3, and the number of short waves that resist
-  // coefficients of curvatures xx, yy, xy along axes in the plane of the triangle, and of short waves [1/length^2]
-  double h[MOST][PATCH_NODES];
+  static constexpr int MOST = 7;    // rows of 10 nodes, and 5 of 12
+  int n;                            ///< nodes with a part
+  int nfree;                        ///< rims without moment
+  int nrow;                         ///< 3, and the number of short waves that resist
+  // coefficients [nrow][n] of curvatures xx, yy, xy along axes in the plane of the triangle, and of short waves [1/length^2]
+  double h[70];
   double m[2][2];       ///< normals of those rims
   double rest[MOST];    ///< curvatures, and short waves, without moment
   double area;

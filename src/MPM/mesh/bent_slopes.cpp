@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 using namespace MPM_NS;
 
@@ -186,25 +187,25 @@ double correct(const Place *at, const int *node, int n, double *c)
   return left < EXACT ? 0.0 : left;
 }
 
-/** Append short waves to the coefficients of a patch that has all nodes, without creases; returns their number. A node of which there are two is one. */
-int add_short_waves(const Unfolded &all, double area, double (*coefficients)[BentTriangle::MOST])
+/** Append short waves to the coefficients of a patch without creases that is not at a rim; returns their number. Of a node that is there twice, only the first one is known. */
+int add_short_waves(const Unfolded &all, const bool *again, double area,
+                    double (*coefficients)[BentTriangle::MOST])
 {
-  double at[PATCH_NODES][2], s[PATCH_NODES][2];
+  double at[PATCH_NODES][2], s[PATCH_NODES][4];
   int node[PATCH_NODES], n = 0;
   for (int a = 0; a < PATCH_NODES; a++) {
     if (!all.has[a] || !all.smooth[a]) return 0;
-    const auto same = [&](int b) {
-      return std::equal(all.X[a], all.X[a] + 3, all.X[b]);
-    };
-    if (std::any_of(node, node + n, same)) continue;
+    if (again[a]) continue;
     at[n][0] = all.p[a].x;
     at[n][1] = all.p[a].y;
     node[n++] = a;
   }
-  const int found = above_cubic(at, n, s);
+  const bool few = n <= 10;
+  const int found = above_polynomials(few ? 2 : 3, at, n, few ? 4 : 2, s);
   const double l = std::max({length(all.p[0], all.p[1]), length(all.p[1], all.p[2]),
                              length(all.p[2], all.p[0])}),
-               narrow = std::min(1.0, 4.0 * area / (l * l)), scale = narrow * narrow / area;
+               narrow = std::min(1.0, 4.0 * area / (l * l)),
+               scale = std::sqrt(few ? ABOVE_SECOND : ABOVE_THIRD) * narrow * narrow / area;
   for (int k = 0; k < n; k++)
     for (int c = 0; c < found; c++) coefficients[node[k]][3 + c] = scale * s[k][c];
   return found;
@@ -270,24 +271,36 @@ double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool aw
     }
   }
 
+  // a node that the neighbors of two neighbors share is one
+
+  bool again[PATCH_NODES] = {false};
+  for (int a = 3; a < PATCH_NODES; a++)
+    for (int b = 0; b < a && !again[a]; b++) {
+      if (!all.has[a] || !all.has[b] || !std::equal(X[a], X[a] + 3, X[b])) continue;
+      again[a] = true;
+      for (int c = 0; c < 3; c++) {
+        coefficients[b][c] += coefficients[a][c];
+        coefficients[a][c] = 0.0;
+      }
+    }
   nrow = 3;
-  if (away && nfree == 0) nrow += add_short_waves(all, area, coefficients);
-  for (auto &row : h) std::fill_n(row, PATCH_NODES, 0.0);
+  if (away && nfree == 0) nrow += add_short_waves(all, again, area, coefficients);
   n = 0;
   for (int a = 0; a < PATCH_NODES; a++) {
     const double *const from = coefficients[a];
-    if (a >= 3 && std::all_of(from, from + MOST, [](double c) {
-          return c == 0.0;
+    if (a < 3 || std::any_of(from, from + nrow, [](double c) {
+          return c != 0.0;
         }))
-      continue;
-    for (int c = 0; c < MOST; c++) h[c][n] = from[c];
-    slots[n++] = a;
+      slots[n++] = a;
   }
+  std::fill(std::begin(h), std::end(h), 0.0);
+  for (int c = 0; c < nrow; c++)
+    for (int k = 0; k < n; k++) h[c * n + k] = coefficients[slots[k]][c];
   double normal[3];
   normal_of(X[0], X[1], X[2], normal);
   for (int c = 0; c < MOST; c++) {
     rest[c] = 0.0;
-    for (int k = 0; k < n; k++) rest[c] += h[c][k] * dot(X[slots[k]], normal);
+    for (int k = 0; k < n && c < nrow; k++) rest[c] += h[c * n + k] * dot(X[slots[k]], normal);
   }
   return worst;
 }

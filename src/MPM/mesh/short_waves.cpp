@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// What no polynomial of third order has at some nodes.
+// What no polynomial of an order has at some nodes.
 
 #include "mesh/bending.h"
 
@@ -35,7 +35,7 @@ double reduce(const double (*unit)[PATCH_NODES], int nunit, int n, double *v)
 
 }    // namespace
 
-int MPM_NS::above_cubic(const double (*at)[2], int n, double (*s)[2])
+int MPM_NS::above_polynomials(int order, const double (*at)[2], int n, int most, double (*s)[4])
 {
   double center[2] = {0.0, 0.0}, size = 0.0, unit[12][PATCH_NODES];
   for (int k = 0; k < n; k++)
@@ -44,7 +44,7 @@ int MPM_NS::above_cubic(const double (*at)[2], int n, double (*s)[2])
     size += (std::pow(at[k][0] - center[0], 2) + std::pow(at[k][1] - center[1], 2)) / n;
   size = std::sqrt(size);
   int nunit = 0, found = 0;
-  for (int degree = 0; degree <= 3; degree++)
+  for (int degree = 0; degree <= order; degree++)
     for (int b = 0; b <= degree; b++) {
       double *const v = unit[nunit], square = 0.0;
       for (int k = 0; k < n; k++) {
@@ -58,16 +58,16 @@ int MPM_NS::above_cubic(const double (*at)[2], int n, double (*s)[2])
       nunit++;
     }
 
-  // the node of which most is left, and once more
+  // the node of which most is left, again and again
 
-  for (; found < 2; found++) {
-    double most = NONE;
+  for (; found < most; found++) {
+    double largest = NONE;
     int best = -1;
     for (int k = 0; k < n; k++) {
       double left = 1.0;
       for (int u = 0; u < nunit; u++) left -= unit[u][k] * unit[u][k];
-      if (left <= most) continue;
-      most = left;
+      if (left <= largest) continue;
+      largest = left;
       best = k;
     }
     if (best < 0) break;
