@@ -103,14 +103,29 @@ class Pieces {
   std::vector<int> cell_at;    // [place in vectors]
 };
 
+/** By a < n, then by b: of each a there are a few. Equal ones stay in their order, so that sums of these do not change. */
+void put_in_order(std::vector<Flow> &flows, int n)
+{
+  std::vector<int> end(n + 1, 0);
+  for (const auto &flow : flows) end[flow.a + 1]++;
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<Flow> ordered(flows.size());
+  const std::vector<int> first = end;
+  for (const auto &flow : flows) {
+    int place = end[flow.a]++;
+    for (; place > first[flow.a] && ordered[place - 1].b > flow.b; place--)
+      ordered[place] = ordered[place - 1];
+    ordered[place] = flow;
+  }
+  flows.swap(ordered);
+}
+
 /** The next level, from what flows between its cells. */
 CellGraph coarse_graph(const std::vector<Piece> &pieces, std::vector<Flow> &flows)
 {
-  std::stable_sort(flows.begin(), flows.end(), [](const Flow &a, const Flow &b) {
-    return a.a < b.a || (a.a == b.a && a.b < b.b);
-  });
   CellGraph graph;
   const int n = pieces.size();
+  put_in_order(flows, n);
   graph.outside.assign(n, 0.0);
   graph.inverse.assign(n, 0.0);
   graph.where.resize(n);
