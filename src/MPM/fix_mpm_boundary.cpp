@@ -243,11 +243,19 @@ bool FixMPMBoundary::keeps_distance() const
   return region ? holds_surface() : !decides();
 }
 
+/** Does it have a velocity without moving, so that material at the surface of a region leaves the latter? */
+bool FixMPMBoundary::is_driven() const
+{
+  return rotating() || std::any_of(velocity, velocity + 3, [](const auto &v) {
+           return !v.variable.empty() || v.value != 0.0;
+         });
+}
+
 /** Stick and slip on a region in explicit steps, and at rest in implicit ones: lines act where material is in front of it, and nodes where it is
- *  inside. */
+ *  inside. Nodes hold for good what sticks to a region that is driven. */
 bool FixMPMBoundary::holds_surface() const
 {
-  return (kind == STICK || (kind == SLIP && friction == 0.0)) && !follows;
+  return (kind == STICK ? !is_driven() : kind == SLIP && friction == 0.0) && !follows;
 }
 
 bool FixMPMBoundary::acts_on(const MPMField &field) const

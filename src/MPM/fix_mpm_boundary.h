@@ -391,6 +391,7 @@ class FixMPMBoundary :
   bool region_moves() const;
   /** Does a region act on lines of nodes through its surface? Else on nodes inside, one by one. */
   bool acts_across() const;
+  bool is_driven() const;
   bool holds_surface() const;
   bool keeps_distance() const;
   bool is_foreseen() const;
