@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: physics mpi input
+// labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 200
 
@@ -145,10 +145,26 @@ SERIAL_TEST(Units, Metal)
   }
 }
 
+namespace {
+
+const char *const FREE = "initial v_p free pressure 0 forchheimer number 50 ",
+                  *const MOVES = "formulation u-v-p ";
+
+}    // namespace
+
 TEST(Ranks, Agree)
 {
-  OnRanks run(blocks("initial v_p free pressure 0 forchheimer number 50") + PORE, "run 300\n");
+  OnRanks run(blocks(FREE) + PORE, "run 300\n");
   EXPECT_LT(run.difference(), 1e-11);
+  expect_same_on_ranks(
+      between_walls(blocks(std::string(FREE) + MOVES + "xlo pressure 1.0 ylo flux 0.01")), 1e-10);
+}
+
+// two soils of different drag, which touch
+TEST(Restart, Continues)
+{
+  for (const char *formulation : {"", MOVES})
+    expect_continues(blocks(std::string(FREE) + formulation), OF_BLOCKS);
 }
 
 SERIAL_TEST(BadInput, IsRefused)

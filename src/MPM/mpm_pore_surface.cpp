@@ -58,7 +58,9 @@ static constexpr double AT_FACE = 0.05, OFF_FACE = 0.1;
 static constexpr double LEAK = 0.5;       // of what a step makes from rest, for water with inertia
 static constexpr double FULL = 0.97;      // of a cell: sums over points are not exactly integrals
 static constexpr double ENOUGH = 0.01;    // of a cell at a node, for its whole weight
-static constexpr double MOSTLY = 0.5;     // part of a place that has water, for its whole area
+static constexpr double ONE_SIDED =
+    0.8;    // of the area at a node is left of its normals, unless surfaces face each other there
+static constexpr double MOSTLY = 0.5;    // part of a place that has water, for its whole area
 static constexpr double NOISE =
     0.1;    // of the area of a cell: no surface, but sums that are not integrals
 
@@ -191,7 +193,7 @@ double MPMPoreSurface::pressure_outside(const MPMPoreCondition &c, const double 
 
 /** at: on the surface; normal: out of the soil. */
 void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, double touch,
-                               const double *at, const double *normal)
+                               const double *at, const double *normal, double open)
 {
   const auto &condition = conditions[part];
   Place place = {};
@@ -199,6 +201,7 @@ void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, doubl
   place.area = area;
   place.outside = place.outside_at = pressure_outside(condition, at);
   place.touch = touch;
+  place.open = open;
   std::copy_n(at, 3, place.at);
   std::copy_n(normal, 3, place.normal);
   place.most = std::numeric_limits<double>::max();
@@ -284,6 +287,7 @@ void MPMPoreSurface::find_places()
   const int dim = lattice.dim;
   const double h = lattice.h, cell = lattice.cell_volume(), side = cell / h;
   MPMStencil stencil(field);
+  if (by_area()) free_normals.assign(dim * grid.nnodes(), 0.0);
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
     const auto &block = grid.blocks[ib];
     for (int n = 0; near[ib] && n < NODES_PER_BLOCK; n++) {
@@ -323,6 +327,7 @@ void MPMPoreSurface::find_places()
         add_place(stencil, face, touch * part * (1.0 - fabs(below)) * side, touch, at, normal);
       }
       if (conditions[FREE].kind == MPMPoreCondition::CLOSED) continue;
+      for (int d = 0; d < dim && by_area(); d++) free_normals[dim * number + d] = side * g[d];
       const double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
       if (length < NOISE) continue;
       const double depth = profile->depth(V / length);
@@ -333,10 +338,56 @@ void MPMPoreSurface::find_places()
         at[d] = x[d] + depth * h * normal[d];
       }
       const double open = open_part(at);
-      if (!(open > 0.0)) continue;
-      const double part = open * std::min(1.0, length / function(depth));
-      add_place(stencil, FREE, part * (1.0 - fabs(depth)) * side, 1.0, at, normal);
+      if (!(open > 0.0 || by_area())) continue;
+      const double part = std::min(1.0, length / function(depth));
+      add_place(stencil, FREE, part * (1.0 - fabs(depth)) * side, 1.0, at, normal, open);
     }
+  }
+  if (by_area()) find_areas();
+  for (auto &place : places) place.area *= place.open;
+}
+
+bool MPMPoreSurface::by_area() const
+{
+  const auto kind = conditions[FREE].kind;
+  return kind == MPMPoreCondition::FLUX || kind == MPMPoreCondition::RAIN;
+}
+
+/** Area of the free surface at places, where a volume of water for each area and time is given: that which nodes next to a place have, which is the integral of
+ *  their functions over the surface, over what they would have by the areas of places so far. Where surfaces face each other, normals cancel
+ *  at nodes between these, which then know less than others. */
+void MPMPoreSurface::find_areas()
+{
+  const int dim = field.lattice.dim, width = 1 + dim;
+  std::vector<double> sums(width * field.grid.nnodes(), 0.0);    // of areas, and times normals
+  const auto visit = [&](const Place &place, const auto &f) {
+    for (int k = place.first_at; k < place.first_at + place.n_at && place.part == FREE; k++)
+      f(node[k], weight[k]);
+  };
+  for (const auto &place : places)
+    visit(place, [&](int64_t i, double w) {
+      sums[width * i] += place.area * w;
+      for (int d = 0; d < dim; d++) sums[width * i + 1 + d] += place.area * w * place.normal[d];
+    });
+  field.nodes.sum(sums.data(), width, 0, width);
+  field.nodes.complete(sums.data(), width, width);
+  field.nodes.sum(free_normals.data(), dim, 0, dim);    // ranks have those of their nodes
+  field.nodes.complete(free_normals.data(), dim, dim);
+  for (auto &place : places) {
+    double area = 0.0, known = 0.0;
+    visit(place, [&](int64_t i, double w) {
+      const double all = sums[width * i];
+      double square = 0.0, has = 0.0;
+      for (int d = 0; d < dim; d++) {
+        const double along = sums[width * i + 1 + d];
+        square += along * along;
+        has += along * free_normals[dim * i + d];
+      }
+      if (!(square > 0.0)) return;
+      area += w * std::max(0.0, has / std::sqrt(square)) / all;
+      known += w * std::min(1.0, std::sqrt(square) / (ONE_SIDED * all));
+    });
+    if (known > 0.0) place.area *= area / known;
   }
 }
 
@@ -546,5 +597,7 @@ void MPMPoreSurface::add_changes(MPMNodeScalar &scalar) const
 double MPMPoreSurface::memory_usage() const
 {
   return places.capacity() * sizeof(Place) + node.capacity() * sizeof(int64_t) +
-      (weight.capacity() + nodes.capacity() + rows.capacity()) * sizeof(double) + near.capacity();
+      (weight.capacity() + nodes.capacity() + rows.capacity() + free_normals.capacity()) *
+      sizeof(double) +
+      near.capacity();
 }

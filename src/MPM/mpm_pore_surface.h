@@ -109,6 +109,7 @@ class MPMPoreSurface : protected Pointers {
     int first_at, n_at;      // nodes of the surface next to it, where water comes in
     double at[3], normal[3];    // on the surface, out of the soil
     double touch;               // part of the surface there that is of this place
+    double open;                // part of it that no body closes
     double outside_at;          // pressure outside at the surface itself
     double inflow;              // of water with inertia, volume for each time
     double most;                // volume of water that can come in for each area and time
@@ -123,7 +124,8 @@ class MPMPoreSurface : protected Pointers {
   std::vector<Place> places;
   std::vector<int64_t> node;    // of all places
   std::vector<double> weight;
-  std::vector<double> nodes;    // records with volume and its gradient
+  std::vector<double> nodes;           // records with volume and its gradient
+  std::vector<double> free_normals;    // [node][dim] of the free surface, times its area
   std::vector<double>
       rows;    // [2*node] sums of conductances where pressures are taken, and where water comes in
   std::vector<char> near;        // [block]
@@ -137,7 +139,10 @@ class MPMPoreSurface : protected Pointers {
   double pressure_outside(const MPMPoreCondition &, const double *x) const;
   int add_nodes(class MPMStencil &, const double *x);
   void add_place(class MPMStencil &, int part, double area, double touch, const double *at,
-                 const double *normal);
+                 const double *normal, double open = 1.0);
+  /** Does the area of the free surface tell how much water comes in? */
+  bool by_area() const;
+  void find_areas();
   double at_surface(const MPMNodeScalar &, const Place &) const;
   double normalize(int first, int n, double enough, const std::vector<double> &capacity);
 };
