@@ -133,11 +133,11 @@ void MPMTimeLimit::check()
     while (i < atom->nlocal - 1 && atom->tag[i] != tag) i++;
     const char *const remedy = "use timestep, fix mpm/dt, or fix mpm ... dtcheck no";
     if (c == 0.0)
-      error->one(
-          FLERR,
-          "Time step {:.6g} is above the limit {:.6g} of other physics, such as heat or pore "
-          "water that flows, at step {}: {}; {}",
-          field.step_dt(), limit, update->ntimestep, field.guard->describe(i), remedy);
+      error->one(FLERR,
+                 "Time step {:.6g} is above the limit {:.6g} of other physics, such as conduction "
+                 "of heat or "
+                 "flow of pore water, at step {}: {}; {}",
+                 field.step_dt(), limit, update->ntimestep, field.guard->describe(i), remedy);
     error->one(FLERR,
                "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave speed {:.6g}; "
                "{}",
