@@ -1134,7 +1134,9 @@ void compare_with_faces(const std::string &kind)
                         {"shape gimp transfer flip 1.0 scheme musl", in_motion},
                         {"shape linear transfer flip 0.9 scheme musl", in_motion}};
   for (const auto &c : cases)
-    for (const bool along : {false, true})
+    for (const bool along : {false, true}) {
+      if (c.solve == at_rest && kind == "stick") continue;    // which nodes hold
+
       for (const double off : {0.0, 0.1, 0.27, 0.5, 0.75, 0.9}) {
         SCOPED_TRACE(strprintf("%s along %d off %g", c.options, along, off));
         const auto face = pull_at_wall(true, kind, 0.2, off, along, c.options, c.solve),
@@ -1153,11 +1155,12 @@ void compare_with_faces(const std::string &kind)
         // the sum of forces times places is volume times mean stress: that of the wall has no lever arm about its surface
         double sum = 0.0;
         for (const auto &point : region.points) sum += point.stress[along] / region.points.size();
-        if (c.solve == at_rest && kind == "slip") {
+        if (c.solve == at_rest) {
           EXPECT_NEAR(sum, along ? 0.9 : 0.95, 2e-3);
           EXPECT_NEAR(region.force, along ? 0.0 : 1.0, 1e-6);
         }
       }
+    }
 }
 }    // namespace
 
@@ -1190,7 +1193,7 @@ TEST(Regions, RingOnAShaft)
     const char *kind;    // the ring does not turn, also where it can
   };
   for (const auto &[implicit, kind] :
-       {Case{true, "slip"}, Case{false, "slip"}, Case{true, "stick"}, Case{false, "stick"}}) {
+       {Case{true, "slip"}, Case{false, "slip"}, Case{false, "stick"}}) {
     SCOPED_TRACE(kind);
     const double h = 0.125, d = 0.5 * h;
     Scene run(

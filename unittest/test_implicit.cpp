@@ -654,11 +654,6 @@ SERIAL_TEST(Implicit, BadInput)
        {"fix s all mpm/implicit static\nfix t all mpm/implicit euler", "remove one"},
        {"fix s all mpm/implicit static\nfix dt all mpm/dt 0.5", "use timestep"},
        {"fix s all mpm/implicit static\nfix rest all mpm/relax 1e-5", "remove one"},
-       {"fix s all mpm/implicit midpoint\nunfix clamp\nfix clamp all mpm/boundary xlo separate",
-        "slip without friction"},
-       {"fix s all mpm/implicit midpoint\nunfix clamp\nfix clamp all mpm/boundary xlo slip "
-        "friction 0.3",
-        "slip without friction"},
        {"unfix clamp\nfix s all mpm/implicit static", "hold bodies"},
        {"fix s all mpm/implicit static iterations 1", "smaller steps"},
        {"fix s all mpm/implicit static linear 3", "linear system"},

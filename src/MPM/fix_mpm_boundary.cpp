@@ -251,11 +251,12 @@ bool FixMPMBoundary::is_driven() const
          });
 }
 
-/** Stick and slip on a region in explicit steps, and at rest in implicit ones: lines act where material is in front of it, and nodes where it is
+/** Stick and slip on a region in explicit steps, and slip at rest in implicit ones: lines act where material is in front of it, and nodes where it is
  *  inside. Nodes hold for good what sticks to a region that is driven. */
 bool FixMPMBoundary::holds_surface() const
 {
-  return (kind == STICK ? !is_driven() : kind == SLIP && friction == 0.0) && !follows;
+  const bool sticks = !is_driven() && !in_implicit_steps;
+  return (kind == STICK ? sticks : kind == SLIP && friction == 0.0) && !follows;
 }
 
 bool FixMPMBoundary::acts_on(const MPMField &field) const
@@ -287,9 +288,9 @@ void FixMPMBoundary::init()
                        return !v.variable.empty() || v.value != 0.0;
                      });
   nodes.clear();    // listed with the topology
-  const bool implicit = !modify->get_fix_by_style("^mpm/implicit$").empty();
-  seeks = kind == SEPARATE && implicit;
-  follows = kind != SEPARATE && implicit && !region_id.empty() &&
+  in_implicit_steps = !modify->get_fix_by_style("^mpm/implicit$").empty();
+  seeks = kind == SEPARATE && in_implicit_steps;
+  follows = kind != SEPARATE && in_implicit_steps && !region_id.empty() &&
       domain->get_region_by_id(region_id) && domain->get_region_by_id(region_id)->dynamic_check();
   for (auto *field : fields) {
     if (!acts_on(*field)) continue;

@@ -342,9 +342,10 @@ class FixMPMBoundary :
   double trial_dt = 0.0, trial_slip_time = 0.0, eps = 0.0, soft = 0.0;
   double rub_share = 1.0;    // of friction that nodes get
   int rounds = 0;            // of decisions in this step
-  bool seeks = false;        // material that comes to the wall in implicit steps
-  bool follows = false;      // a region that moves and holds: by lines in implicit steps
-  bool carrying = false;     // it is a grip for the material inside, see fix_mpm_boundary_carry.cpp
+  bool in_implicit_steps = false;
+  bool seeks = false;       // material that comes to the wall in implicit steps
+  bool follows = false;     // a region that moves and holds: by lines in implicit steps
+  bool carrying = false;    // it is a grip for the material inside, see fix_mpm_boundary_carry.cpp
   bool closes =
       false;    // lines that are held go to the wall now, else they are at rest relative to it
   std::vector<double> clear;    // [point][face] its distance from the wall at the start of the step
