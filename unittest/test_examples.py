@@ -376,6 +376,14 @@ def test_logs_name_no_folders_of_a_machine():
     assert not wrong, "\n".join(wrong)
 
 
+def test_logs_have_the_times_of_a_quiet_machine():
+    """the gallery takes the cost of a scene from its log"""
+    wrong = [path + ": " + share + " % CPU use"
+             for path in glob.glob(os.path.join(EXAMPLES, "*", "log.*"))
+             for share in re.findall(r"^ *([\d.]+)% CPU use", read(path), re.M) if float(share) < 80.0]
+    assert not wrong, "\n".join(wrong)
+
+
 for _k, _path in enumerate(inputs()):
     globals().update(make_tests(_path, 1 + _k % 2))
 
