@@ -207,6 +207,7 @@ fix grid all mpm 0.5
 create_points 1 region body ppc 2
 fix m all mpm/material density 1 neohookean 50 0.3
 velocity all set 0 -0.5 0
+velocity all ramp vx -0.3 0.3 x 5 8
 timestep 0.01
 variable x equal vdisplace(0,SPEED)
 region tool block 3 10 1 5 -0.5 0.5 move v_x NULL NULL
@@ -217,14 +218,7 @@ region tool block 3 10 1 5 -0.5 0.5 move v_x NULL NULL
     Scene run(replaced(scene, "SPEED", k == 2 ? "0.0" : "6.0") + (k ? wall : "") + go);
     state[k] = run.gather();
   }
-  // the body does not deform: its stress is noise, of which orders of sums decide
-  ASSERT_EQ(state[0].size(), state[1].size());
-  for (std::size_t i = 0; i < state[0].size(); i++)
-    for (int d = 0; d < 2; d++) {
-      EXPECT_NEAR(state[0][i].x[d], state[1][i].x[d], 1.0e-11);
-      EXPECT_NEAR(state[0][i].v[d], state[1][i].v[d], 1.0e-12);
-      EXPECT_NEAR(state[0][i].stress[d], state[1][i].stress[d], 1.0e-11);
-    }
+  EXPECT_LT(measured("difference", difference(state[0], state[1])), 1.0e-12);
   EXPECT_LT(Totals(state[0]).p[1], -0.4 * 9.0);
   EXPECT_GT(Totals(state[2]).p[1], -0.1 * 9.0);
 }
