@@ -20,12 +20,16 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROUNDS = int(os.environ.get("ROUNDS", 5))
 SIZES = {"405k": (37, 41, 405224, 40), "46k": (18, 22, 46656, 300)}
-# name: (case, what it is compared with), both as (physics, thermal)
-CASES = {"heat": (("heat", "yes"), ("none", "yes")), "heat_idle": (("heat_idle", "no"), ("none", "no")),
-         "pore": (("pore", "no"), ("none", "no")), "pore_idle": (("pore_idle", "no"), ("none", "no"))}
+# name: (case, what it is compared with), both as (physics, thermal, more keywords)
+CASES = {"heat": (("heat", "yes", " "), ("none", "yes", " ")),
+         "heat_every_5": (("heat", "yes", "every 5"), ("none", "yes", " ")),
+         "heat_every_10": (("heat", "yes", "every 10"), ("none", "yes", " ")),
+         "heat_idle": (("heat_idle", "no", " "), ("none", "no", " ")),
+         "pore": (("pore", "no", " "), ("none", "no", " ")), "pore_idle": (("pore_idle", "no", " "), ("none", "no", " "))}
+SHORT = 10    # steps of the shorter run
 
 
-def seconds(lmp, physics, thermal, n, box, steps, more=" "):
+def seconds(lmp, physics, thermal, more, n, box, steps):
     """processor time of a run"""
     command = [lmp, "-in", os.path.join(HERE, "in.physics"), "-log", "none", "-nocite"]
     for key, value in (("physics", physics), ("thermal", thermal), ("n", n), ("box", box), ("steps", steps),
@@ -51,7 +55,7 @@ def main():
         times = {lmp: {} for lmp in builds}
         for case in wanted:
             for lmp in builds if k % 2 == 0 else builds[::-1]:
-                short, long = (seconds(lmp, *case, n, box, length) for length in (5, 5 + steps))
+                short, long = (seconds(lmp, *case, n, box, length) for length in (SHORT, SHORT + steps))
                 times[lmp][case] = (long - short) / steps / points * 1.0e9
         for lmp in builds:
             rounds[lmp].append(times[lmp])

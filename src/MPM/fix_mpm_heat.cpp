@@ -128,6 +128,9 @@ Options MPMHeatOptions::declare(int dim)
                        "terms of the inverse of the matrix of capacities")}}})});
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
+  o.add("every",
+        {integer(every, "N", POSITIVE,
+                 "conduction in one of this many steps, for the time of all of them")});
   o.add(
       "time",
       {word(
@@ -250,6 +253,8 @@ double FixMPMHeat::sigma() const
 void FixMPMHeat::init()
 {
   require_field(lmp, *this);
+  if (grains) require_each_step("grains yes");
+  if (penalty) require_each_step("penalty yes");
   refuse_second(lmp, *this, "one acts on all points and faces");
   if (grains)
     grain_heat->init();
@@ -283,6 +288,14 @@ void FixMPMHeat::init()
                  source.substr(2),
                  source_index < 0 ? "does not exist" : "is not equal-style or atom-style");
   }
+}
+
+void FixMPMHeat::require_each_step(const std::string &giver) const
+{
+  if (every > 1)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/heat {} every {}: {} gives heat to nodes in each step: use every 1", id,
+               every, giver);
 }
 
 /** Pair styles between bodies, whose init() has been before. */
@@ -764,7 +777,7 @@ int FixMPMHeat::count_stages()
   static constexpr double BELOW_ONE_STEP = 0.95;
   int most_at_a_node = 0;
   for (auto &field : fields) most_at_a_node = std::max(most_at_a_node, exchanges(*field));
-  const double dt = fields[0]->field.step_dt(),
+  const double dt = waited.time,
                cap = std::max(greatest, BELOW_ONE_STEP / (dt * std::max(most_at_a_node, 1)));
   const double *rates = all.data() + NRATE * fields.size();
   const bool has_lines = !contacts.empty() || !skins.empty();
@@ -796,9 +809,9 @@ int FixMPMHeat::count_stages()
   if (stages > most_stages)
     error->all(FLERR, Error::NOLASTLINE,
                "The time step {:.6g} is {:.4g} times the explicit limit {:.4g} of the conduction "
-               "of heat, which needs more than {} stages: use fix mpm/dt, a smaller timestep, "
+               "of heat, which needs more than {} stages: use fix mpm/dt, a smaller timestep{}, "
                "fix mpm/heat ... stages, or implicit steps, fix mpm/heat ... time sdirk2",
-               dt, dt / limit, limit, most_stages);
+               dt, dt / limit, limit, most_stages, every > 1 ? " or fix mpm/heat ... every" : "");
   return stages;
 }
 
@@ -911,17 +924,28 @@ void FixMPMHeat::post_run()
                  iterations[LINEAR] / std::max(1.0, iterations[NEWTON]));
 }
 
+/** One step of fix mpm more; true when it is not yet time for the conduction. */
+bool FixMPMHeat::wait()
+{
+  waited.steps++;
+  waited.time += fields[0]->field.step_dt();
+  return waited.steps < every;
+}
+
 void FixMPMHeat::conduct()
 {
+  if (wait()) return;
   evaluate_variables();
   std::fill(in_step.begin(), in_step.end(), 0.0);
   for (auto &field : fields)
     if (grains && field->conducts()) grain_heat->give(*field);
   if (penalty) give_rubbing(fields[0]->field.step_dt());
+  for (auto &field : fields) field->duration = waited.time;
   const int stages = count_stages();
   for (auto &field : fields)
     if (field->conducts()) field->faces.hold(field->temperature, in_step);
-  dt_last = fields[0]->field.step_dt();
+  dt_last = waited.time;
+  waited = {};
   if (solver)
     solve();
   else
@@ -949,8 +973,10 @@ double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
   const double rate = conduction.greatest_rate_of_points(tag);
   const double others = (double) contacts.size() + (skins.empty() ? 0.0 : 1.0);
   return MPMSuperStep::reach(most_stages) *
-      MPMSuperStep::explicit_limit((1.0 + others) * rate +
-                                   conduction.faces.expected_rate(rate, conduction.least_capacity));
+      MPMSuperStep::explicit_limit(
+             (1.0 + others) * rate +
+             conduction.faces.expected_rate(rate, conduction.least_capacity)) /
+      every;
 }
 
 /* ----------------------------------------------------------------------
@@ -1003,14 +1029,16 @@ void FixMPMHeat::write_restart(FILE *fp)
 {
   keep_totals(world, &past.through_faces, sizeof(Past) / sizeof(double));
   if (comm->me) return;
-  const int size = sizeof(Past);
+  const int size = sizeof(Past) + sizeof(waited);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&past, size, 1, fp);
+  fwrite(&past, sizeof(Past), 1, fp);
+  fwrite(&waited, sizeof(waited), 1, fp);
 }
 
 void FixMPMHeat::restart(char *buf)
 {
   if (comm->me == 0) memcpy(&past, buf, sizeof(Past));
+  if (every > 1) memcpy(&waited, buf + sizeof(Past), sizeof(waited));
 }
 
 double FixMPMHeat::memory_usage()

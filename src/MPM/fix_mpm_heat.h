@@ -42,6 +42,7 @@ struct MPMHeatOptions {
   std::string source;    ///< variable, without v_; empty: none
   MPMHeatTransfer transfer;
   int most_stages = 32;
+  int every = 1;    // steps of fix mpm from one conduction to the next
   MPMDiffusionOptions in_time;
   bool grains = false;
   bool penalty = false;
@@ -82,6 +83,9 @@ class FixMPMHeat :
   void account(double *values) const override;
 
   MPMConduction &of(const MPMField &) const;
+
+  /** Stops with an error unless heat is conducted in each step, as those who give it to nodes in each need. */
+  void require_each_step(const std::string &giver) const;
 
   /** Who else gives heat to nodes and points. */
   enum Giver { FRICTION, GRAINS, NGIVER };
@@ -125,6 +129,9 @@ class FixMPMHeat :
   Heats in_step, present;
   Heats power;
   double dt_last = 0.0;
+  struct {    // in restart files
+    double steps, time;
+  } waited = {};    // since the last conduction
   bool power_known = true;
   bool leaks_known = false;    // has look_for_leaks() been done?
   int source_index = -1;
@@ -132,6 +139,7 @@ class FixMPMHeat :
 
   double sigma() const;
   MPMHeatBody &body_of(const MPMField &);
+  bool wait();
   void find_rubbers();
   void warn_of_friction();
   void take_rubbing();

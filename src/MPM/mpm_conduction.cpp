@@ -605,7 +605,7 @@ void MPMConduction::find_rates(const double *source, Heats &power)
     });
   if (at_start == TO_BE_SEEN) at_start = SEEN;
   for (std::size_t k = 0; k < given.size(); k++)
-    if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (field.step_dt() * scalar.capacity[k]);
+    if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (duration * scalar.capacity[k]);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -635,7 +635,7 @@ void MPMConduction::give(std::vector<double> &energy)
 double MPMConduction::nodes_to_points(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
-  const double crossings = slowest * field.step_dt() / (field.lattice.h * field.lattice.h);
+  const double crossings = slowest * duration / (field.lattice.h * field.lattice.h);
   const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX,
              xpic = transfer.kind == MPMHeatTransfer::XPIC;
   const double keep = relaxes ? exp(-transfer.relax * crossings) : 0.0;

@@ -48,6 +48,7 @@ class MPMConduction : protected Pointers {
   /** [nnodes] heat that nodes get from elsewhere in this step [energy], the same on all ranks that have the
    *  node; empty: none. */
   std::vector<double> given;
+  double duration = 0.0;    ///< of the coming conduction [time]
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 

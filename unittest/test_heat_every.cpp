@@ -1,0 +1,136 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+
+// Fix mpm/heat every: conduction in fewer steps than the motion.
+
+#include "heat_testing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** A bar with its left end at the temperature 1, and a source. */
+std::string warmed(const std::string &options)
+{
+  return bar(20, "xlo temperature 1.0 xhi convection 2.0 0.0 source v_s " + options) +
+      "variable s atom 3*x\n";
+}
+
+}    // namespace
+
+// at rest, five steps that wait for one conduction are one of five times the length, and nothing happens in between
+PARAMETER_TEST(Bar, HasLongerSteps, const char *,
+               Values("", "transfer xpic 3", "time sdirk2 tolerance 1e-12"))
+{
+  Scene few(warmed(std::string("every 5 ") + GetParam())), one(warmed(GetParam()));
+  few.commands("timestep 0.001\nrun 4\n");
+  EXPECT_EQ(few.fix("heat")->compute_scalar(), 0.0);
+  few.commands("run 18\n");
+  one.commands("timestep 0.005\nrun 4\n");
+  const double heat = one.fix("heat")->compute_scalar();
+  EXPECT_NEAR(few.fix("heat")->compute_scalar() / heat, 1.0, 1e-12);
+  EXPECT_NEAR(few.fix("heat")->compute_vector(0) / one.fix("heat")->compute_vector(0), 1.0, 1e-12);
+  Warm a(few), b(one);
+  for (int i = 0; i < few.n(); i++) EXPECT_NEAR(a.T(i), b.T(i), 1e-12);
+}
+
+// heat of the flow between two cold walls, as with conduction in each step: (T - T0) k/(mu U^2) in the middle. What shears is warmed in each step,
+// and the heat of four leaves at once
+SERIAL_TEST(Couette, IsWarmInTheMiddle)
+{
+  const auto middle = [](const std::string &every) {
+    const double h = 0.05;
+    Scene run(plane("lj", "p f", strprintf("0 %.17g 0 1", 4 * h), 1, 0.2 * h) +
+              strprintf("fix grid all mpm %.17g\ncreate_points 1 box ppc 2\n", h) +
+              "fix m all mpm/material density 1.0 eos linear 100.0 viscosity newtonian 1.0 "
+              "thermal conducting 1.0 0.0 1.0\n"
+              "fix low all mpm/boundary ylo stick\n"
+              "fix high all mpm/boundary yhi stick velocity 1 0 0\n"
+              "variable v atom y\nvelocity all set v_v 0 0\n"
+              "fix heat all mpm/heat ylo temperature 0 yhi temperature 0 " +
+              every + "\ncompute e all mpm/energy\ntimestep 0.000125\nrun 800\n");
+    // the heat in the ledger is what the points have
+    EXPECT_NEAR(run.compute_vector()[14] / run.fix("heat")->compute_scalar(), 1.0, 1e-11);
+    // the mean of the two cells in the middle is less by h^2/12
+    return Warm(run).at(0.1, 0.5, h) + h * h / 12.0;
+  };
+  const double exact = 0.0769191;    // at t = 0.1
+  const double each = measured("every step", middle("")) / exact,
+               fourth = measured("every fourth", middle("every 4")) / exact;
+  EXPECT_NEAR(each, 1.0, 0.005);
+  EXPECT_NEAR(fourth, each, 0.002);
+  EXPECT_NE(each, fourth);
+}
+
+// bodies that fly, turn, and yield: heat is kept, and differs little from that of conduction in each step
+TEST(Closed, KeepsHeat)
+{
+  Scene each(disk("") + "run 100\n");
+  Scene run(disk("every 4") + "run 0\n");
+  const double before = Warm(run, "m").heat() + Warm(run, "n").heat();
+  run.commands("compute e all mpm/energy\nrun 100\n");
+  const double *const e = run.compute_vector();
+  const double made = e[4], after = Warm(run, "m").heat() + Warm(run, "n").heat();
+  EXPECT_GT(made, 0.1);
+  EXPECT_NEAR((after - before - made) / before, 0.0, 1e-13);
+  EXPECT_NEAR(e[14] / before, 0.0, 1e-13);    // conducted heat
+  EXPECT_NEAR(e[10], 0.0, 1e-11);             // residual
+  // temperatures are between 0.7 and 2
+  const double difference = measured("difference", temperature_difference(each, run));
+  EXPECT_GT(difference, 1e-6);
+  EXPECT_LT(difference, 0.02);
+}
+
+TEST(Ranks, Agree)
+{
+  OnRanks run(disk("every 4"), "run 50\n");
+  EXPECT_LT(measured("difference", temperature_difference(run.serial, run.parallel)), 1e-12);
+}
+
+// a restart file between two conductions
+TEST(Restart, Continues)
+{
+  const std::string scene = disk("every 4"), tail = scene.substr(scene.find("fix m one"));
+  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n";
+  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
+    end = tail.find('\n', at);
+    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
+  }
+  Continued run(scene, 30, fixes + "timestep 0.02\n", 33);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  const auto one = temperatures(run.whole), two = temperatures(run.again);
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
+}
+
+// steps of the motion are as much shorter than those of the conduction
+SERIAL_TEST(Step, IsLimited)
+{
+  const auto dt = [](const std::string &every) {
+    Scene run(bar(20, "stages 5 " + every) + "fix dt all mpm/dt 0.9\nrun 1\n");
+    return run.lmp->update->dt;
+  };
+  EXPECT_NEAR(dt("") / dt("every 10"), 10.0, 1e-9);
+  Scene run(bar(20, "stages 5 every 10", 0.0, "dtcheck no"));
+  expect_error(run, strprintf("timestep %g\nrun 10\n", 0.73 * 0.98 * 2.0 / (6.0 * 400.0)),
+               "a smaller timestep or fix mpm/heat ... every");
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  const std::string scene = bar(4, "");
+  const std::string plain = scene.substr(0, scene.find("fix heat"));
+  const std::string heat = "fix heat all mpm/heat every ";
+  expect_refused(
+      plain,
+      {{heat + "0", "every"},
+       {heat + "1.5", "every"},
+       {heat + "2 penalty yes", "penalty yes gives heat to nodes in each step: use every 1"},
+       {heat + "2 grains yes", "grains yes gives heat to nodes in each step: use every 1"},
+       {heat + "2\nfix wall all mpm/boundary xlo slip friction 0.1 heat yes",
+        "fix mpm/boundary wall heat gives heat to nodes in each step: use every 1"}},
+      "timestep 1e-4\nrun 1\n");
+}
