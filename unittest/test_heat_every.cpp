@@ -84,6 +84,47 @@ TEST(Closed, KeepsHeat)
   EXPECT_LT(difference, 0.02);
 }
 
+// two bodies, periodic along x, one of which slides on the other: what friction takes is there at once, in the right body, and is conducted as
+// in each step
+TEST(Friction, HeatsBothBodies)
+{
+  const auto text = [](const std::string &every) {
+    return plane("lj", "p f", "0 4 -2 2.5", 2, 0.2) +
+        fields({{"low", "block INF INF -2 0 INF INF"}, {"top", "block INF INF 0 2 INF INF"}},
+               "0.25 origin 0 0") +
+        "fix m low mpm/material density 1.0 neohookean 400 0.3 thermal conducting 2.0 0.0 0.2\n"
+        "fix n top mpm/material density 1.0 neohookean 400 0.3 thermal conducting 1.0 0.0 0.1\n"
+        "fix floor all mpm/boundary ylo stick\n"
+        "fix touch all mpm/contact F1 F2 law coulomb 0.3 heat yes\n"
+        "fix push top gravity 0.5 vector 0 -1 0\nvelocity top set 2 0 0\n"
+        "fix heat all mpm/heat " +
+        every + "\ntimestep 0.002\ncompute e all mpm/energy\n";
+  };
+  const auto spread = [](Scene &run, const char *id) {
+    Warm warm(run, id);
+    double most = 0.0;
+    for (int i = 0; i < run.n(); i++)
+      if (warm.has(i)) most = std::max(most, warm.T(i));
+    return over_ranks(most, MPI_MAX);
+  };
+  Scene each(text("") + "run 400\n"), fourth(text("every 4") + "run 2\n");
+  const double m0 = Warm(fourth, "m").heat();
+  EXPECT_GT(m0, 0.0);    // before any conduction
+  EXPECT_NEAR((m0 + Warm(fourth, "n").heat()) / fourth.fix("heat")->compute_scalar(), 1.0, 1e-11);
+  fourth.commands("run 398\n");
+  const double *const e = fourth.compute_vector();
+  EXPECT_NEAR(e[10], 0.0, 1e-11);    // residual
+  for (const char *id : {"m", "n"}) {
+    const double one = Warm(each, id).heat(), other = Warm(fourth, id).heat();
+    EXPECT_GT(one, 0.05);
+    EXPECT_NEAR(measured(std::string("heat of ") + id, other) / one, 1.0, 1e-11);
+    EXPECT_NEAR(measured(std::string("hottest of ") + id, spread(fourth, id)) / spread(each, id),
+                1.0, 0.01);
+  }
+  OnRanks run(text("every 4"), "run 50\n");
+  EXPECT_LT(measured("difference", temperature_difference(run.serial, run.parallel)), 1e-12);
+}
+
 TEST(Ranks, Agree)
 {
   OnRanks run(disk("every 4"), "run 50\n");
@@ -129,8 +170,10 @@ SERIAL_TEST(BadInput, IsRefused)
       {{heat + "0", "every"},
        {heat + "1.5", "every"},
        {heat + "2 penalty yes", "penalty yes gives heat to nodes in each step: use every 1"},
-       {heat + "2 grains yes", "grains yes gives heat to nodes in each step: use every 1"},
-       {heat + "2\nfix wall all mpm/boundary xlo slip friction 0.1 heat yes",
-        "fix mpm/boundary wall heat gives heat to nodes in each step: use every 1"}},
+       {heat + "2 grains yes", "grains yes gives heat to nodes in each step: use every 1"}},
       "timestep 1e-4\nrun 1\n");
+  // the mass of a node tells how its heat is shared
+  expect_error(replaced(disk("every 2"), "boundary p p p", "boundary p f p") +
+                   "fix wall all mpm/boundary ylo slip friction 0.1 heat yes\nrun 1\n",
+               "all materials of fix mpm grid conduct: use every 1");
 }

@@ -92,6 +92,7 @@ class FixMPMBoundary :
   void act(double dt, Stage) override;
 
   bool loses_heat() const override { return friction > 0.0 && !heat.said; }
+  bool gives_heat() const override { return heat.heats(); }
   bool is_region() const { return !region_id.empty(); }
   /** Of a place from the surface of the region, negative inside; far where it is more. During a run. */
   double distance(const double *x, double far) const { return surface->distance(x, far); }

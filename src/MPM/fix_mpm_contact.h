@@ -66,6 +66,7 @@ class FixMPMContact :
   FixMPMContact(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   bool loses_heat() const override { return kinetic_friction > 0.0 && !heat.said; }
+  bool gives_heat() const override { return heat.heats(); }
   void init() override;
   void init_action() override;
   void post_run() override { report_unsolved(); }

@@ -263,6 +263,10 @@ void FixMPMHeat::init()
         FLERR, Error::NOLASTLINE,
         "Fix mpm/heat: atoms have heat flows, of which material points would know nothing: say "
         "grains yes, or grains no if they exchange none with points");
+  const auto all = find_fixes<MPMRubbing>(lmp);
+  rubs = std::any_of(all.begin(), all.end(), [](const auto *fix) {
+    return fix->gives_heat();
+  });
   find_rubbers();
   warn_of_friction();
   const auto materials = find_fixes<FixMPMMaterial>(lmp);
@@ -290,7 +294,8 @@ void FixMPMHeat::init()
   }
 }
 
-void FixMPMHeat::require_each_step(const std::string &giver) const
+/** What other atoms give waits for no conduction. */
+void FixMPMHeat::require_each_step(const char *giver) const
 {
   if (every > 1)
     error->all(FLERR, Error::NOLASTLINE,
@@ -929,7 +934,17 @@ bool FixMPMHeat::wait()
 {
   waited.steps++;
   waited.time += fields[0]->field.step_dt();
-  return waited.steps < every;
+  if (waited.steps >= every) return false;
+  for (auto &field : fields) {
+    if (!rubs || !field->conducts()) continue;
+    if (field->conducts_in_part())
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/heat {} every {}: heat of friction needs that all materials of fix mpm "
+                 "{} conduct: use every 1",
+                 id, every, field->field.id());
+    past.got += field->keep_given();
+  }
+  return true;
 }
 
 void FixMPMHeat::conduct()

@@ -84,9 +84,6 @@ class FixMPMHeat :
 
   MPMConduction &of(const MPMField &) const;
 
-  /** Stops with an error unless heat is conducted in each step, as those who give it to nodes in each need. */
-  void require_each_step(const std::string &giver) const;
-
   /** Who else gives heat to nodes and points. */
   enum Giver { FRICTION, GRAINS, NGIVER };
   /** Heat that nodes or points of this rank were given in this step [energy], before they conduct. */
@@ -102,12 +99,13 @@ class FixMPMHeat :
   std::vector<double> rubbed;                        // [n] heat of that
   std::vector<class PairMPMPenalty *> rubbers;       // pair styles that make it
   bool grains_said = false, penalty_said = false;    // are the keywords there?
+  bool rubs = false;                                 // is there a fix that gives heat of friction?
   bool losses_known = false;                         // has warn_of_friction() been done?
   std::vector<std::unique_ptr<MPMConduction>> fields;
   struct Past {    // so far, this rank's share; in restart files that of all ranks
     double through_faces, of_sources;
     double got;                              // by points
-    double given[NGIVER], booked[NGIVER];    // before the last conduction, and since
+    double given[NGIVER], booked[NGIVER];    // up to the last conduction, and since
   };
   static constexpr int GIVERS = MPMHeatFaces::NFACE + 1;    // place in lists of heat
 
@@ -140,6 +138,7 @@ class FixMPMHeat :
   double sigma() const;
   MPMHeatBody &body_of(const MPMField &);
   bool wait();
+  void require_each_step(const char *giver) const;
   void find_rubbers();
   void warn_of_friction();
   void take_rubbing();

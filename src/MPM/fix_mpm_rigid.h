@@ -72,6 +72,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
   FixMPMRigid(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   bool loses_heat() const override { return friction > 0.0 && !heat.said; }
+  bool gives_heat() const override { return heat.heats(); }
   void init() override;
   void init_action() override;
   void write_restart(FILE *) override;

@@ -72,6 +72,9 @@ class MPMConduction : protected Pointers {
   /** Last part: temperatures of points; returns the heat that they have got. */
   double nodes_to_points(const MPMRows &gradients);
 
+  /** In a step without conduction: heat that nodes were given goes to points; returns what this rank's have got. Collective. */
+  double keep_given();
+
   /** Adds heat of points of this rank, [n] of energy, to that of their nodes, by the weights of the shape functions.
    *  Collective; before points_to_nodes(). */
   void give(std::vector<double> &energy);
@@ -119,6 +122,7 @@ class MPMConduction : protected Pointers {
   bool total = false, active = false;
 
   std::vector<double> volumes;    // [n] of points in this step
+  std::vector<char> warmed;       // [blocks] nodes of it were given heat
   std::vector<double> at_rest;    // [n][3] velocities of points that give heat, zero
   // [n] their temperatures by the nodes at its start, if the first rates are those of these temperatures; otherwise nodes keep them
   std::vector<double> seen;

@@ -80,7 +80,6 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
         "the keyword",
         user.style, user.id);
   heat = dynamic_cast<FixMPMHeat *>(heats[0]);
-  heat->require_each_step(fmt::format("fix {} {} heat", user.style, user.id));
   bodies.clear();
   bool any = false, points = false;
   for (auto *field : fields) {

@@ -38,6 +38,8 @@ class MPMRubbing {
  public:
   /** Does it take energy by friction, without a word in the input on what becomes of it? */
   virtual bool loses_heat() const = 0;
+  /** Does it give this energy to nodes, as heat? */
+  virtual bool gives_heat() const = 0;
 
  protected:
   ~MPMRubbing() = default;
