@@ -168,7 +168,7 @@ def costs(lmp, physics, methods, rounds, size):
 
     def step(kind, more):
         thermal = "yes" if physics == "heat" else "no"
-        short, long = (rp.seconds(lmp, kind, thermal, n, box, length, more) for length in (5, 5 + steps))
+        short, long = (rp.seconds(lmp, kind, thermal, more, n, box, length) for length in (5, 5 + steps))
         return (long - short) / steps
 
     for _ in range(rounds):
