@@ -22,6 +22,7 @@ ROUNDS = int(os.environ.get("ROUNDS", 5))
 SIZES = {"405k": (37, 41, 405224, 40), "46k": (18, 22, 46656, 300)}
 # name: (case, what it is compared with), both as (physics, thermal, more keywords)
 CASES = {"heat": (("heat", "yes", " "), ("none", "yes", " ")),
+         "heat_every_auto": (("heat", "yes", "every auto"), ("none", "yes", " ")),
          "heat_every_5": (("heat", "yes", "every 5"), ("none", "yes", " ")),
          "heat_every_10": (("heat", "yes", "every 10"), ("none", "yes", " ")),
          "heat_idle": (("heat_idle", "no", " "), ("none", "no", " ")),
@@ -59,13 +60,13 @@ def main():
                 times[lmp][case] = (long - short) / steps / points * 1.0e9
         for lmp in builds:
             rounds[lmp].append(times[lmp])
-    print("%-40s %-10s %9s %9s %8s" % ("build", "physics", "step ns", "adds ns", "ratio"))
+    print("%-40s %-15s %9s %9s %8s" % ("build", "physics", "step ns", "adds ns", "ratio"))
     for lmp in builds:
         for name, (case, without) in CASES.items():
             step = statistics.median(r[without] for r in rounds[lmp])
             adds = statistics.median(r[case] - r[without] for r in rounds[lmp])
             ratio = statistics.median(r[case] / r[without] - 1.0 for r in rounds[lmp])
-            print("%-40s %-10s %9.2f %9.2f %8.3f" % (lmp[-40:], name, step, adds, ratio), flush=True)
+            print("%-40s %-15s %9.2f %9.2f %8.3f" % (lmp[-40:], name, step, adds, ratio), flush=True)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,12 @@ std::string warmed(const std::string &options)
       "variable s atom 3*x\n";
 }
 
+/** Step of the scene disk() with a keyword every: with auto shorter ones, of which several are a tenth of the explicit limit. */
+std::string step(const std::string &every)
+{
+  return every == "every auto" ? "timestep 0.004\n" : "timestep 0.02\n";
+}
+
 }    // namespace
 
 // at rest, five steps that wait for one conduction are one of five times the length, and nothing happens in between
@@ -66,12 +72,14 @@ SERIAL_TEST(Couette, IsWarmInTheMiddle)
 }
 
 // bodies that fly, turn, and yield: heat is kept, and differs little from that of conduction in each step
-TEST(Closed, KeepsHeat)
+PARAMETER_TEST(Closed, KeepsHeat, const char *, Values("every 4", "every auto"))
 {
-  Scene each(disk("") + "run 100\n");
-  Scene run(disk("every 4") + "run 0\n");
+  const std::string every = GetParam();
+  const std::string steps = step(every) + (every == "every auto" ? "run 500\n" : "run 100\n");
+  Scene each(disk("every 1") + steps);
+  Scene run(disk(every) + "run 0\n");
   const double before = Warm(run, "m").heat() + Warm(run, "n").heat();
-  run.commands("compute e all mpm/energy\nrun 100\n");
+  run.commands("compute e all mpm/energy\n" + steps);
   const double *const e = run.compute_vector();
   const double made = e[4], after = Warm(run, "m").heat() + Warm(run, "n").heat();
   EXPECT_GT(made, 0.1);
@@ -125,26 +133,120 @@ TEST(Friction, HeatsBothBodies)
   EXPECT_LT(measured("difference", temperature_difference(run.serial, run.parallel)), 1e-12);
 }
 
-TEST(Ranks, Agree)
+PARAMETER_TEST(Ranks, Agree, const char *, Values("every 4", "every auto"))
 {
-  OnRanks run(disk("every 4"), "run 50\n");
+  OnRanks run(disk(GetParam()) + step(GetParam()), "run 50\n");
   EXPECT_LT(measured("difference", temperature_difference(run.serial, run.parallel)), 1e-12);
 }
 
 // a restart file between two conductions
-TEST(Restart, Continues)
+PARAMETER_TEST(Restart, Continues, const char *, Values("every 4", "every auto"))
 {
-  const std::string scene = disk("every 4"), tail = scene.substr(scene.find("fix m one"));
+  const std::string scene = disk(GetParam()) + step(GetParam()),
+                    tail = scene.substr(scene.find("fix m one"));
   std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n";
   for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
     end = tail.find('\n', at);
     if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
   }
-  Continued run(scene, 30, fixes + "timestep 0.02\n", 33);
+  Continued run(scene, 30, fixes + step(GetParam()), 33);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
   const auto one = temperatures(run.whole), two = temperatures(run.again);
   ASSERT_EQ(one.size(), two.size());
   EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
+}
+
+/** Of each of n steps: has it conducted heat? That of a bar with a flux through its left end. */
+static std::vector<int> conductions(Scene &run, int n)
+{
+  std::vector<int> steps;
+  double before = run.fix("heat")->compute_scalar();
+  for (int k = 1; k <= n; k++) {
+    run.commands("run 1\n");
+    const double heat = run.fix("heat")->compute_scalar();
+    if (heat != before) steps.push_back(k);
+    before = heat;
+  }
+  return steps;
+}
+
+// a bar of 20 cells whose end is heated suddenly, explicit limit 8.1e-4: few steps wait while temperatures change fast, and ten later on
+TEST(Auto, WaitsWhereLittleChanges)
+{
+  Scene run(bar(20, "every auto xlo temperature 1.0 xhi flux 0.01"));
+  run.commands("timestep 2e-6\nrun 0\n");
+  const auto first = conductions(run, 40);
+  ASSERT_GT(first.size(), 6u);
+  for (int k = 0; k < 6; k++) EXPECT_EQ(first[k], k + 1);
+  run.commands("run 2000\n");
+  const auto later = conductions(run, 41);
+  ASSERT_GE(later.size(), 4u);
+  for (std::size_t k = 1; k < later.size(); k++) EXPECT_EQ(later[k] - later[k - 1], 10);
+  // a tenth of the explicit limit, 0.98/3 h^2 (SHARE)
+  run.commands("run 9959\ntimestep 2.1e-5\nrun 10\n");
+  const auto share = conductions(run, 12);
+  ASSERT_GE(share.size(), 3u);
+  for (std::size_t k = 1; k < share.size(); k++) EXPECT_EQ(share[k] - share[k - 1], 3);
+  // and none waits near the limit
+  run.commands("timestep 5e-5\nrun 3\n");
+  EXPECT_EQ(conductions(run, 5).size(), 5u);
+}
+
+// the error against the exact temperatures is that of conduction in each step
+TEST(Auto, IsAsExact)
+{
+  const double t = 0.05;
+  const auto error = [&](const std::string &every, double *power) {
+    Scene run(bar(20, "xlo temperature 1.0 " + every));
+    run_to(run, t, 1.0e-5);
+    *power = run.fix("heat")->compute_scalar() / (4.0 / 20.0);
+    return Warm(run)
+        .error([&](const double *x) {
+          double T = 1.0;
+          for (int k = 0; k < 60; k++) {
+            const double b = (k + 0.5) * PI;
+            T -= 2.0 / b * std::sin(b * x[0]) * std::exp(-b * b * t);
+          }
+          return T;
+        })
+        .rms;
+  };
+  double heat[2];
+  const double each = measured("every step", error("every 1", heat)),
+               few = measured("auto", error("every auto", heat + 1));
+  EXPECT_LT(each, 2e-3);
+  EXPECT_LT(few, each);
+  const double exact = 2.0 * std::sqrt(t / PI);
+  EXPECT_NEAR(measured("heat", heat[0]) / exact, 1.0, 0.005);
+  EXPECT_NEAR(measured("heat, auto", heat[1]) / heat[0], 1.0, 0.001);
+}
+
+// what changes from step to step, and what is fast or near the limit, is as with every 1, to the last bit
+PARAMETER_TEST(Auto, DoesNotWait, const char *,
+               Values("xlo temperature v_hot", "xhi convection v_hot 0.0", "source v_hot",
+                      "region wall temperature 1.0", "time sdirk2"))
+{
+  const std::string more = "variable hot equal 1.0+100*time\nvariable way equal 1e-3*step\n"
+                           "region wall block -0.2 0.0 INF INF INF INF move v_way NULL NULL\n";
+  const auto scene = [&](const std::string &every) {
+    std::string text = bar(10, std::string(GetParam()) + " " + every, 0.0, "", 0.5);
+    return text.insert(text.find("fix heat"), more) + "timestep 1e-5\nrun 25\n";
+  };
+  Scene each(scene("every 1")), run(scene("every auto"));
+  Warm a(each), b(run);
+  for (int i = 0; i < run.n(); i++) EXPECT_EQ(a.T(i), b.T(i));
+  EXPECT_EQ(each.fix("heat")->compute_scalar(), run.fix("heat")->compute_scalar());
+}
+
+// friction needs conduction in each step where not all materials conduct, and an input need not say so
+TEST(Auto, KnowsMaterialsThatDoNotConduct)
+{
+  const auto scene = [](const std::string &every) {
+    return replaced(disk(every), "boundary p p p", "boundary p f p") +
+        "fix wall all mpm/boundary ylo slip friction 0.1 heat yes\ntimestep 0.002\nrun 30\n";
+  };
+  Scene each(scene("every 1")), run(scene("every auto"));
+  EXPECT_EQ(temperature_difference(each, run), 0.0);
 }
 
 // steps of the motion are as much shorter than those of the conduction

@@ -37,6 +37,28 @@ using namespace MPM_NS;
 
 static const char *const FACE_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 
+/** A number of steps, or the word auto, which is none. */
+static OptionValue steps_or_auto(int &to, const std::string &of_number, const std::string &of_auto)
+{
+  OptionValue value = option::integer(to, "N", POSITIVE, of_number);
+  const auto read = value.read;
+  const auto text = value.text;
+  value.usage = "N or *auto*";
+  value.notes.push_back({"*auto*", of_auto});
+  value.read = [&to, read](OptionReader &r) {
+    if (r.iarg < r.input.narg && !strcmp(r.input.arg[r.iarg], "auto")) {
+      r.next();
+      to = 0;
+    } else {
+      read(r);
+    }
+  };
+  value.text = [&to, text] {
+    return to ? text() : std::string("auto");
+  };
+  return value;
+}
+
 /* ----------------------------------------------------------------------
    fix ID all mpm/heat keyword values ...
 ------------------------------------------------------------------------- */
@@ -129,8 +151,8 @@ Options MPMHeatOptions::declare(int dim)
   o.add("stages",
         {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
   o.add("every",
-        {integer(every, "N", POSITIVE,
-                 "conduction in one of this many steps, for the time of all of them")});
+        {steps_or_auto(every, "conduction in one of this many steps, for the time of all of them",
+                       "as many steps as change little, up to 10")});
   o.add(
       "time",
       {word(
@@ -466,6 +488,7 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
   }
   init_contacts();
+  each_step = needs_each_step();
 }
 
 MPMHeatBody &FixMPMHeat::body_of(const MPMField &field)
@@ -637,7 +660,7 @@ void FixMPMHeat::check_values() const
            p.now, "not be negative");
 }
 
-void FixMPMHeat::evaluate_variables()
+bool FixMPMHeat::has_variables() const
 {
   bool any = !source.empty();
   for (const auto &c : conditions)
@@ -645,7 +668,12 @@ void FixMPMHeat::evaluate_variables()
   for (const auto &[region, c] : surfaces)
     for (int k = 0; k < c.nvalue(); k++) any = any || !c.value[k].variable.empty();
   for (const auto &p : pairs) any = any || !p.conductance.variable.empty();
-  evaluate_in_step(lmp, any, [&] {
+  return any;
+}
+
+void FixMPMHeat::evaluate_variables()
+{
+  evaluate_in_step(lmp, has_variables(), [&] {
     for (auto &c : conditions)
       for (int k = 0; k < c.nvalue(); k++) c.now[k] = evaluate(lmp, c.value[k]);
     for (auto &[region, c] : surfaces)
@@ -929,24 +957,6 @@ void FixMPMHeat::post_run()
                  iterations[LINEAR] / std::max(1.0, iterations[NEWTON]));
 }
 
-/** One step of fix mpm more; true when it is not yet time for the conduction. */
-bool FixMPMHeat::wait()
-{
-  waited.steps++;
-  waited.time += fields[0]->field.step_dt();
-  if (waited.steps >= every) return false;
-  for (auto &field : fields) {
-    if (!rubs || !field->conducts()) continue;
-    if (field->conducts_in_part())
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/heat {} every {}: heat of friction needs that all materials of fix mpm "
-                 "{} conduct: use every 1",
-                 id, every, field->field.id());
-    past.got += field->keep_given();
-  }
-  return true;
-}
-
 void FixMPMHeat::conduct()
 {
   if (wait()) return;
@@ -978,6 +988,7 @@ void FixMPMHeat::conduct()
   for (int k = 0; k < NGIVER; k++) past.given[k] += in_step[GIVERS + k] = past.booked[k];
   std::fill_n(past.booked, NGIVER, 0.0);
   power_known = false;
+  if (every == AUTO) waited.longest = longest_wait();
 }
 
 double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
@@ -991,7 +1002,7 @@ double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
       MPMSuperStep::explicit_limit(
              (1.0 + others) * rate +
              conduction.faces.expected_rate(rate, conduction.least_capacity)) /
-      every;
+      std::max(every, 1);
 }
 
 /* ----------------------------------------------------------------------
@@ -1053,7 +1064,7 @@ void FixMPMHeat::write_restart(FILE *fp)
 void FixMPMHeat::restart(char *buf)
 {
   if (comm->me == 0) memcpy(&past, buf, sizeof(Past));
-  if (every > 1) memcpy(&waited, buf + sizeof(Past), sizeof(waited));
+  memcpy(&waited, buf + sizeof(Past), sizeof(waited));
 }
 
 double FixMPMHeat::memory_usage()

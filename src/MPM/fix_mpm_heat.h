@@ -42,7 +42,8 @@ struct MPMHeatOptions {
   std::string source;    ///< variable, without v_; empty: none
   MPMHeatTransfer transfer;
   int most_stages = 32;
-  int every = 1;    // steps of fix mpm from one conduction to the next
+  static constexpr int AUTO = 0;
+  int every = 1;    // steps of fix mpm from one conduction to the next, or AUTO
   MPMDiffusionOptions in_time;
   bool grains = false;
   bool penalty = false;
@@ -127,9 +128,12 @@ class FixMPMHeat :
   Heats in_step, present;
   Heats power;
   double dt_last = 0.0;
-  struct {    // in restart files
-    double steps, time;
-  } waited = {};    // since the last conduction
+  struct {                 // in restart files
+    double steps, time;    // since the last conduction
+    double
+        longest;    // with every auto: no conduction is for more time than this, but for one step
+  } waited = {};
+  bool each_step = false;    // conduction cannot wait, with every auto
   bool power_known = true;
   bool leaks_known = false;    // has look_for_leaks() been done?
   int source_index = -1;
@@ -138,6 +142,9 @@ class FixMPMHeat :
   double sigma() const;
   MPMHeatBody &body_of(const MPMField &);
   bool wait();
+  double longest_wait() const;
+  bool needs_each_step() const;
+  bool has_variables() const;
   void require_each_step(const char *giver) const;
   void find_rubbers();
   void warn_of_friction();

@@ -640,13 +640,14 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
              xpic = transfer.kind == MPMHeatTransfer::XPIC;
   const double keep = relaxes ? exp(-transfer.relax * crossings) : 0.0;
   double got = 0.0;
+  change = 0.0;
   scalar.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
           const double *before) {
         if (at_start == SEEN) before = seen.data() + first;
         const Thermal *const t = thermal(run.material);
         Conduction c = t->all;
-        double sum = 0.0, *const rows = t->fix->history[first];
+        double sum = 0.0, most = change, *const rows = t->fix->history[first];
         const double *const rmass = atom->rmass + first;
         const int width = t->fix->nhistory;
         if_plain(relaxes && !t->varies && !c.by_enthalpy && t->molten < 0, [&](auto plain) {
@@ -657,6 +658,7 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
             if (plain || relaxes) now += keep * (T - before[p]);
             if (!plain && xpic) now -= before[p];
             sum += rmass[p] * c.capacity * (now - T);
+            most = std::max(most, fabs(now - T));
             if (!plain && c.by_enthalpy) {
               t->fix->material->warm(history, c.capacity * (now - T));
             } else {
@@ -670,6 +672,7 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
         else if (gradients)
           copy_rows<2>(n, q[0], gradients[first]);
         got += sum;
+        change = most;
       },
       (relaxes && at_start == OF_NODES) || xpic);
   return got;

@@ -16,7 +16,9 @@
 #include "mpm_layer_mean.h"
 #include "mpm_node_scalar.h"
 
+#include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -71,6 +73,14 @@ class MPMConduction : protected Pointers {
   void each_term(const MPMDiffusion::Term &) const;
   /** Last part: temperatures of points; returns the heat that they have got. */
   double nodes_to_points(const MPMRows &gradients);
+  /** Of points, each the greatest: what tells for how long conduction may wait. */
+  struct Motion {
+    static constexpr double NONE = -std::numeric_limits<double>::max();
+    double speed = 0.0, change = 0.0;      ///< change: of the temperature in the last conduction
+    double highest = NONE, less = NONE;    ///< temperature, and minus the temperature
+  };
+  /** Adds what points of this rank have. */
+  void add_motion(Motion &) const;
 
   /** In a step without conduction: heat that nodes were given goes to points; returns what this rank's have got. Collective. */
   double keep_given();
@@ -119,6 +129,7 @@ class MPMConduction : protected Pointers {
   double steepest =
       0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
   double conducted = 0.0;    // limit of the last step
+  double change = 0.0;       // of a temperature of points in the last conduction, the greatest
   bool total = false, active = false;
 
   std::vector<double> volumes;    // [n] of points in this step

@@ -7,6 +7,26 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
+   Conduction in one of several steps of the motion: keyword every.
+
+   With auto, conduction waits for another step while there are at most MOST_STEPS, and the time t since the last conduction
+   fulfills, with what was known at that,
+
+     t <= SHARE t_1                    with the explicit limit t_1 of conduction within bodies
+     t |v| <= WAY h                    for all points: bodies move and strain little on the lattice
+     t |dT/dt| <= LUMP (Tmax - Tmin)   for all points, dT/dt by the last conduction: temperatures, and with them thermal
+                                       stresses, do not change in large lumps
+
+   The first one makes the error of Euler's method in time less than that of the lattice in space: for a wave number k
+   they are t k^2 K/(2 rho c) < SHARE h^2 k^2/6 and about h^2 k^2/12 of the rate. Where exchange through a surface or a contact is faster than conduction
+   across a cell it follows with that, as in long steps (MPMHeatFaces::limit()).
+
+   What varies from step to step is met in each of them: variables, and regions that move. So is all that is implicit, and heat that others give
+   in each step.
+
+   The sums of ranks differ by round-off, which must not make another number of steps: times that are equal on paper are told
+   apart by NEARLY.
+
    Heat that friction gives to nodes in a step without conduction goes to points at once, as nodes are others in the next step:
 
      Q_p = sum_i Q_i m_p N_ip/m_i,
@@ -16,15 +36,95 @@
 ------------------------------------------------------------------------- */
 
 #include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "fix_mpm_heat.h"
+#include "fix_mpm_implicit.h"
 #include "fix_mpm_material.h"
 #include "mpm_conduction.h"
 #include "mpm_field.h"
+#include "mpm_options.h"
 #include "mpm_stencil.h"
+#include "region.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+static constexpr double MOST_STEPS = 10.0;
+static constexpr double SHARE = 0.1;
+static constexpr double WAY = 0.1;
+static constexpr double LUMP = 0.02;
+static constexpr double NEARLY = 1.0 + 1.0e-6;
+// of the greatest temperature: differences that are none
+static constexpr double ROUND_OFF = 1.0e-9;
+static constexpr double BIG = std::numeric_limits<double>::max();
+
+/** One step of fix mpm more; true when it is not yet time for the conduction. Collective. */
+bool FixMPMHeat::wait()
+{
+  const double dt = fields[0]->field.step_dt();
+  waited.steps++;
+  waited.time += dt;
+  if (every == AUTO ? waited.steps >= MOST_STEPS || waited.time + dt > waited.longest * NEARLY
+                    : waited.steps >= every)
+    return false;
+  for (auto &field : fields) {
+    if (!rubs || !field->conducts_in_part()) continue;
+    if (every == AUTO) return false;
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/heat {} every {}: heat of friction needs that all materials of fix mpm "
+               "{} conduct: use every 1",
+               id, every, field->field.id());
+  }
+  for (auto &field : fields)
+    if (rubs && field->conducts()) past.got += field->keep_given();
+  return true;
+}
+
+/** Start of a run: is there what conduction cannot wait for, with every auto? */
+bool FixMPMHeat::needs_each_step() const
+{
+  const bool moves = std::any_of(surfaces.begin(), surfaces.end(), [this](const auto &s) {
+    auto *const region = s.region.empty() ? nullptr : domain->get_region_by_id(s.region);
+    return region && region->dynamic_check();
+  });
+  return grains || penalty || solver || moves || has_variables() ||
+      !find_fixes<FixMPMImplicit>(lmp).empty();
+}
+
+/** After a conduction: for how long may the next one wait? 0: it must be in the next step. Collective. */
+double FixMPMHeat::longest_wait() const
+{
+  if (each_step) return 0.0;
+  double rate = 0.0, h = BIG;
+  for (const auto &of : fields) {
+    if (!of->conducts()) continue;
+    rate = std::max(rate, of->bound_of_rates());
+    h = std::min(h, of->field.lattice.h);
+  }
+  const double longest = SHARE * MPMSuperStep::explicit_limit(rate),
+               shortest = 2.0 * fields[0]->field.step_dt();
+  if (rate == 0.0 || longest * NEARLY < shortest) return 0.0;
+
+  MPMConduction::Motion mine, all;
+  for (const auto &of : fields)
+    if (of->conducts()) of->add_motion(mine);
+  MPI_Allreduce(&mine, &all, sizeof(mine) / sizeof(double), MPI_DOUBLE, MPI_MAX, world);
+  double t = longest;
+  if (all.speed > 0.0) t = std::min(t, WAY * h / all.speed);
+  const double range = all.highest + all.less;
+  if (range > ROUND_OFF * std::max(fabs(all.highest), fabs(all.less)) && all.change > 0.0)
+    t = std::min(t, LUMP * range / all.change * dt_last);
+  return t;
+}
+
+/* ----------------------------------------------------------------------
+   heat of friction in a step that waits
+------------------------------------------------------------------------- */
 
 double MPMConduction::keep_given()
 {
@@ -67,4 +167,29 @@ double MPMConduction::keep_given()
   }
   given.clear();
   return got;
+}
+
+/* ----------------------------------------------------------------------
+   what tells for how long conduction may wait
+------------------------------------------------------------------------- */
+
+void MPMConduction::add_motion(Motion &motion) const
+{
+  double square = 0.0, high = motion.highest, less = motion.less;
+  for (const auto &run : field.map->runs) {
+    const Thermal *const t = thermal(run.material);
+    if (!t) continue;
+    const double *const v = atom->v[run.first], *const history = t->fix->history[run.first];
+    const int n = run.last - run.first, width = t->fix->nhistory;
+    for (int p = 0; p < n; p++) {
+      const double *const w = v + 3 * p, T = history[width * p + t->temperature];
+      square = std::max(square, w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+      high = std::max(high, T);
+      less = std::max(less, -T);
+    }
+  }
+  motion.speed = std::max(motion.speed, sqrt(square));
+  motion.change = std::max(motion.change, change);
+  motion.highest = high;
+  motion.less = less;
 }
