@@ -257,7 +257,11 @@ void MPMPore::find_layers(const MPMRows &state, const double *formula)
 
 MPMPoreResistance MPMPore::at_interface(int i) const
 {
-  if (quadratic.empty()) return {{1.0 / layers->across(i), 1.0 / layers->along(i)}, {0.0, 0.0}};
+  // next to soil without pores nothing flows across, which must not be infinite or, by differences, negative
+  const auto least = MPMLayerMean::LEAST;
+  if (quadratic.empty())
+    return {{1.0 / std::max(layers->across(i), least), 1.0 / std::max(layers->along(i), least)},
+            {0.0, 0.0}};
   return {{linear_mean[i], volumes[i] / conductance[i]}, {quadratic_mean[i], quadratic[i]}};
 }
 
