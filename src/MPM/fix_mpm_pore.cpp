@@ -44,6 +44,9 @@ using namespace MPM_NS;
 
 static const char *const PART_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "free"};
 
+// of a wait for the next flow: node spacings that waves go, and explicit limits of the flow
+static constexpr double MOST_SPACINGS = 2.5, MOST_LIMITS = 10.0;
+
 Options MPMPoreOptions::declare(int dim)
 {
   using namespace option;
@@ -253,6 +256,9 @@ Options MPMPoreOptions::declare(int dim)
                 "rate at which points take the pressure of the nodes, in the rate at which waves "
                 "cross a cell")});
   o.add("stages", {integer(most_stages, "N", POSITIVE, "most stages of the flow in a time step")});
+  o.add("every",
+        {integer(every, "N", POSITIVE,
+                 "water flows in one of up to this many steps, for the time of all of them")});
   o.refuse([=] {
     const bool dries = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
       return soil.retention.can_dry();
@@ -262,6 +268,10 @@ Options MPMPoreOptions::declare(int dim)
                          {forchheimer_alone, "forchheimer", "needs a soil before it"},
                          {formulation == U_V_P, "stages",
                           "is for formulation u-p: with u-v-p waves alone limit the time step"},
+                         {formulation == U_V_P && every > 1, "every",
+                          "is for formulation u-p: with u-v-p water moves in each step"},
+                         {dries && every > 1, "every",
+                          "does not go with retention: pores fill and empty in each step"},
                          {geostatic && initial != "0.0", "geostatic",
                           "gives points their pressure: leave out initial"},
                          {most_suction >= 0.0 && !geostatic, "suction", "needs geostatic"},
@@ -309,6 +319,11 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   read_options(lmp, options, narg, arg, 3);
   sets_relax = options.given("relax");
   sets_stages = options.given("stages");
+  if (every > 1 && sets_relax)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/pore relax has no meaning with every {}, where points take the pressure of "
+               "the nodes in each flow: remove it",
+               every);
   if (soils.empty())
     error->all(FLERR, narg - 1,
                "Fix mpm/pore needs a soil: use soil with the ID of a fix mpm/material, its "
@@ -325,6 +340,7 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   state.declare(pressure, "mpm/pore:pressure", 1 + domain->dimension, [this](int, double *row) {
     row[0] = initial_value;
   });
+  if (every > 1) state.declare(since, "mpm/pore:since");
   if (formulation == U_V_P) state.declare(inertia, "mpm/pore:flow", domain->dimension);
   if (can_dry())
     state.declare(content, "mpm/pore:water", [](int, double *row) {
@@ -489,6 +505,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
       mine.surface.distance_to_seals = [this](const double *x, double far) {
         return distance_to_bodies(x, far);
       };
+    if (every > 1) mine.wait_with(since);
     mine.init(soils, content, warmth);
     if (!mine.has_water()) continue;
     wet.push_back(&mine);
@@ -505,9 +522,25 @@ void FixMPMPore::init_physics(MPMPlan &plan)
           "the pressure of the water is an average already: use locking none"}});
     steps.add(mine.nodes.value, mine.nodes.rate);
   }
+  find_longest_wait();
   warn_of_contact();
   is_implicit = !wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();
   if (is_implicit) init_implicit();
+}
+
+/** Waves by the stiffness of the water cross so many node spacings in it. */
+void FixMPMPore::find_longest_wait()
+{
+  longest_wait = std::numeric_limits<double>::max();
+  const double unit = force->mvv2e * force->nktv2p;
+  for (const auto *mine : wet)
+    for (const auto *fix : mine->field.materials)
+      for (const auto &soil : soils) {
+        if (soil.material != fix->id) continue;
+        const double stiff = soil.storage_at(1.0, water) * fix->material->density() * unit;
+        longest_wait =
+            std::min(longest_wait, MOST_SPACINGS * mine->field.lattice.h * sqrt(stiff) / soil.biot);
+      }
 }
 
 /** Implicit steps solve for the pressure of nodes in equations that are linear in it. */
@@ -522,6 +555,7 @@ void FixMPMPore::init_implicit() const
          "slow flow has no inertia of its own, use formulation u-p, or explicit steps");
   refuse(sets_relax, "relax", "it is of the waves of explicit steps, remove it");
   refuse(sets_stages, "stages", "the flow of an implicit step has none, remove it");
+  refuse(every > 1, "every", "soil and water are solved for together, remove it");
   for (const auto &soil : soils) {
     refuse(soil.retention.can_dry(), "retention",
            "use explicit steps, or leave it out where pores stay full");
@@ -559,7 +593,8 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
     plan.together("pore pressure", [this]() {
-      begin_step();
+      step_flows = is_time_to_flow();
+      begin_step(step_flows);
     });
   if (place == MPMPlan::BEFORE_SOLVE && formulation == U_V_P)
     plan.together("inertia of pore water", [this]() {
@@ -567,7 +602,7 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
     });
   if (place == MPMPlan::AFTER_SOLVE && !is_implicit) {
     const auto move = [this](MPMField &field) {
-      of(field).take_motion();
+      if (step_flows) of(field).take_motion(waited.time + field.step_dt());
     };
     plan.each("nodes to points with material", move, [this](const MPMField &field) {
       return of(field).moves_first();
@@ -692,16 +727,60 @@ void FixMPMPore::look_for_leaks()
   }
 }
 
-void FixMPMPore::begin_step()
+/** Pores that are shut: once. Neither the soil nor its water is then what the equations are for. */
+void FixMPMPore::look_for_shut_pores()
+{
+  if (shut_known) return;
+  tagint mine = MAXTAGINT, lowest;
+  for (const auto *field : wet) mine = std::min(mine, field->shut_point());
+  MPI_Allreduce(&mine, &lowest, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (lowest == MAXTAGINT) return;
+  shut_known = true;
+  double here[2] = {0.0, 0.0}, of_all[2];
+  for (int i = 0; mine == lowest && i < atom->nlocal; i++)
+    if (atom->tag[i] == lowest) {
+      here[0] = MPMPoints::get(atom)->jacobian(i);
+      here[1] = soil_of(i)->shut();
+    }
+  MPI_Allreduce(here, of_all, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/pore: the pores of point {} are shut: it has {:.4g} of its initial volume, while "
+        "the "
+        "grains alone have {:.4g}, 1 - n0: use a law that becomes stiff before pores close, or "
+        "check n0, the stiffness of the soil, and its load",
+        lowest, of_all[0], of_all[1]);
+}
+
+/** Is the step that begins one with flow? Flow that starts and stops makes waves with the length that waves go in between. Those of up to
+ *  some node spacings the lattice takes away; longer ones grow with each flow. */
+bool FixMPMPore::is_time_to_flow() const
+{
+  if (waited.steps + 1.0 >= every || !rates_known) return true;
+  const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
+  return waited.time + 2.0 * fields[0]->field.step_dt() >
+      std::min(longest_wait, std::min(MOST_LIMITS, reach_of_stages()) * limit);
+}
+
+/** The longest flow, in limits of an explicit step. */
+double FixMPMPore::reach_of_stages() const
+{
+  return most_stages < 3 ? 0.5 : MPMSuperStep::reach(most_stages);
+}
+
+void FixMPMPore::begin_step(bool with_flow)
 {
   look_for_leaks();
-  evaluate_variables();
+  if (with_flow || !gradients_known) evaluate_variables();
   const double *const formula = formula_values.empty() ? nullptr : formula_values.data();
   for (auto *field : wet) {
     if (field->motion) field->motion->begin_step(inertia);
     if (!gradients_known) field->find_gradients(pressure, formula);
-    field->begin_step(pressure, inertia, formula);
+    if (with_flow) field->begin_step(pressure, inertia, formula);
+    if (!with_flow) field->begin_wait(pressure);
   }
+  if (with_flow) look_for_shut_pores();
   gradients_known = true;
 }
 
@@ -734,21 +813,27 @@ void FixMPMPore::know_rates()
   if (rates_known) return;
   auto *const plan = fields[0]->field.plan;
   plan->find_blocks_now();
-  begin_step();
+  begin_step(true);
   find_greatest_rates();
   for (auto *field : plan->fields) field->map->valid = false;    // the step finds its own
 }
 
 void FixMPMPore::flow()
 {
+  const double dt = waited.time + fields[0]->field.step_dt();
+  if (!step_flows) {
+    waited.steps++;
+    waited.time = dt;
+    return;
+  }
+  waited = {};
   for (auto *field : wet) {
-    if (!field->moves_first()) field->take_motion();
+    if (!field->moves_first()) field->take_motion(dt);
     field->move_water();
   }
   // waves limit the step of water with inertia, which is one of theirs
   if (formulation == U_P) find_greatest_rates();
-  const double dt = fields[0]->field.step_dt(),
-               limit = MPMSuperStep::explicit_limit(conducted + exchanged);
+  const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
   const int stages = dt <= 0.5 * limit ? 1
                                        : std::max(3, MPMSuperStep::count(dt, limit, most_stages));
   if (stages > most_stages)
@@ -766,7 +851,7 @@ void FixMPMPore::flow()
     std::fill(present.begin(), present.end(), 0.0);
     for (auto *field : wet) field->find_rates(present);
   });
-  for (auto *field : wet) field->end_step(pressure);
+  for (auto *field : wet) field->end_step(pressure, dt);
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
   dt_last = dt;
   flows_known = false;
@@ -778,7 +863,7 @@ void FixMPMPore::take_solution()
   const double dt = fields[0]->field.step_dt();
   std::fill(present.begin(), present.end(), 0.0);
   for (auto *field : wet) field->take_solution(present);
-  for (auto *field : wet) field->end_step(pressure);
+  for (auto *field : wet) field->end_step(pressure, dt);
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k] = dt * present[k];
   dt_last = dt;
   flows_known = false;
@@ -799,7 +884,7 @@ double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
   const double rate = of(field).conduction_rate(pressure, tag);
   if (rate < 0.0) return std::numeric_limits<double>::max();
   const double limit = MPMSuperStep::explicit_limit(std::max(rate, conducted) + exchanged);
-  return most_stages < 3 ? 0.5 * limit : MPMSuperStep::reach(most_stages) * limit;
+  return reach_of_stages() * limit;
 }
 
 /* ----------------------------------------------------------------------
@@ -837,7 +922,7 @@ void FixMPMPore::account(double *values) const
     if (!(atom->vfrac[i] > 0.0)) continue;
     const MPMPoreSoil *const soil = soil_of(i);
     if (!soil) continue;
-    const double J = points->jacobian(i), p = pressure[i][0];
+    const double J = points->jacobian(i), p = pressure_now(i);
     sum += J * atom->vfrac[i] * MPMPoreMoisture::energy(*soil, J, p, water);
     if (!inertia) continue;
     const double pores = J * soil->pores_at(J);
@@ -852,7 +937,7 @@ void FixMPMPore::write_restart(FILE *fp)
 {
   write_totals(fp, world, came,
                {gradients_known ? 1.0 : 0.0, has_state ? 1.0 : 0.0, rates_known ? 1.0 : 0.0,
-                conducted, exchanged});
+                conducted, exchanged, waited.steps, waited.time});
 }
 
 void FixMPMPore::restart(char *buf)
@@ -864,9 +949,17 @@ void FixMPMPore::restart(char *buf)
   rates_known = same[2] != 0.0;
   conducted = same[3];
   exchanged = same[4];
+  if (every > 1) waited = {same[5], same[6]};
 }
 
-/* ---------------------------------------------------------------------- */
+/** Of a point between two flows. */
+double FixMPMPore::pressure_now(int i) const
+{
+  if (every == 1) return pressure[i][0];
+  for (const auto *mine : wet)
+    if (mine->field.is_point(i)) return pressure[i][0] + mine->undrained(i);
+  return pressure[i][0];
+}
 
 const MPMPoreSoil *FixMPMPore::soil_of(int i) const
 {
@@ -901,10 +994,10 @@ double FixMPMPore::quantity(int k, int i) const
 {
   const MPMPoreSoil *const soil = soil_of(i);
   if (!soil) return 0.0;
-  if (k == 0) return pressure[i][0];
+  if (k == 0) return pressure_now(i);
   if (k == 2) return soil->retention.at(pressure[i][0]).saturation;
   const double J = MPMPoints::get(atom)->jacobian(i);
-  return k == 1 ? soil->porosity_at(J) : inertia[i][k - 3] / J;
+  return k == 1 ? std::max(0.0, soil->porosity_at(J)) : inertia[i][k - 3] / J;
 }
 
 double FixMPMPore::memory_usage()

@@ -44,6 +44,7 @@ struct MPMPoreOptions {
   double most_suction = -1.0;      ///< at first, positive; negative: no limit
   double relax = 0.2;
   int most_stages = 64;
+  int every = 1;    ///< water flows in one of up to this many steps
 
   MPM_NS::Options declare(int dimension);
 
@@ -123,15 +124,23 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   }
 
  private:
-  MPMRows pressure;             // [n][1+dim] with its gradient
-  MPMRows inertia;              // [n][dim] flow with inertia, see MPMPoreMotion
+  MPMRows pressure;    // [n][1+dim] with its gradient
+  MPMRows inertia;     // [n][dim] flow with inertia, see MPMPoreMotion
+  double *since =
+      nullptr;    // [n] J after the last flow, where water flows in one of several steps
   double *warmth = nullptr;     // [n] temperature up to which grains and water have expanded
   double *content = nullptr;    // [n] volume of water, where a soil can dry (MPMPoreSuction)
   int initial_index = -1;       // of a variable
   double initial_value = 0.0;
   bool gradients_known = true;    // not yet where pressures were given
-  bool leaks_known = false;       // has look_for_leaks() been done?
-  bool has_state = false;         // of an earlier run: what points have at first is behind them
+  struct {
+    double steps = 0.0, time = 0.0;
+  } waited;                     // since the last flow
+  double longest_wait = 0.0;    // by waves
+  bool step_flows = true;       // does water flow in this step?
+  bool shut_known = false;      // has a warning told of shut pores?
+  bool leaks_known = false;     // has look_for_leaks() been done?
+  bool has_state = false;       // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
   std::vector<MPMPore *> wet;    // those that have soil with water
   MPMSuperStep steps;            // of the pressures of all fields together
@@ -157,6 +166,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
 
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
+  double pressure_now(int i) const;
   void warn_of_contact() const;
   void find_seals();
   double distance_to_bodies(const double *x, double far) const;
@@ -168,7 +178,11 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void weigh_points();
   void evaluate_variables();
   void look_for_leaks();
-  void begin_step();
+  void look_for_shut_pores();
+  bool is_time_to_flow() const;
+  double reach_of_stages() const;
+  void find_longest_wait();
+  void begin_step(bool with_flow);
   void take_off();
   void find_greatest_rates();
   void know_rates();

@@ -257,7 +257,11 @@ void MPMPore::find_layers(const MPMRows &state, const double *formula)
 
 MPMPoreResistance MPMPore::at_interface(int i) const
 {
-  if (quadratic.empty()) return {{1.0 / layers->across(i), 1.0 / layers->along(i)}, {0.0, 0.0}};
+  // next to soil without pores nothing flows across, which must not be infinite or, by differences, negative
+  const auto least = MPMLayerMean::LEAST;
+  if (quadratic.empty())
+    return {{1.0 / std::max(layers->across(i), least), 1.0 / std::max(layers->along(i), least)},
+            {0.0, 0.0}};
   return {{linear_mean[i], volumes[i] / conductance[i]}, {quadratic_mean[i], quadratic[i]}};
 }
 
@@ -285,6 +289,15 @@ void MPMPore::expand(const Soil &s, int first, int n, const double *J, const dou
   }
 }
 
+void MPMPore::find_shut(const MPMPoreSoil &s, int first, int n, const double *J)
+{
+  const double grains = s.shut();
+  int count = 0;
+  for (int p = 0; p < n; p++) count += J[p] <= grains;
+  for (int p = 0; count && p < n; p++)
+    if (J[p] <= grains) shut = std::min(shut, atom->tag[first + p]);
+}
+
 void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 {
   if (layers) find_layers(state, formula);
@@ -298,6 +311,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
     for (auto *list : {&grown, &warm}) list->assign(atom->nmax, 0.0);
   if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
   fastest = exchange = 0.0;
+  shut = MAXTAGINT;
   nodes.points_to_nodes(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
         const Soil *const s = soil(run.material);
@@ -311,6 +325,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
         const double *const J = field.jacobians.get(field, first, n, room),
                             *const initial = atom->vfrac + first;
         for (int p = 0; p < n; p++) V[p] = J[p] * initial[p];
+        find_shut(s->of, first, n, J);
         // a division for each point takes as long as all the rest: apart from it, where the compiler has vectors for them
         for (int p = 0; p < n; p++) C[p] = V[p] * s->of.storage_at(J[p], water);
         if (s->of.law == MPMPoreSoil::CONSTANT) {
@@ -388,6 +403,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
 {
   if (surface.any()) surface.find_places();
   if (motion) motion->begin_step(flow);
+  if (waiting) gather(state);
   points_to_nodes(state, formula);
   const auto take = [&](int i, double value) {
     mean[i] = value;
@@ -402,6 +418,9 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
             take(first + p, q[p][3]);
           }
         });
+  } else if (waiting) {
+    for (const auto &run : field.map->runs)
+      for (int i = run.first; i < run.last && soil(run.material); i++) take(i, state[i][0]);
   } else {
     nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *values) {
       for (int p = 0; p < n; p++) take(first + p, values[p]);
@@ -494,7 +513,7 @@ bool MPMPore::moves_first() const
       MPMStages::can_move_first(field);
 }
 
-void MPMPore::take_motion()
+void MPMPore::take_motion(double duration)
 {
   const int nL = field.lattice.dim * field.lattice.dim;
   const double dt = field.step_dt();
@@ -504,10 +523,12 @@ void MPMPore::take_motion()
       for (int p = 0; p < n; p++) change[p] = MPMFrame::growth<3>(L + 9 * p, dt);
     else
       for (int p = 0; p < n; p++) change[p] = MPMFrame::growth<2>(L + 4 * p, dt);
+    for (int p = 0; p < n && waiting; p++)
+      (*waiting)[first + p] = out[p] * (1.0 + change[p]) / atom->vfrac[first + p];
     for (int p = 0; p < n; p++) change[p] *= out[p];
-    const double rate = -s.of.biot / dt;
+    const double rate = -s.of.biot / duration;
     for (int p = 0; p < n; p++) out[p] = rate * change[p];
-    for (int p = 0; p < n && warmth; p++) out[p] += grown[first + p] / dt;
+    for (int p = 0; p < n && warmth; p++) out[p] += grown[first + p] / duration;
     for (int p = 0; p < n && suction; p++) out[p] *= suction->take_motion(first + p, change[p], dt);
   };
   if (moves_first()) {
@@ -652,10 +673,9 @@ double MPMPore::rate_of_lag() const
   return slowest / (field.lattice.h * field.lattice.h) + rate_of_waves();
 }
 
-void MPMPore::end_step(const MPMRows &state)
+void MPMPore::end_step(const MPMRows &state, double dt)
 {
   const int dim = field.lattice.dim;
-  const double dt = field.step_dt();
   const double keep = solve ? solve->keep : exp(-rate_of_lag() * dt);
   nodes.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q, const double *) {

@@ -50,6 +50,14 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   static constexpr double UNKNOWN = -1.0e300;
   bool has_water() const { return !soils.empty(); }
 
+  /** Water flows in one of several steps, for the time of all of them (mpm_pore_wait.cpp). ratios: [n] J after the last flow, 0 where it
+   *  is not known; without this call it flows in each. Before init(). */
+  void wait_with(double *const &ratios) { waiting = &ratios; }
+  /** Before points go to nodes in a step without flow: what forces have. */
+  void begin_wait(const MPMRows &state);
+  /** What the pressure of a point has changed since the last flow, as no water left it. */
+  double undrained(int i) const;
+
   /** The water of points of soils that can dry, where it is not yet known. */
   void weigh_points(const MPMRows &state) const;
   /** Gradients of points whose pressures alone were given; those of a linear pressure are exact.
@@ -67,8 +75,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
    *  water has the pressure outside where the free surface is open to one: it is that at the surface. Collective. */
   void find_forces_below_surface(const std::vector<char> &near, std::vector<double> &of_water,
                                  std::vector<double> &of_all) const;
-  /** The velocities of the step are known. */
-  void take_motion();
+  /** The velocities of a step with flow are known; duration: of the flow. */
+  void take_motion(double duration);
   /** Does that move and strain the points, too? Nothing in the flow of the step looks at their deformation after it then. */
   bool moves_first() const;
   /** If the water has inertia: nodes have mass, momentum, and forces, summed over ranks. */
@@ -78,8 +86,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   /** Rates of the pressures of nodes; adds the volumes of water that come in for each time, and the power
    *  of what comes in and of the weight of water that flows. */
   void find_rates(std::vector<double> &inflow);
-  /** Pressures of points at the end of the step, and the mass of the water that they got. */
-  void end_step(const MPMRows &state);
+  /** Pressures of points after a flow of this duration, and the mass of the water that they got. */
+  void end_step(const MPMRows &state, double duration);
 
   /** Implicit steps of soil and water together (mpm_pore_implicit.cpp): in the place of stages of find_rates(), when the velocities that
    *  were solved for are those of nodes. Adds the volumes of water that come in for each time, as find_rates(). Collective. */
@@ -105,6 +113,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   /** Wave speed of a point where water cannot flow, c: of the soil alone; p: pressure of its water. */
   double wave_speed(int i, double p, double c) const;
   const MPMPoreSoil *soil_of(int i) const;
+  /** The lowest tag of this rank's points whose pores were shut in the last begin_step(), MAXTAGINT: there are none. */
+  tagint shut_point() const { return shut; }
 
   double memory_usage() const;
 
@@ -116,14 +126,16 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   };
   const MPMPoreWater &water;
   const double *const gravity;
-  const double relax;    // of points, in the rate at which waves cross a cell
+  const double relax;                  // of points, in the rate at which waves cross a cell
+  double *const *waiting = nullptr;    // J after the last flow; null: water flows in each step
   std::vector<Soil> soils;
   double steepest =
       0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
   double slowest = 0.0;    // smallest mobility over storage of a soil
   double least_storage = 0.0;
-  double waves = 0.0;       // smallest wave speed by the stiffness of the water in a soil
-  double fastest = 0.0;     // largest of the points in the last step
+  double waves = 0.0;      // smallest wave speed by the stiffness of the water in a soil
+  double fastest = 0.0;    // largest of the points in the last step
+  tagint shut = MAXTAGINT;
   double exchange = 0.0;    // rate of exchange through the surface in the last step
   std::unique_ptr<MPMPoreSuction> suction;    // of soils that can dry
   std::unique_ptr<MPMLayerMean>
@@ -160,6 +172,9 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   std::unique_ptr<Solve> solve;    // null: explicit steps
 
   void conduct(int i, double *q) const;
+  double undrained(const Soil &, int i, double J) const;
+  void gather(const MPMRows &state);
+  void find_shut(const MPMPoreSoil &, int first, int n, const double *J);
   void init_layers();
   void find_layers(const MPMRows &state, const double *formula);
   void expand(const Soil &, int first, int n, const double *J, const double *V);

@@ -216,7 +216,7 @@ void MPMPore::each_term(const std::vector<double> &softness, const Term &use)
 void MPMPore::take_solution(std::vector<double> &inflow)
 {
   const std::vector<double> now = nodes.value;
-  take_motion();
+  take_motion(field.step_dt());
   find_rates(inflow);
   field.nodes.complete(nodes.rate.data(), 1, 1);
   for (std::size_t k = 0; k < now.size(); k++)

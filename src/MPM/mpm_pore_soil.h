@@ -67,6 +67,9 @@ struct MPMPoreSoil {
     return law == SQUARED ? permeability * J * J : permeability;
   }
 
+  /** J at which grains fill all of the volume. */
+  double shut() const { return 1.0 - porosity; }
+
   bool is_linear() const { return quadratic == 0.0 && diameter == 0.0; }
 
   /** What the gradient of the pressure has besides that of Darcy's law, per square of the flow. density:

@@ -1,0 +1,139 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi restart input
+// mpi: 1 4
+// timeout: 400
+
+// Fix mpm/pore every: water flows in fewer steps than soil moves.
+
+#include "pore_mode_testing.h"
+
+using namespace MPM_TEST;
+
+// Terzaghi's column at T = 0.2, drained at a face of the box or at a free surface, with flows far above the explicit limit, too
+SERIAL_TEST(Consolidation, Terzaghi)
+{
+  for (const double Kf : {2.2e8, 2.2e9})
+    for (const char *options : {"yhi pressure 0 every 5", "free pressure 0 every 5"}) {
+      const bool free = options[0] == 'f';
+      const auto result = consolidate(20, options, free ? 1.2 : 1.0, free ? 0.3 : 0.0, Kf);
+      EXPECT_LT(measured(strprintf("Kf %g, %s, rms", Kf, options), result.rms), 0.002);
+      EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
+    }
+}
+
+SERIAL_TEST(Consolidation, Converges)
+{
+  double rms[2];
+  for (const bool fine : {false, true})
+    rms[fine] = measured(
+        fine ? "20 cells, rms" : "10 cells, rms",
+        consolidate(fine ? 20 : 10, "yhi pressure 0 every 5", 1.0, 0.0, 2.2e8, 10.0, 80.0).rms);
+  EXPECT_GT(measured("order", std::log2(rms[0] / rms[1])), 0.9);
+}
+
+// Flow that starts and stops makes waves: with more than some node spacings between two flows these would be 2 to 19 % of the load, and
+// however many steps are asked for, there are no more
+SERIAL_TEST(Undrained, PressureIsEven)
+{
+  for (const double Kf : {2.2e8, 2.2e9})
+    for (const double k : {1e-3, 1e-4, 1e-5, 1e-6, 1e-8})
+      EXPECT_LT(scatter_of_pressure(Kf, k, "every 20"), 0.01);
+}
+
+// a column that vibrates between closed ends: frequency and damping of u-p
+SERIAL_TEST(Modes, FrequencyAndDamping)
+{
+  for (const auto &mode : {Mode{2.2e8, 1e-3, ""}, Mode{2.2e8, 1e-5, "transfer aflip 1.0"},
+                           Mode{2.2e9, 1e-5, "transfer aflip 1.0"}}) {
+    std::vector<double> t, y;
+    vibrate(mode, "every 5", 3.2, t, y);
+    const auto mine = frequency_and_decay(t, y),
+               theory = frequency_and_decay(t, exact(mode, t, false));
+    EXPECT_NEAR(measured(strprintf("Kf %g, k %g, frequency", mode.K, mode.k), mine[0] / theory[0]),
+                1.0, 0.005);
+    EXPECT_NEAR(measured("decay", mine[1] / theory[1]), 1.0, 0.05);
+  }
+}
+
+// load of half of the modulus, see LargeStrain of test_pore.cpp
+SERIAL_TEST(LargeStrain, Consolidation)
+{
+  const int n = 20;
+  Scene run(column(n, "200 1e-9 1.0 soil m 0.5 squared 1.0 free pressure 0 every 5",
+                   "density 1e-3 linear 1.0 0.0") +
+            load(n, 0.5, 0.004));
+  Water water(run);
+  run_to(run, 0.202);
+  double volume = 0.0;
+  for (int i = 0; i < run.n(); i++) volume += run.points().jacobian(i) * run.lmp->atom->vfrac[i];
+  EXPECT_NEAR(measured("settlement", 1.0 - volume * n / 4.0) / 0.183627, 1.0, 0.02);
+  EXPECT_NEAR(measured("pressure at the base", 2.0 * water.mean(0.0, 0.5 / n)) / 0.742959, 1.0,
+              0.02);
+}
+
+// between two flows water stays where it is, and what compresses a point raises its pressure at once
+TEST(Water, WaitsForTheFlow)
+{
+  Scene run(column(10, "2.2e8 1000 9810 soil m 0.4 constant 1e-6 ylo flux 1e-6 every 4", SOIL) +
+            load(10, LOAD, 1e-4) + "timestep 1e-5\n");
+  Water water(run);
+  const double before = water.mass();
+  run.commands("run 1\nrun 2\n");
+  EXPECT_EQ(run.fix("water")->compute_scalar(), 0.0);
+  EXPECT_EQ(water.mass(), before);
+  const double *const p = water.pressures();
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++) most = std::max(most, p[i]);
+  EXPECT_GT(over_ranks(most, MPI_MAX), 1.0);
+  run.commands("run 1\n");
+  EXPECT_NEAR(run.fix("water")->compute_scalar() / (0.4 * 1e-6 * 4e-5), 1.0, 1e-9);
+}
+
+TEST(Water, IsKept)
+{
+  expect_water_is_kept_by("kozeny 1e-3", "every 4 ");
+}
+
+// level ground stays at rest
+SERIAL_TEST(Geostatic, StaysAtRest)
+{
+  const double dt = 4e-5;
+  Scene run(replaced(column(20, "2.2e8 1000 9810 soil m 0.4 constant 1e-3 geostatic 0.5 1 every 5",
+                            SOIL, 1.2, 0.3),
+                     "fix water", "fix g all gravity 9.81 vector 0 -1 0\nfix water") +
+            strprintf("timestep %g\nrun 501\n", dt));
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++) most = std::max(most, std::fabs(run.v()[i][1]));
+  EXPECT_LT(measured("velocity", most / (9.81 * 501 * dt)), 1e-9);
+}
+
+TEST(Ranks, Agree)
+{
+  const auto scene = blocks("initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01 every 3");
+  for (const auto &one : {blocks("initial v_p every 3"), between_walls(scene)})
+    expect_same_on_ranks(one, 1e-10);
+}
+
+// a restart file between two flows
+TEST(Restart, Continues)
+{
+  expect_continues(blocks("free pressure 0 initial v_p every 7"), OF_BLOCKS);
+}
+
+SERIAL_TEST(BadInput, IsRefused)
+{
+  const std::string scene = column(4, "2e7 1000 9810 soil m 0.4 constant 1e-5", SOIL);
+  const std::string plain = scene.substr(0, scene.find("fix water")),
+                    water = "fix water all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-5 every ";
+  expect_refused(
+      plain,
+      {{water + "0", "every"},
+       {water + "1.5", "every"},
+       {water + "2 relax 0.1", "relax has no meaning with every 2"},
+       {water + "2 formulation u-v-p", "every is for formulation u-p"},
+       {water + "2 retention gardner 1e-3", "every does not go with retention"},
+       {water + "2\nfix solve all mpm/implicit static", "every cannot be used with fix mpm/imp"}},
+      "timestep 1e-5\nrun 1\n");
+}
