@@ -184,16 +184,16 @@ class FixMPMContact :
     double *ra, *rb;       // records
     double share, n[3];    // of the interface; normal there
   };
-  struct Tie {                    // two bodies at a line of nodes through their interface
-    int first, last;              // range in links
-    int a, b;                     // places in bodies
-    bool owned;                   // in sums
-    bool active;                  // it touches
-    double n[3];                  // mean normal from a to b
-    double gap;                   // that is to be closed [distance]
-    double diagonal[3];           // of C P_w M^-1 C^T
-    double push[3], base[3];      // of rows: impulse so far, and that by the motion of walls alone
-    double force[3];              // of rows, of a on b
+  struct Tie {                  // two bodies at a line of nodes through their interface
+    int first, last;            // range in links
+    int a, b;                   // places in bodies
+    bool owned;                 // in sums
+    bool active;                // it touches
+    double n[3];                // mean normal from a to b
+    double gap;                 // that is to be closed [distance]
+    double diagonal[3];         // of C P_w M^-1 C^T
+    double push[3], base[3];    // of rows: impulse so far, and that by the motion of walls alone
+    double force[3];            // of rows, of a on b
     // friction, see fix_mpm_boundary_trial.cpp: slip of a on b in the step, its direction as an unknown of its own, force on a
     double slip[3], dual[3], rubs[3];
   };
@@ -241,9 +241,12 @@ class FixMPMContact :
   std::vector<char> owned_pairs;    // of nodes that this rank counts
   std::function<int64_t(const MPMField &)> place_of;
   double trial_dt = 0.0;
-  double trial_eps = 0.0, soft = 0.0;    // slips that friction begins with, and with which it is weakened now
+  double trial_eps = 0.0,
+         soft = 0.0;    // slips that friction begins with, and with which it is weakened now
   bool closes = false;
   int rounds = 0;    // of decisions in this step
+  double shared_at_start =
+      0.0;    // largest share of the volume of a node that two bodies overlap at, see check_overlap()
 
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};
@@ -295,9 +298,9 @@ class FixMPMContact :
   bool is_known(const Body &, const int *index) const;
   bool measure_gap(Tie &, int axis, const int *index, int low, int high, double &gap) const;
   void add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first, std::size_t last,
-               int axis, double &deepest);
+               int axis);
   void find_ties();
-  void check_overlap(double deepest) const;
+  void check_overlap();
   double slip_length(const Tie &) const;
   void find_slip(const Tie &, const double *u, double *slip) const;
   void change_of_direction(const Tie &, const double *slip, double *change) const;

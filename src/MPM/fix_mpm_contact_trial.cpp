@@ -26,11 +26,8 @@
 
 #include "fix_mpm_contact.h"
 
-#include "comm.h"
 #include "error.h"
-#include "force.h"
 #include "math_extra.h"
-#include "modify.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_options.h"
@@ -43,14 +40,18 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double STEEPER = 1.0e-6;    // of normals, by which the axis of a line is told
-static constexpr int AROUND = 2;             // nodes of a line that are looked at beyond those that both bodies reach
+static constexpr int AROUND =
+    2;    // nodes of a line that are looked at beyond those that both bodies reach
 static constexpr double COVERED = 1.0e-3;    // share of the cross-section of a line, least
 // node spacings at which bodies touch as they are if others do, and at which statics tries whether they touch
-static constexpr double NEXT_TO = 0.02, NEARBY = 0.4;
-static constexpr double TOUCHED = 1.0e-6;        // node spacings: no gap
-static constexpr double LONGEST = 0.99;          // of the direction of slip: what slips has a stiffness
-static constexpr double TOO_DEEP = 0.5;          // node spacings
-static constexpr double WRONG = 1.0e-9;          // of the largest push, a pull that is let go; node spacings
+static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
+static constexpr double TOUCHED = 1.0e-6;    // node spacings: no gap
+static constexpr double LONGEST = 0.99;      // of the direction of slip: what slips has a stiffness
+static constexpr double WRONG =
+    1.0e-9;    // of the largest push, a pull that is let go; node spacings
+static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;    // see fix_mpm_contact.cpp
+static constexpr double ROOM =
+    1.1;    // for what bodies that overlap at the start of a run share later
 static constexpr double STILL_RIGHT = 1.0e-4;    // the same in the end
 static constexpr int AT_ONCE = 6;                // times that all is changed
 
@@ -203,15 +204,14 @@ bool FixMPMContact::measure_gap(Tie &tie, int axis, const int *index, int low, i
     if (covers[k] < COVERED) return false;
   }
   double missing = 0.0;
-  for (const auto &share : shares)
-    missing += 1.0 - share[0] / covers[0] - share[1] / covers[1];
+  for (const auto &share : shares) missing += 1.0 - share[0] / covers[0] - share[1] / covers[1];
   gap = h * (slope * missing - (1.0 - full));
   return true;
 }
 
 /** places: node index along the axis and pair, of which those from first to last are next to each other. */
 void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first,
-                            std::size_t last, int axis, double &deepest)
+                            std::size_t last, int axis)
 {
   Tie tie = {};
   const Pair &begin = pairs[places[first % places.size()].second];
@@ -233,8 +233,12 @@ void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std:
   const Body &a = bodies[tie.a], &b = bodies[tie.b];
   for (std::size_t k = first; k < last; k++) {
     const Pair &pair = pairs[places[k % places.size()].second];
-    Link link = {place_of(*a.field) + number(a, pair.ra), place_of(*b.field) + number(b, pair.rb),
-                 pair.ra, pair.rb, pair.area / area, {pair.n[0], pair.n[1], pair.n[2]}};
+    Link link = {place_of(*a.field) + number(a, pair.ra),
+                 place_of(*b.field) + number(b, pair.rb),
+                 pair.ra,
+                 pair.rb,
+                 pair.area / area,
+                 {pair.n[0], pair.n[1], pair.n[2]}};
     for (int d = 0; d < dim; d++) {
       double soft = 0.0;
       for (int body = 0; body < 2; body++) {
@@ -255,7 +259,8 @@ void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std:
   int index[3];
   a.field->grid.node_index(number(a, begin.ra), index);
   const int low = places[first].first, high = low + (int) (last - first) - 1;
-  for (const int end : {low - 1, high + 1}) {    // a rank may have a part of a line that none of its points reaches
+  for (const int end :
+       {low - 1, high + 1}) {    // a rank may have a part of a line that none of its points reaches
     index[axis] = end;
     if (is_known(a, index) && is_known(b, index)) continue;
     links.resize(tie.first);
@@ -266,7 +271,6 @@ void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std:
       links.resize(tie.first);
       return;
     }
-    if (tie.owned) deepest = std::min(deepest, tie.gap);
     tie.gap = std::max(tie.gap, 0.0);
   }
   ties.push_back(tie);
@@ -295,7 +299,6 @@ void FixMPMContact::find_ties()
       lines[{pair.a, pair.b, 2 * axis + (pair.n[axis] > 0.0), index[0], index[1], index[2]}]
           .emplace_back(at, p);
     }
-  double deepest = 0.0;
   for (auto &[key, places] : lines) {
     const int axis = key[2] / 2;
     std::sort(places.begin(), places.end());
@@ -310,24 +313,34 @@ void FixMPMContact::find_ties()
     if (begin == n) begin = 0;    // all around a box
     for (std::size_t first = begin, last; first < begin + n; first = last) {
       for (last = first + 1; last < begin + n && joined(last);) last++;
-      add_tie(places, first, last, axis, deepest);
+      add_tie(places, first, last, axis);
     }
   }
-  check_overlap(deepest);
+  check_overlap();
 }
 
-/** Collective. */
-void FixMPMContact::check_overlap(double deepest) const
+/** An error if bodies share more of the volume of a node than when the run began, by as much as is told of then. Collective. */
+void FixMPMContact::check_overlap()
 {
-  const double h = bodies[0].field->lattice.h;
-  double most;
-  MPI_Allreduce(&deepest, &most, 1, MPI_DOUBLE, MPI_MIN, world);
-  if (!(most < -TOO_DEEP * h) || look) return;
+  double mine = 0.0, most;
+  for (std::size_t p = 0; p < pairs.size(); p++) {
+    if (!owned_pairs[p]) continue;
+    const Pair &pair = pairs[p];
+    Grid &grid = bodies[pair.a].field->grid;
+    int index[3];
+    grid.node_index((pair.ra - grid.nodes()) / grid.nreal, index);
+    const double Va = share_of(bodies[pair.a], index), Vb = share_of(bodies[pair.b], index);
+    if (std::min(Va, Vb) >= OVERLAP_EACH) mine = std::max(mine, Va + Vb);
+  }
+  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (look) shared_at_start = most;
+  if (most < std::max(OVERLAP, ROOM * shared_at_start)) return;
   error->all(FLERR, Error::NOLASTLINE,
-             "Fix mpm/contact {}: bodies have come into each other by {:.3g} node spacings in an "
-             "implicit step, which sees those that are up to two node spacings away: use smaller "
+             "Fix mpm/contact {}: bodies have come into each other in the implicit steps of this "
+             "run, so that they fill {:.3g} of the volume of a node: contact sees bodies that are "
+             "up to about a node spacing away from each other when a step begins: use smaller "
              "steps",
-             id, -most / h);
+             id, most);
 }
 
 /* ---------------------------------------------------------------------- */

@@ -286,12 +286,13 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
   for (auto *action : plan.actions) {
     auto *const contact = action->trial_contact();
     if (!contact || dynamic_cast<MPMBodyContact *>(contact)) continue;
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/implicit knows walls that hold bodies together with fix mpm/contact {}, but "
-               "not yet those that separate, have friction, or are regions that move, such as fix "
-               "mpm/boundary {}: use stick or slip at faces or regions at rest, or a body of its "
-               "own (fix mpm) for the wall",
-               contacts[0]->id, dynamic_cast<Fix *>(action)->id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/implicit knows walls that hold bodies together with fix mpm/contact {}, but "
+        "not yet those that separate, have friction, or are regions that move, such as fix "
+        "mpm/boundary {}: use stick or slip at faces or regions at rest, or a body of its "
+        "own (fix mpm) for the wall",
+        contacts[0]->id, dynamic_cast<Fix *>(action)->id);
   }
 }
 

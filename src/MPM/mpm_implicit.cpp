@@ -9,10 +9,10 @@
 #include "mpm_implicit.h"
 
 #include "force.h"
+#include "mpm_body_contact.h"
 #include "mpm_field.h"
 #include "mpm_implicit_pressure.h"
 #include "mpm_node_action.h"
-#include "mpm_body_contact.h"
 #include "mpm_physics.h"
 #include "mpm_plan.h"
 #include "mpm_stencil.h"
@@ -1196,9 +1196,8 @@ void MPMImplicit::account()
 
 double MPMImplicit::memory_usage() const
 {
-  double bytes = memory.memory_usage() + solver.memory_usage() +
-      general.memory_usage() + (multigrid ? multigrid->memory_usage() : 0.0) +
-      (joint ? joint->memory_usage() : 0.0);
+  double bytes = memory.memory_usage() + solver.memory_usage() + general.memory_usage() +
+      (multigrid ? multigrid->memory_usage() : 0.0) + (joint ? joint->memory_usage() : 0.0);
   for (const auto *list : {&mass,      &reach,        &friction, &before,  &explicit_velocity,
                            &outer,     &inner,        &from,     &wall,    &held,
                            &offset,    &slide,        &mean,     &ending,  &stopped,

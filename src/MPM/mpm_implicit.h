@@ -167,14 +167,14 @@ class MPMImplicit : private MPMNodeSystem {
   double part = 1.0;                 // s
   double late = 1.0;                 // share of the end of the step in forces
   bool constrained = false;
-  double wall_speed = 0.0;                     // largest of w
-  std::vector<MPMTrialContact *> contacts;     // of walls, and between bodies
-  MPMBodyContact *tied = nullptr;              // the latter one
-  bool touching = false;                       // does anything touch by that?
-  std::vector<double> of_walls;                // w of walls alone
+  double wall_speed = 0.0;                    // largest of w
+  std::vector<MPMTrialContact *> contacts;    // of walls, and between bodies
+  MPMBodyContact *tied = nullptr;             // the latter one
+  bool touching = false;                      // does anything touch by that?
+  std::vector<double> of_walls;               // w of walls alone
   double speed_of_walls = 0.0;
   std::vector<double> closing_in, along, next_along, along_all;    // for S
-  bool rubs = false;                           // one of them has friction
+  bool rubs = false;                                               // one of them has friction
   double slip = 0.0;                           // from which on it is that of Coulomb
   double of_pushes = 1.0;                      // scale of the last projection
   double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of their way in this step
