@@ -203,8 +203,17 @@ bool FixMPMContact::measure_gap(Tie &tie, int axis, const int *index, int low, i
     covers[k] = std::min(covers[k], 1.0);
     if (covers[k] < COVERED) return false;
   }
+  // from where one body fills most to where the other one does: behind are other surfaces of these
+  const auto fullest = [&](int k) {
+    return std::max_element(shares.begin(), shares.end(), [k](const auto &s, const auto &t) {
+      return s[k] < t[k];
+    });
+  };
+  auto from = fullest(0), to = fullest(1);
+  if (to < from) std::swap(from, to);
   double missing = 0.0;
-  for (const auto &share : shares) missing += 1.0 - share[0] / covers[0] - share[1] / covers[1];
+  for (auto share = from; share <= to; ++share)
+    missing += 1.0 - (*share)[0] / covers[0] - (*share)[1] / covers[1];
   gap = h * (slope * missing - (1.0 - full));
   return true;
 }
