@@ -251,6 +251,8 @@ void FixMPMContact::init()
                "more than the node spacing {}: raise the strength or the node spacing",
                id, 2.0 * release_work / normal_strength, first.lattice.h);
 
+  if (tries) refuse_trials();
+
   room.find(first, *domain);
   lists_valid = false;
   look = true;
@@ -286,6 +288,7 @@ void FixMPMContact::check_refined(Body &body)
 /** Called by fix mpm, whose init() may come before this one; a missing field is found here. */
 void FixMPMContact::init_action()
 {
+  tries = !modify->get_fix_by_style("^mpm/implicit$").empty();
   if (!heating) return;
   FixMPMContact::init();
   std::vector<MPMField *> fields;
@@ -328,8 +331,7 @@ bool FixMPMContact::decides_contact(const MPMField &field) const
   return touches(field.id());
 }
 
-/** Row of the output for fields a < b of n: (0,1), (0,2), ..., (1,2), ... */
-static int pair_index(int a, int b, int n)
+int FixMPMContact::pair_index(int a, int b, int n)
 {
   return a * n - a * (a + 1) / 2 + b - a - 1;
 }
@@ -398,7 +400,7 @@ void FixMPMContact::blocks_found()
 
   for (auto &body : bodies) {
     if (body.refined) body.refined->extend_for_finer(*body.field);
-    if (on_several_lattices) activate_around(body.field->grid);
+    if (on_several_lattices || tries) activate_around(body.field->grid);
     body.reach.find(body.field->grid, world);
   }
 }
@@ -484,7 +486,7 @@ void FixMPMContact::Body::mark_near(int slot)
 
 bool FixMPMContact::map_bodies()
 {
-  for (auto &body : bodies) body.near.assign(body.field->grid.blocks.size(), 0);
+  for (auto &body : bodies) body.near.assign(body.field->grid.blocks.size(), tries);
   int any = 0, all;
   double *record[MAX_FIELDS];
   for (const auto &c : common) {
@@ -537,7 +539,7 @@ void FixMPMContact::map_content(Body &body)
     return;
   }
   map_gradient(*body.field, weight, body.near, body.gradient);
-  if (gap || look) map_volume(*body.field, body.near, body.share);
+  if (gap || look || tries) map_volume(*body.field, body.near, body.share);
 }
 
 /** Records of the bodies that have mass at node n of a block, null: it has none; how many have. */
@@ -903,6 +905,7 @@ void FixMPMContact::Body::move_mirrors(const double *record, const std::array<do
 
 bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volume_share, Pair &pair)
 {
+  if (tries) return make_trial_pair(c, n, a, b, pair);
   MPMField &field = *bodies[a].field;
   double ga[3], gb[3];
   gradient_at(bodies[a], c.slot[a], n, ga);
@@ -1407,10 +1410,12 @@ void FixMPMContact::account(const Node &node, const Velocities &start)
 void FixMPMContact::act(double dt, Stage stage)
 {
   const bool count = stage == STEP;
+  if (stage == TRIAL) return;
   if (!lists_valid) list_common_blocks();
   if (count) {
     for (auto &entry : accounts) entry = {{0.0, 0.0, 0.0}, 0.0, entry.work};
     dt_last = dt;
+    if (tries) return act_after_trials();
     nodes.clear();
     pairs.clear();
     if (look) warn_thin();

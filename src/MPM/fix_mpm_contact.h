@@ -20,6 +20,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "fix_mpm_boundary.h"
 #include "math/aitken.h"
 #include "math/sets.h"
+#include "mpm_body_contact.h"
 #include "mpm_first_note.h"
 #include "mpm_friction_heat.h"
 #include "mpm_node_action.h"
@@ -27,8 +28,10 @@ FixStyle(mpm/contact,FixMPMContact);
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace MPM_NS {
@@ -60,6 +63,7 @@ class FixMPMContact :
     public Fix,
     public MPMNodeAction,
     public MPMRubbing,
+    public MPMBodyContact,
     private MPMContactOptions {
  public:
   Turn turn() const override { return BETWEEN_BODIES; }
@@ -81,6 +85,7 @@ class FixMPMContact :
   void extend_topology(MPMField &) override;
   bool decides_contact(const MPMField &) const override;
   void act(double dt, Stage) override;
+  MPMTrialContact *trial_contact() override { return tries ? this : nullptr; }
 
   /** Is contact between these two fields (IDs) left to this fix? */
   bool couples(const std::string &a, const std::string &b) const;
@@ -93,6 +98,8 @@ class FixMPMContact :
 
  private:
   static constexpr int MAX_PAIRS = MAX_FIELDS * (MAX_FIELDS - 1) / 2;
+  /** Row of the output for fields a < b of n: (0,1), (0,2), ..., (1,2), ... */
+  static int pair_index(int a, int b, int n);
 
   enum State : char { OPEN, SLIDING, STUCK };
 
@@ -169,6 +176,28 @@ class FixMPMContact :
 
     void mark_near(int slot);
   };
+
+  // contact of which a solver decides (fix_mpm_contact_trial.cpp)
+
+  struct Link {            // a node of a tie
+    int64_t a, b;          // in vectors of the solver
+    double *ra, *rb;       // records
+    double share, n[3];    // of the interface; normal there
+  };
+  struct Tie {                  // two bodies at a line of nodes through their interface
+    int first, last;            // range in links
+    int a, b;                   // places in bodies
+    bool owned;                 // in sums
+    bool active;                // it touches
+    double n[3];                // mean normal from a to b
+    double gap;                 // that is to be closed [distance]
+    double diagonal[3];         // of C P_w M^-1 C^T
+    double push[3], base[3];    // of rows: impulse so far, and that by the motion of walls alone
+    double force[3];            // of rows, of a on b
+    // friction, see fix_mpm_boundary_trial.cpp: slip of a on b in the step, its direction as an unknown of its own, force on a
+    double slip[3], dual[3], rubs[3];
+  };
+
   struct Account {        // of two bodies, this rank's share
     double impulse[3];    // on the second one in the last step
     double count;         // nodes in contact
@@ -203,6 +232,21 @@ class FixMPMContact :
 
   MPM_NS::Sets dependent;
   std::vector<int> first_with_mirror;
+
+  // in trials
+
+  bool tries = false;    // are the steps of this run those of a solver?
+  std::vector<Tie> ties;
+  std::vector<Link> links;
+  std::vector<char> owned_pairs;    // of nodes that this rank counts
+  std::function<int64_t(const MPMField &)> place_of;
+  double trial_dt = 0.0;
+  double trial_eps = 0.0,
+         soft = 0.0;    // slips that friction begins with, and with which it is weakened now
+  bool closes = false;
+  int rounds = 0;    // of decisions in this step
+  double shared_at_start =
+      0.0;    // largest share of the volume of a node that two bodies overlap at, see check_overlap()
 
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};
@@ -245,6 +289,57 @@ class FixMPMContact :
   void apply(Pair &, int nothers, double &largest, double dt, bool decided);
   void account(const Node &, const Velocities &start);
   double heat_of(const Pair &, bool owned);
+
+  void refuse_trials() const;
+  int rows_of_tie() const;
+  bool make_trial_pair(const Common &, int n, int a, int b, Pair &);
+  bool is_beyond_walls(Pair &);
+  double share_of(const Body &, const int *index) const;
+  bool is_known(const Body &, const int *index) const;
+  bool measure_gap(Tie &, int axis, const int *index, int low, int high, double &gap) const;
+  void add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first, std::size_t last,
+               int axis);
+  void find_ties();
+  void check_overlap();
+  double slip_length(const Tie &) const;
+  void find_slip(const Tie &, const double *u, double *slip) const;
+  void change_of_direction(const Tie &, const double *slip, double *change) const;
+  void rub(const Tie &, const double *on_a, double *force) const;
+  void add_force(const Tie &, const Link &, const double *rows, double *force) const;
+  void act_after_trials();
+
+  // MPMBodyContact
+  void place_bodies(const std::function<int64_t(const MPMField &)> &first) override
+  {
+    place_of = first;
+  }
+  std::size_t nrows() const override { return ties.size() * rows_of_tie(); }
+  bool touches() const override;
+  void find_approach(const double *v, bool with_gaps, double *rows) const override;
+  void add_squares(const double *rows, const double *v, double *sums) const override;
+  void precondition(const double *rows, double gain, double *along) const override;
+  void spread(const double *rows, double *v) const override;
+  double product(const double *a, const double *b) const override;
+  void push(double factor, const double *rows) override;
+
+  // MPMTrialContact
+  void begin_trials(MPMField &, double dt, double slip_time, double eps, bool rests) override;
+  bool find_carried(MPMField &, std::vector<double> &) override { return false; }
+  void bear_carried(MPMField &, double *) override {}
+  bool close_gaps(bool yes) override;
+  void check_arrival() override {}
+  bool has_friction() const override { return law == COULOMB && kinetic_friction > 0.0; }
+  void forget_pushes() override;
+  void take_base() override;
+  void take_forces(double scale) override;
+  void add_friction(const double *u, double *force) override;
+  void add_friction_change(const double *du, double scale, double *dforce) override;
+  void add_friction_blocks(double *blocks) override;
+  void add_friction_stiffness(double *) override {}    // levels are of one field
+  void correct(const double *du) override;
+  bool decide(const double *u) override;
+  void soften(double eps) override { soft = eps; }
+  void foresee_velocities(const double *, double) override {}
 };
 
 }    // namespace LAMMPS_NS

@@ -8,6 +8,7 @@
 
 #include "fix_mpm_implicit.h"
 
+#include "fix_mpm_contact.h"
 #include "fix_mpm_elements.h"
 #include "mpm_affine.h"
 #include "mpm_field.h"
@@ -138,13 +139,21 @@ void FixMPMImplicit::init()
 
 void FixMPMImplicit::init_physics(MPMPlan &plan)
 {
-  if (plan.fields.size() > 1)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/implicit solves for the nodes of one fix mpm, but there are {}: let bodies share "
-        "one, or use explicit steps",
-        plan.fields.size());
-  field = plan.fields[0];
+  fields = plan.fields;
+  if (fields.size() > 1) check_bodies(plan);
+  for (auto *field : fields) check_field(plan, *field);
+  for (auto *field : fields) {
+    field->keep_old = true;
+    field->time_limit->bound = false;
+  }
+  const MPMImplicitOptions &mine = *this;
+  solver = std::make_unique<MPMImplicit>(lmp, fields, mine, kept);
+}
+
+/** Refuses what implicit steps of a field do not know. */
+void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
+{
+  auto *const field = &of;
   const auto &options = field->options;
   for (auto *other : plan.physics)
     if (other->joins_motion() && (time == NEWMARK || time == MIDPOINT))
@@ -240,10 +249,51 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
                    "points go from cell to cell, and can be wrong by 17 % in runs of many steps: "
                    "use shape quadratic of fix mpm {}, or frame total",
                    field->id());
-  field->keep_old = true;
-  field->time_limit->bound = false;
-  const MPMImplicitOptions &mine = *this;
-  solver = std::make_unique<MPMImplicit>(lmp, *field, mine, kept);
+}
+
+/** Refuses what is not made for several fields, which are bodies that touch each other. */
+void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
+{
+  const auto contacts = find_fixes<FixMPMContact>(lmp);
+  for (const auto *field : fields)
+    if (contacts.size() != 1 || !contacts[0]->touches(field->id()))
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit solves for the nodes of one fix mpm, or of all that one fix "
+          "mpm/contact names, but there are {} of these and {} of those, and fix mpm {}: let "
+          "bodies share a fix mpm, name all of them in one fix mpm/contact, or use explicit steps",
+          fields.size(), contacts.size(), field->id());
+  if (time != STATIC && time != EULER)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit finds contact between bodies (fix mpm/contact {}) with the forces "
+               "of the end of a step alone: use static or euler",
+               contacts[0]->id);
+  if (preconditioner == MULTIGRID)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit solver multigrid knows one fix mpm, and there are {}, which fix "
+               "mpm/contact {} joins: use solver blocks",
+               fields.size(), contacts[0]->id);
+  for (const auto *field : fields)
+    refuse_field(lmp, *this, *field,
+                 {{field->domains != nullptr, "shape cpdi and cpdi2",
+                   "bodies that touch by fix mpm/contact need functions of nodes: use shape "
+                   "quadratic"},
+                  {!field->elements.empty(), "fix mpm/elements",
+                   "contact of elements is for explicit steps: use points"},
+                  {field->options.shape == MPM_NS::LINEAR, "shape linear",
+                   "forces between bodies jump when points go from cell to cell: use shape "
+                   "quadratic"}});
+  for (auto *action : plan.actions) {
+    auto *const contact = action->trial_contact();
+    if (!contact || dynamic_cast<MPMBodyContact *>(contact)) continue;
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/implicit knows walls that hold bodies together with fix mpm/contact {}, but "
+        "not yet those that separate, have friction, or are regions that move, such as fix "
+        "mpm/boundary {}: use stick or slip at faces or regions at rest, or a body of its "
+        "own (fix mpm) for the wall",
+        contacts[0]->id, dynamic_cast<Fix *>(action)->id);
+  }
 }
 
 void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
@@ -264,7 +314,7 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("implicit step", [this]() {
       rest();
     });
-  if (place == MPMPlan::AFTER_MOTION && time == MIDPOINT && field->affine)
+  if (place == MPMPlan::AFTER_MOTION && time == MIDPOINT && fields[0]->affine)
     plan.together("implicit step", [this]() {
       solver->end_motion();
     });
@@ -272,7 +322,7 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 void FixMPMImplicit::setup(int)
 {
-  for (const auto *elements : field->elements)    // which know of their pressure now
+  for (const auto *elements : fields[0]->elements)    // which know of their pressure now
     if (const char *const what = elements->beyond_trials())
       error->all(
           FLERR, Error::NOLASTLINE,
@@ -288,10 +338,12 @@ void FixMPMImplicit::setup(int)
 void FixMPMImplicit::step()
 {
   const double begin = platform::walltime();
-  const double energy = solver->step(field->step_dt()) * force->mvv2e;
+  const std::vector<double> energies = solver->step(fields[0]->step_dt());
   seconds += platform::walltime() - begin;
-  field->ledger.take(-energy);
-  taken[0] -= energy;
+  for (std::size_t k = 0; k < fields.size() && time == STATIC; k++) {
+    fields[k]->ledger.take(-energies[k] * force->mvv2e);
+    taken[0] -= energies[k] * force->mvv2e;
+  }
   const auto &now = solver->report();
   total[STEPS]++;
   total[NEWTON] += now.iterations;
@@ -320,7 +372,7 @@ void FixMPMImplicit::step()
         "above the largest load that bodies can bear, move a wall instead, or use euler{}",
         id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite,
         100.0 * now.reached, now.parts,
-        field->frame->is_total()
+        fields[0]->frame->is_total() || fields.size() > 1
             ? ""
             : "; slender solids that keep their neighbors need fix mpm ... frame total");
   if (report && comm->me == 0)
@@ -333,7 +385,7 @@ void FixMPMImplicit::step()
 /** Statics: points have moved, and are at rest again. What they had, nodes got in step(), less what transfers lose. */
 void FixMPMImplicit::rest()
 {
-  put_to_rest(*field, taken);
+  for (auto *field : fields) put_to_rest(*field, taken);
 }
 
 std::vector<MPMPhysics::Account> FixMPMImplicit::accounts() const

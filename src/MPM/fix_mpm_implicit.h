@@ -20,10 +20,11 @@ FixStyle(mpm/implicit,FixMPMImplicit);
 #include "mpm_state.h"
 
 #include <memory>
+#include <vector>
 
 namespace LAMMPS_NS {
 
-/** Implicit steps of a field: in the place of the momentum equation, the velocities of nodes are solved for with the stress
+/** Implicit steps of a field, or of several that touch each other: in the place of the momentum equation, the velocities of nodes are solved for with the stress
  *  of the end of the step, with inertia or as a sequence of states of equilibrium. */
 class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplicitOptions {
  public:
@@ -45,7 +46,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void account(double *values) const override;
 
  private:
-  MPMField *field = nullptr;
+  std::vector<MPMField *> fields;
   std::unique_ptr<MPMImplicit> solver;
   MPMImplicit::Accelerations kept;    // of points, of methods that need those of the step before
   enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, MADE, NTOTAL };
@@ -67,6 +68,8 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   double at_start[NTOTAL] = {};    // of this run
   double seconds = 0.0;            // in this run
 
+  void check_bodies(const MPMPlan &) const;
+  void check_field(const MPMPlan &, MPMField &) const;
   void step();
   void rest();
 };

@@ -9,6 +9,7 @@
 #include "mpm_implicit.h"
 
 #include "force.h"
+#include "mpm_body_contact.h"
 #include "mpm_field.h"
 #include "mpm_implicit_pressure.h"
 #include "mpm_node_action.h"
@@ -27,6 +28,8 @@ using namespace MPM_NS;
 
 static constexpr double PROJECTED = 1.0e-12;    // relative change by one action more
 static constexpr int MOST_REPEATS = 200;
+static constexpr double TIED = 1.0e-14;    // what is left of the approach of bodies that touch
+static constexpr int MOST_TIES = 100;
 static constexpr double ENOUGH = 0.9;    // of the slope that may be left, with the other sign
 static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
@@ -62,11 +65,21 @@ MPMImplicitOptions::Coefficients MPMImplicitOptions::coefficients() const
 
 /* ---------------------------------------------------------------------- */
 
-MPMImplicit::MPMImplicit(LAMMPS *lmp, MPMField &field, const MPMImplicitOptions &options,
-                         Accelerations &kept) :
-    MPMNodeSystem(lmp, field.grid, field.lattice.dim),
-    field(field), options(options), kept(kept), tangent(lmp, field),
-    ranks(lmp, field.grid, *field.nodes.halo)
+MPMImplicit::Member::Member(LAMMPS *lmp, MPMField &field) : field(field), tangent(lmp, field) {}
+
+std::vector<std::unique_ptr<MPMImplicit::Member>>
+MPMImplicit::make_members(LAMMPS *lmp, const std::vector<MPMField *> &fields)
+{
+  std::vector<std::unique_ptr<Member>> list;
+  for (auto *one : fields) list.push_back(std::make_unique<Member>(lmp, *one));
+  return list;
+}
+
+MPMImplicit::MPMImplicit(LAMMPS *lmp, const std::vector<MPMField *> &fields,
+                         const MPMImplicitOptions &options, Accelerations &kept) :
+    MPMNodeSystem(lmp, fields[0]->grid, fields[0]->lattice.dim),
+    field(*fields[0]), options(options), kept(kept), members(make_members(lmp, fields)),
+    tangent(members[0]->tangent), ranks(lmp, field.grid, *field.nodes.halo)
 {
   if (options.preconditioner == MPMImplicitOptions::MULTIGRID)
     multigrid = std::make_unique<SplineMultigrid>(
@@ -78,11 +91,28 @@ MPMImplicit::~MPMImplicit() = default;
 void MPMImplicit::init()
 {
   by_reach = field.domains || !field.elements.empty();
-  tangent.init();
+  for (auto &member : members) member->tangent.init();
   joint.reset();
   for (auto *physics : field.plan->physics)
     if (auto *const pressure = physics->node_pressure(field))
       joint = std::make_unique<Joint>(*this, *pressure);
+}
+
+/** use(member, n, record) for all nodes, where n is their place in vectors. */
+template <class Use> void MPMImplicit::each_record(const Use &use)
+{
+  for (auto &member : members) {
+    double *record = member->field.grid.nodes();
+    for (int64_t n = member->first; n < member->end(); n++, record += 8) use(*member, n, record);
+  }
+}
+
+/** use(n) for all nodes with a mass that this rank owns. */
+template <class Use> void MPMImplicit::each_owned(const Use &use) const
+{
+  for (const auto &member : members)
+    for (int64_t n = member->first; n < member->end(); n++)
+      if (mass[n] > 0.0 && member->owns(n)) use(n);
 }
 
 /* ----------------------------------------------------------------------
@@ -91,25 +121,28 @@ void MPMImplicit::init()
 
 void MPMImplicit::take_nodes()
 {
-  const int64_t nnodes = grid.nnodes();
+  int64_t nnodes = 0;
+  for (auto &member : members) {
+    member->first = nnodes;
+    nnodes += member->field.grid.nnodes();
+  }
   if (by_reach) find_reach();
   mass.resize(nnodes);
   for (auto *list : {&before, &explicit_velocity, &outer, &inner, &from, &residual, &free, &trial,
                      &change, &room})
     list->assign(nreals(), 0.0);
-  double *record = field.grid.nodes();
-  for (int64_t n = 0; n < nnodes; n++, record += 8) {
+  each_record([&](const Member &, int64_t n, double *record) {
     mass[n] = record[3] > 0.0 ? record[3] : 0.0;
     if (field.domains && reach[n] < REACHED) {    // as if no point came there
       std::fill_n(record, 8, 0.0);
       mass[n] = 0.0;
     }
-    if (mass[n] == 0.0) continue;
+    if (mass[n] == 0.0) return;
     for (int d = 0; d < width; d++) {
       explicit_velocity[width * n + d] = record[d];
       before[width * n + d] = record[4 + d];
     }
-  }
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -138,14 +171,20 @@ void MPMImplicit::find_reach()
 
 void MPMImplicit::act(double *velocities)
 {
-  double *const nodes = field.grid.nodes();
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
-    for (int d = 0; d < width; d++) nodes[8 * n + d] = velocities[width * n + d];
   for (auto *contact : contacts) contact->forget_pushes();
+  act_by_walls(velocities);
+  if (touching) tie(velocities);
+}
+
+void MPMImplicit::act_by_walls(double *velocities)
+{
+  each_record([&](const Member &, int64_t n, double *record) {
+    for (int d = 0; d < width; d++) record[d] = velocities[width * n + d];
+  });
   for (int k = 0; k < repeats; k++) field.plan->act_on_nodes(MPMNodeAction::TRIAL);
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
-    for (int d = 0; d < width; d++)
-      velocities[width * n + d] = mass[n] > 0.0 ? nodes[8 * n + d] : 0.0;
+  each_record([&](const Member &, int64_t n, const double *record) {
+    for (int d = 0; d < width; d++) velocities[width * n + d] = mass[n] > 0.0 ? record[d] : 0.0;
+  });
 }
 
 void MPMImplicit::find_constraints()
@@ -160,18 +199,20 @@ void MPMImplicit::find_constraints()
 
   std::vector<double> once(nreals()), twice;
   for (repeats = 1; repeats <= MOST_REPEATS; repeats *= 2) {
+    find_touching();
     std::fill(wall.begin(), wall.end(), 0.0);
     act(wall.data());
     for (auto *contact : contacts) contact->take_base();
     wall_speed = std::sqrt(product(wall.data(), wall.data()));
     int index[3];
-    for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
-      grid.node_index(n, index);
-      for (int d = 0; d < width; d++)
-        once[width * n + d] = mass[n] > 0.0
-            ? std::sin(1.0 + 3.1 * index[0] + 5.3 * index[1] + 7.7 * index[2] + 2.3 * d)
-            : 0.0;
-    }
+    for (std::size_t k = 0; k < members.size(); k++)
+      for (int64_t n = members[k]->first; n < members[k]->end(); n++) {
+        members[k]->field.grid.node_index(n - members[k]->first, index);
+        for (int d = 0; d < width; d++)
+          once[width * n + d] = mass[n] > 0.0
+              ? std::sin(1.0 + 3.1 * index[0] + 5.3 * index[1] + 7.7 * index[2] + 2.3 * d + 4.1 * k)
+              : 0.0;
+      }
     project(once.data());
     twice = once;
     project(twice.data());
@@ -182,6 +223,71 @@ void MPMImplicit::find_constraints()
   now.failure =
       "walls that meet contradict each other: give them the same velocity, or move faces of "
       "regions to planes of nodes";
+}
+
+/* ----------------------------------------------------------------------
+   bodies that touch each other
+------------------------------------------------------------------------- */
+
+/** Does anything touch? And what walls do by themselves. */
+void MPMImplicit::find_touching()
+{
+  touching = false;
+  if (!tied) return;
+  int mine = tied->touches(), any;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
+  touching = any;
+  of_walls.assign(nreals(), 0.0);
+  act_by_walls(of_walls.data());
+  speed_of_walls = std::sqrt(product(of_walls.data(), of_walls.data()));
+}
+
+/** v <- P_w v, see project(). */
+void MPMImplicit::take_by_walls(double *v)
+{
+  if (field.plan->actions.size() == 1) return;    // there is nothing but contact
+  double scale = 1.0;
+  if (speed_of_walls > 0.0) {
+    const double size = std::sqrt(product(v, v));
+    if (size > 0.0) scale = speed_of_walls / size;
+    for (int64_t k = 0; k < nreals(); k++) v[k] *= scale;
+  }
+  act_by_walls(v);
+  if (speed_of_walls > 0.0)
+    for (int64_t k = 0; k < nreals(); k++) v[k] = (v[k] - of_walls[k]) / scale;
+}
+
+/** Velocities that walls have acted on become those with which nothing that touches approaches each other, by impulses that walls know of. */
+void MPMImplicit::tie(double *v)
+{
+  const std::size_t n = tied->nrows();
+  double sums[2];
+  for (auto *list : {&closing_in, &along, &next_along}) list->assign(n, 0.0);
+  along_all.resize(nreals());
+  // r . D^-1 r of rows that this rank owns, and what it would be of their speeds
+  double enough = 0.0, before = 0.0;
+  tied->find_approach(v, true, closing_in.data());
+  for (int it = 0; it < MOST_TIES; it++) {
+    tied->add_squares(closing_in.data(), it == 0 ? v : nullptr, sums);
+    double all[2];
+    sum_in_order(lmp, 2, sums, of_ranks, all);
+    if (it == 0) enough = TIED * TIED * all[1];
+    if (!(all[0] > enough)) return;
+    const double gain = it == 0 ? 0.0 : all[0] / before;
+    before = all[0];
+    tied->precondition(closing_in.data(), gain, along.data());
+    std::fill(along_all.begin(), along_all.end(), 0.0);
+    tied->spread(along.data(), along_all.data());
+    take_by_walls(along_all.data());
+    tied->find_approach(along_all.data(), false, next_along.data());
+    sums[0] = tied->product(along.data(), next_along.data());
+    sum_in_order(lmp, 1, sums, of_ranks, all);
+    if (!(all[0] > 0.0)) return;    // walls hold all of it
+    const double way = before / all[0];
+    tied->push(way, along.data());
+    for (int64_t k = 0; k < nreals(); k++) v[k] -= way * along_all[k];
+    for (std::size_t k = 0; k < n; k++) closing_in[k] -= way * next_along[k];
+  }
 }
 
 /** Displacements of what walls hold, and was not at them at the start of the step. */
@@ -269,14 +375,13 @@ bool MPMImplicit::meet_walls(std::vector<double> &u, double share)
 double MPMImplicit::negligible_forces(const std::vector<double> &u, double stiffness) const
 {
   double mine[2] = {0.0, 0.0}, all[2];
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
-    if (!(mass[n] > 0.0) || !grid.owns(n)) continue;
+  each_owned([&](int64_t n) {
     double square = 0.0;
     for (int d = 0; d < width; d++) square += u[width * n + d] * u[width * n + d];
     if (by_reach) square *= reach[n] * reach[n];
     mine[0] += mass[n] * square;
     mine[1] += mass[n];
-  }
+  });
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, lmp->world);
   const double way = all[1] > 0.0 ? std::sqrt(all[0] / all[1]) : 0.0;
   return ROUND_OFF * stiffness * std::max(1.0, 4.0 * way / field.lattice.h);
@@ -347,12 +452,11 @@ void MPMImplicit::check_contacts()
 double MPMImplicit::sum_of_sizes(const std::vector<double> &f, bool of_corners)
 {
   double mine = 0.0, sum;
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
-    if (!(mass[n] > 0.0) || !grid.owns(n)) continue;
+  each_owned([&](int64_t n) {
     double square = 0.0;
     for (int d = 0; d < width; d++) square += f[width * n + d] * f[width * n + d];
     mine += std::sqrt(square) / (of_corners && field.domains ? reach[n] : 1.0);
-  }
+  });
   sum_in_order(lmp, 1, &mine, of_ranks, &sum);
   return sum;
 }
@@ -369,7 +473,7 @@ void MPMImplicit::apply(const double *x, double *y)
     project(allowed.data());
     x = allowed.data();
   }
-  tangent.change_of_forces(x, y);
+  change_of_forces(x, y);
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width];
     y[k] = m > 0.0 ? inertia * m * x[k] - late * part * y[k] : 0.0;
@@ -441,6 +545,70 @@ static void invert(int n, double *A)
     }
 }
 
+/* ----------------------------------------------------------------------
+   all fields: each one has a part of the vectors
+------------------------------------------------------------------------- */
+
+void MPMImplicit::change_of_forces(const double *du, double *dforce)
+{
+  for (auto &member : members) {
+    const int64_t first = width * member->first;
+    member->tangent.change_of_forces(du + first, dforce + first);
+  }
+}
+
+/** Those of the stress after the motion u, see MPMTangent::forces(). */
+bool MPMImplicit::find_forces(const double *u, double *force, double &carried)
+{
+  bool good = true;
+  carried = 0.0;
+  for (auto &member : members) {
+    const int64_t first = width * member->first;
+    double mine;
+    good = member->tangent.forces(u + first, part * dt, force + first, mine) && good;
+    carried += mine;
+  }
+  return good;
+}
+
+/** Tangents at the motion u; sets their asymmetry. */
+double MPMImplicit::linearize(const double *u)
+{
+  double stiffness = 0.0;
+  now.asymmetry = 0.0;
+  for (auto &member : members) {
+    stiffness += member->tangent.linearize(u + width * member->first, part * dt);
+    now.asymmetry = std::max(now.asymmetry, member->tangent.asymmetry());
+  }
+  return stiffness;
+}
+
+bool MPMImplicit::Member::owns(int64_t n) const
+{
+  return field.grid.owns(n - first);
+}
+
+int64_t MPMImplicit::Member::end() const
+{
+  return first + field.grid.nnodes();
+}
+
+/** The number of the first node of a field. */
+int64_t MPMImplicit::first_of(const MPMField &of) const
+{
+  for (const auto &member : members)
+    if (&member->field == &of) return member->first;
+  return -1;
+}
+
+void MPMImplicit::products(int n, const double *const *a, const double *const *b, double *value)
+{
+  of_rank.assign(n, 0.0);
+  for (const auto &member : members)
+    add_products(member->field.grid, width, n, a, b, width * member->first, of_rank.data());
+  sum_in_order(lmp, n, of_rank.data(), of_ranks, value);
+}
+
 /* ---------------------------------------------------------------------- */
 
 /** The part s u of a motion. */
@@ -456,7 +624,7 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
 {
   double carried, all;
   if (joint) joint->set_pressure();
-  if (!tangent.forces(part_of(u), part * dt, inner.data(), carried)) return false;
+  if (!find_forces(part_of(u), inner.data(), carried)) return false;
   for (int64_t k = 0; k < nreals(); k++) {
     const double m = mass[k / width], pull = inertia * m * (u[k] - from[k]);
     residual[k] = m > 0.0 ? outer[k] + late * inner[k] - pull : 0.0;
@@ -511,7 +679,15 @@ bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
 /** Blocks of the diagonal of the present tangents. */
 void MPMImplicit::find_blocks()
 {
-  tangent.diagonal(blocks);
+  if (members.size() == 1) {
+    tangent.diagonal(blocks);
+  } else {
+    blocks.clear();
+    for (auto &member : members) {
+      member->tangent.diagonal(of_member);
+      blocks.insert(blocks.end(), of_member.begin(), of_member.end());
+    }
+  }
   for (double &entry : blocks) entry *= late * part;
   for (int64_t n = 0; n < (int64_t) mass.size(); n++)
     for (int d = 0; d < width; d++)
@@ -702,15 +878,14 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     accuracy = std::max(accuracy, MOST_ACCURATE);
     last = left;
 
-    stiffness = tangent.linearize(part_of(u), part * dt);
-    now.asymmetry = tangent.asymmetry();
+    stiffness = linearize(part_of(u));
     // at first, walls bring what they hold where it has to be, and all the rest goes with that
 
     if (wall_moves) {
       if (joint)
         joint->move_walls(held, change.data());
       else
-        tangent.change_of_forces(held.data(), change.data());
+        change_of_forces(held.data(), change.data());
       for (int64_t k = 0; k < nreals(); k++)
         free[k] = mass[k / width] > 0.0
             ? residual[k] + change[k] - inertia * mass[k / width] * held[k]
@@ -815,7 +990,7 @@ void MPMImplicit::approach(std::vector<double> &u)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMImplicit::step(double step_dt)
+std::vector<double> MPMImplicit::step(double step_dt)
 {
   dt = step_dt;
   now = Report();
@@ -826,8 +1001,16 @@ double MPMImplicit::step(double step_dt)
   bool all_hold = true;
   slip = options.slip > 0.0 ? options.slip : SLIP * field.lattice.h;
   const double slip_time = dt * options.share_of_end();
+  tied = nullptr;
+  touching = false;
   for (auto *action : field.plan->actions)
     if (auto *contact = action->trial_contact()) {
+      if (auto *const bodies = dynamic_cast<MPMBodyContact *>(contact)) {
+        tied = bodies;
+        bodies->place_bodies([this](const MPMField &of) {
+          return first_of(of);
+        });
+      }
       contact->begin_trials(field, dt, slip_time, slip, options.time == MPMImplicitOptions::STATIC);
       contacts.push_back(contact);
       all_hold = all_hold && action->is_projection();
@@ -838,10 +1021,11 @@ double MPMImplicit::step(double step_dt)
   const bool carries = find_carried();
   find_constraints();
   if (joint) joint->begin_step();
-  tangent.external_forces(outer.data());
+  for (auto &member : members)
+    member->tangent.external_forces(outer.data() + width * member->first);
   if (carries) bear_carried();
   if (options.time == MPMImplicitOptions::STATIC && now.failure.empty()) find_free_bodies();
-  if (!now.failure.empty()) return 0.0;
+  if (!now.failure.empty()) return std::vector<double>(members.size(), 0.0);
 
   // u*: where inertia alone would bring nodes, and the first guess
 
@@ -894,22 +1078,22 @@ double MPMImplicit::step(double step_dt)
    the start of the step in the work of forces, at the mean of old and new velocity, and gets what is different in account()
 ------------------------------------------------------------------------- */
 
-double MPMImplicit::give_back(const std::vector<double> &u)
+std::vector<double> MPMImplicit::give_back(const std::vector<double> &u)
 {
   const bool newmark = options.time == MPMImplicitOptions::NEWMARK,
              midpoint = options.time == MPMImplicitOptions::MIDPOINT,
              rests = options.time == MPMImplicitOptions::STATIC,
              keeps = options.keeps_acceleration();
   const auto with = options.coefficients();
-  double kinetic = 0.0;
+  std::vector<double> kinetic;
   if (keeps && !impacts) next.assign(nreals(), 0.0);
   push.assign(nreals(), 0.0);
   velocity.resize(nreals());
-  double *record = field.grid.nodes();
   if (impacts) end_impacts(u);
   const double of_contact = impacts ? share_of_contact() : 1.0;
   for (auto *contact : contacts) contact->foresee_velocities(velocity.data(), of_contact);
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
+  each_record([&](const Member &member, int64_t n, double *record) {
+    if (n == member.first) kinetic.push_back(0.0);
     for (int d = 0; d < width; d++) {
       const int64_t k = width * n + d;
       const double m = mass[n], v = velocity[k] = u[k] / dt;
@@ -940,10 +1124,11 @@ double MPMImplicit::give_back(const std::vector<double> &u)
             (start[k] - before[k] + dt * ((1.0 - with.gamma) * acceleration[k] + with.gamma * end));
       }
       push[k] = m * (record[d] - record[4 + d] - explicit_velocity[k] + before[k]);
-      if (m > 0.0 && grid.owns(n)) kinetic += 0.5 * m * v * v;
+      if (m > 0.0 && rests && member.owns(n)) kinetic.back() += 0.5 * m * v * v;
     }
-  }
-  return rests ? kinetic : 0.0;
+  });
+  kinetic.resize(members.size());    // of fields without nodes
+  return kinetic;
 }
 
 /* ----------------------------------------------------------------------
@@ -954,9 +1139,9 @@ double MPMImplicit::give_back(const std::vector<double> &u)
 void MPMImplicit::finish()
 {
   if (field.ledger.on) account();
-  double *record = field.grid.nodes();
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8)
+  each_record([&](const Member &, int64_t n, double *record) {
     for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
+  });
   if (options.time == MPMImplicitOptions::MIDPOINT && field.affine) find_end_of_motion();
   if (options.keeps_acceleration()) keep_accelerations();
 }
@@ -967,10 +1152,14 @@ void MPMImplicit::find_loads(const std::vector<double> &u)
   if (!field.ledger.on) return;
   loads.assign(nreals(), 0.0);
   more_loads = loads;
-  if (!tangent.has_loads()) return;
-  tangent.loads(loads.data(), more_loads.data());    // without any motion
-  loads.swap(more_loads);
-  tangent.loads(part_of(u), more_loads.data());
+  for (auto &member : members) {
+    if (!member->tangent.has_loads()) continue;
+    const int64_t first = width * member->first;
+    member->tangent.loads(loads.data() + first, more_loads.data() + first);    // without any motion
+    std::swap_ranges(loads.begin() + first, loads.begin() + width * member->end(),
+                     more_loads.begin() + first);
+    member->tangent.loads(part_of(u) + first, more_loads.data() + first);
+  }
   for (int64_t k = 0; k < nreals(); k++) more_loads[k] -= loads[k];
 }
 
@@ -979,10 +1168,10 @@ void MPMImplicit::account()
   const bool by_mean = options.moves_by_mean();
   // of the forces of the end of the step
   const double share = options.time == MPMImplicitOptions::NEWMARK ? options.gamma : late;
-  double internal = 0.0, external = 0.0, transfer = 0.0;
-  const double *record = field.grid.nodes();
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++, record += 8) {
-    if (!(mass[n] > 0.0) || !grid.owns(n)) continue;
+  const double unit = lmp->force->mvv2e;
+  each_record([&](const Member &member, int64_t n, const double *record) {
+    if (!(mass[n] > 0.0) || !member.owns(n)) return;
+    double internal = 0.0, external = 0.0, transfer = 0.0;
     for (int d = 0; d < width; d++) {
       const int64_t k = width * n + d;
       const double v = velocity[k], old = record[4 + d];
@@ -998,18 +1187,17 @@ void MPMImplicit::account()
       internal -= of_stress * half;
       transfer -= (of_forces + of_stress) * half;
     }
-  }
-  const double unit = lmp->force->mvv2e;
-  field.ledger.internal += internal * unit;
-  field.ledger.external += external * unit;
-  field.ledger.transfer += transfer * unit;
+    auto &ledger = member.field.ledger;
+    ledger.internal += internal * unit;
+    ledger.external += external * unit;
+    ledger.transfer += transfer * unit;
+  });
 }
 
 double MPMImplicit::memory_usage() const
 {
-  double bytes = tangent.memory_usage() + memory.memory_usage() + solver.memory_usage() +
-      general.memory_usage() + (multigrid ? multigrid->memory_usage() : 0.0) +
-      (joint ? joint->memory_usage() : 0.0);
+  double bytes = memory.memory_usage() + solver.memory_usage() + general.memory_usage() +
+      (multigrid ? multigrid->memory_usage() : 0.0) + (joint ? joint->memory_usage() : 0.0);
   for (const auto *list : {&mass,      &reach,        &friction, &before,  &explicit_velocity,
                            &outer,     &inner,        &from,     &wall,    &held,
                            &offset,    &slide,        &mean,     &ending,  &stopped,
@@ -1018,6 +1206,7 @@ double MPMImplicit::memory_usage() const
                            &of_points, &early,        &next,     &free,    &change,
                            &trial,     &blocks,       &room,     &allowed, &of_heavy})
     bytes += list->capacity() * sizeof(double);
+  for (const auto &member : members) bytes += member->tangent.memory_usage();
   bytes += heavy.capacity() * sizeof(int64_t);
   return bytes;
 }

@@ -24,6 +24,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMBodyContact;
 class MPMField;
 class MPMNodePressure;
 class MPMTrialContact;
@@ -65,7 +66,7 @@ struct MPMImplicitOptions {
   bool moves_by_mean() const { return time != STATIC && time != EULER; }
 };
 
-/** The implicit step of a field: displacements u of its nodes in a step of duration dt for which
+/** The implicit step of one or more fields: displacements u of their nodes in a step of duration dt for which
 
       f_ext + f_int(s u) + f_walls = c m (u - u*),   u = P u + dt w
 
@@ -73,7 +74,14 @@ struct MPMImplicitOptions {
    those of both ends of the step), f_int(u) is that of MPMTangent, and v -> P v
    + w is what all node actions make of velocities. Walls do no work on what P leaves free, so that with the right side
    P^T r = 0 is to be solved for the residual r without them. Newton's method, whose steps are solved for by conjugate
-   gradients. Vectors are [node][dim]; forces are in units of mass times acceleration.
+   gradients. Vectors are [node][dim], those of one field after the other; forces are in units of mass times acceleration.
+
+   Bodies that are fields of their own touch each other by fix mpm/contact: C v = g for what touches, with a row of C for each line of nodes through the
+   interface. Where walls make P_w v + w of velocities, P is the orthogonal projection on what both leave free,
+
+      P = P_w - P_w M^-1 C^T S^-1 C P_w,   S = C P_w M^-1 C^T
+
+   with S^-1 by conjugate gradients: S is diagonal, and known, but where walls join nodes of several lines.
 
    Where there is a pressure of nodes (MPMNodePressure), it is found with u by the same iterations (mpm_implicit_pressure.cpp). */
 class MPMImplicit : private MPMNodeSystem {
@@ -100,15 +108,17 @@ class MPMImplicit : private MPMNodeSystem {
     bool known = false;
   };
 
-  MPMImplicit(class LAMMPS *, MPMField &, const MPMImplicitOptions &, Accelerations &);
+  /** Several fields: static and euler, without multigrid, a pressure of nodes, elements, and points with domains. */
+  MPMImplicit(class LAMMPS *, const std::vector<MPMField *> &, const MPMImplicitOptions &,
+              Accelerations &);
   ~MPMImplicit() override;
 
   /** Start of a run. */
   void init();
   /** The nodes have the velocities of the momentum equation: find u, and give them what node actions make the velocities
    *  of the step, with all the impulses that they bear. Returns, in statics, the kinetic energy that there is not, of nodes
-   *  that this rank owns [mass velocity^2]. */
-  double step(double dt);
+   *  that this rank owns [mass velocity^2], for each field. */
+  std::vector<double> step(double dt);
   /** Node actions have acted: velocities of the step, and works of forces that the ledger does not know. */
   void finish();
   /** Points have moved: those of affine transfers get what their velocities at the end of the step have more than the mean ones that they
@@ -126,10 +136,24 @@ class MPMImplicit : private MPMNodeSystem {
   double memory_usage() const;
 
  private:
-  MPMField &field;
+  /** A field, and its part of the vectors. */
+  struct Member {
+    MPMField &field;
+    MPMTangent tangent;
+    int64_t first = 0;    // of its nodes
+
+    Member(class LAMMPS *, MPMField &);
+    int64_t end() const;
+    bool owns(int64_t n) const;
+  };
+  static std::vector<std::unique_ptr<Member>> make_members(class LAMMPS *,
+                                                           const std::vector<MPMField *> &);
+
+  MPMField &field;    // the first one
   const MPMImplicitOptions &options;
   Accelerations &kept;
-  MPMTangent tangent;
+  const std::vector<std::unique_ptr<Member>> members;
+  MPMTangent &tangent;    // of the first one
   MPM_NS::ConjugateGradients solver;
   MPM_NS::FlexibleGMRES general{100};
   MPMLatticeRanks ranks;
@@ -143,9 +167,14 @@ class MPMImplicit : private MPMNodeSystem {
   double part = 1.0;                 // s
   double late = 1.0;                 // share of the end of the step in forces
   bool constrained = false;
-  double wall_speed = 0.0;                     // largest of w
-  std::vector<MPMTrialContact *> contacts;     // of walls
-  bool rubs = false;                           // one of them has friction
+  double wall_speed = 0.0;                    // largest of w
+  std::vector<MPMTrialContact *> contacts;    // of walls, and between bodies
+  MPMBodyContact *tied = nullptr;             // the latter one
+  bool touching = false;                      // does anything touch by that?
+  std::vector<double> of_walls;               // w of walls alone
+  double speed_of_walls = 0.0;
+  std::vector<double> closing_in, along, next_along, along_all;    // for S
+  bool rubs = false;                                               // one of them has friction
   double slip = 0.0;                           // from which on it is that of Coulomb
   double of_pushes = 1.0;                      // scale of the last projection
   double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of their way in this step
@@ -219,11 +248,25 @@ class MPMImplicit : private MPMNodeSystem {
   double enough_force = 0.0;       // what may be left, of the last residual
   bool search_jointly(std::vector<double> &u, double &size);
 
+  std::vector<double> of_rank, of_member;
+
   int64_t nreals() const { return (int64_t) mass.size() * width; }
+  int64_t size() const override { return nreals(); }
+  void products(int n, const double *const *a, const double *const *b, double *value) override;
+  int64_t first_of(const MPMField &) const;
+  template <class Use> void each_record(const Use &use);
+  template <class Use> void each_owned(const Use &use) const;
+  void change_of_forces(const double *du, double *dforce);
+  bool find_forces(const double *u, double *force, double &carried);
+  double linearize(const double *u);
   void take_nodes();
   void find_reach();
   void find_constraints();
   void act(double *velocities);
+  void act_by_walls(double *velocities);
+  void take_by_walls(double *velocities);
+  void find_touching();
+  void tie(double *velocities);
   void project(double *x);
   void find_friction(const std::vector<double> &u);
   bool find_carried();
@@ -252,7 +295,7 @@ class MPMImplicit : private MPMNodeSystem {
   void find_accelerations();
   void keep_accelerations();
   void account();
-  double give_back(const std::vector<double> &u);
+  std::vector<double> give_back(const std::vector<double> &u);
 
   void apply(const double *x, double *y) override;
   void precondition(const double *r, double *z) override;

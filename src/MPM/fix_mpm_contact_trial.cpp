@@ -1,0 +1,703 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Contact between bodies that a solver has in its steps (mpm_body_contact.h). In explicit steps each node that bodies share is in contact by itself:
+// its velocities are those of both bodies, also one and two layers of nodes in, so that the strain of a soft body next to a hard one is that of the hard one. In
+// the balance of forces this would be a soft body that is about half a cell thinner. Here, nodes are tied together along lines through the interface, by a
+// single condition
+//
+//    sum_k a_k n_k . (u_a,k - u_b,k) = g,   sum_k a_k = 1
+//
+// with the areas a_k of the interface at these nodes, and normals n_k, by which a_k n_k is the integral of the gradients of their functions over the bodies: for a plane
+// interface a_k = N_k where it is, so that the condition is about the motion there, and a pressure on it is in balance with uniform stress, node by node, wherever it is
+// between nodes, and whatever the direction of the plane.
+//
+// The gap g is what is missing in the volumes of both bodies along the line, over the area of the interface. Where a body covers the share c of the
+// cross-section of the line, next to its edge, its volumes are divided by c:
+//
+//    g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
+//
+// What touches is held along the normal (law stick: along all axes) without any penalty, as long as it would not be pulled.
+
+#include "fix_mpm_contact.h"
+
+#include "error.h"
+#include "math_extra.h"
+#include "mpm_field.h"
+#include "mpm_frame.h"
+#include "mpm_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double STEEPER = 1.0e-6;    // of normals, by which the axis of a line is told
+static constexpr int AROUND =
+    2;    // nodes of a line that are looked at beyond those that both bodies reach
+static constexpr double COVERED = 1.0e-3;    // share of the cross-section of a line, least
+// node spacings at which bodies touch as they are if others do, and at which statics tries whether they touch
+static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
+static constexpr double TOUCHED = 1.0e-6;    // node spacings: no gap
+static constexpr double LONGEST = 0.99;      // of the direction of slip: what slips has a stiffness
+static constexpr double WRONG =
+    1.0e-9;    // of the largest push, a pull that is let go; node spacings
+static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;    // see fix_mpm_contact.cpp
+static constexpr double ROOM =
+    1.1;    // for what bodies that overlap at the start of a run share later
+static constexpr double STILL_RIGHT = 1.0e-4;    // the same in the end
+static constexpr int AT_ONCE = 6;                // times that all is changed
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMContact::refuse_trials() const
+{
+  const char *what = nullptr, *instead = nullptr;
+  if (law == ADHESIVE) {
+    what = "law adhesive";
+    instead = "use law stick";
+  } else if (static_friction > kinetic_friction) {
+    what = "a coefficient of static friction";
+    instead = "use one coefficient";
+  } else if (normal_by != COLINEAR) {
+    what = "normal mass, volume, and logistic, as they take the one of the interface itself";
+    instead = "remove normal";
+  } else if (heating) {
+    what = "heat";
+    instead = "remove it";
+  } else if (on_several_lattices) {
+    what = "bodies on several lattices (fix mpm/refine)";
+    instead = "use one lattice";
+  }
+  if (what)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/contact {}: implicit steps (fix mpm/implicit) do not know {}: {}, or "
+               "explicit steps",
+               id, what, instead);
+}
+
+/** Rows of a tie: along the normal, or along all axes. */
+int FixMPMContact::rows_of_tie() const
+{
+  return law == STICK ? bodies[0].field->lattice.dim : 1;
+}
+
+/* ----------------------------------------------------------------------
+   ties
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Two bodies at a node, with the integral A of the gradient of its function over their interface as area and normal. The integrals over the
+   bodies are g_a = A + L_a and g_b = -A + L_b with those of their free sides, which are in proportion to the volumes that they have at the node where one side
+   is the continuation of the other. L_a + L_b is g_a + g_b, so that
+
+      A = [g_a - g_b - (g_a + g_b) (V_a - V_b)/(V_a + V_b)]/2
+------------------------------------------------------------------------- */
+
+bool FixMPMContact::make_trial_pair(const Common &c, int n, int a, int b, Pair &pair)
+{
+  constexpr double SMALL = 1.0e-10;
+  const MPMField &field = *bodies[a].field;
+  double ga[3], gb[3];
+  int index[3];
+  gradient_at(bodies[a], c.slot[a], n, ga);
+  gradient_at(bodies[b], c.slot[b], n, gb);
+  field.grid.node_index(field.grid.blocks[c.slot[a]], n, index);
+  const double Va = share_of(bodies[a], index), Vb = share_of(bodies[b], index);
+  if (!(Va + Vb > 0.0)) return false;
+  const double r = (Va - Vb) / (Va + Vb);
+  MathExtra::zero3(pair.n);
+  for (int d = 0; d < field.lattice.dim; d++)
+    pair.n[d] = 0.5 * (ga[d] - gb[d] - r * (ga[d] + gb[d]));
+  pair.area = MathExtra::len3(pair.n);
+  if (!(pair.area > SMALL * field.lattice.cell_volume() / field.lattice.h)) return false;
+  MathExtra::scale3(1.0 / pair.area, pair.n);
+  pair.a = a;
+  pair.b = b;
+  pair.ra = bodies[a].field->grid.record(c.slot[a], n);
+  pair.rb = bodies[b].field->grid.record(c.slot[b], n);
+  pair.fade = pair.water = 0.0;
+  pair.state = OPEN;
+  return true;
+}
+
+/** Are both bodies at this node what walls make of those inside? Finds what walls do. */
+bool FixMPMContact::is_beyond_walls(Pair &pair)
+{
+  const int all = (1 << bodies[0].field->lattice.dim) - 1;
+  pair.walls_a = bodies[pair.a].find_walls(pair.ra);
+  pair.walls_b = bodies[pair.b].find_walls(pair.rb);
+  const auto follows = [all](const Pair::Walls &walls) {
+    return ((walls.outside | walls.held) & all) == all;
+  };
+  return follows(pair.walls_a) && follows(pair.walls_b);
+}
+
+/** Node of a body by its index, -1: it has none there. */
+static int64_t node_at(const MPMField &field, const int *index)
+{
+  int at[3];
+  for (int d = 0; d < 3; d++) at[d] = field.lattice.wrap(d, index[d]);
+  return field.grid.locate(at);
+}
+
+/** Share of the volume of a node, as far as it is inside of the box, that a body fills. */
+double FixMPMContact::share_of(const Body &body, const int *index) const
+{
+  int at[3] = {index[0], index[1], index[2]};
+  bool image = false;
+  const double most = room.at(at, body.field->lattice.dim, image);
+  const int64_t node = node_at(*body.field, at);
+  return node >= 0 && most > 0.0 ? body.share[node] / most : 0.0;
+}
+
+/** Does this rank know what the body has at a node? */
+bool FixMPMContact::is_known(const Body &body, const int *index) const
+{
+  const Grid &grid = body.field->grid;
+  if (node_at(*body.field, index) >= 0) return true;
+  bool inside = true;
+  for (int d = 0; d < grid.lattice.dim; d++) {
+    const int b = body.field->lattice.wrap(d, index[d]) >> grid.shift_bits;
+    inside = inside && b >= body.reach.extent[d] && b <= -body.reach.extent[3 + d];
+  }
+  return !inside;
+}
+
+/** The gap of a line of nodes along this axis, of which both bodies reach those from low to high; negative: bodies overlap. Returns false where a body
+ *  hardly covers the line. */
+bool FixMPMContact::measure_gap(Tie &tie, int axis, const int *index, int low, int high,
+                                double &gap) const
+{
+  const MPMField &field = *bodies[tie.a].field;
+  const double h = field.lattice.h, slope = std::fabs(tie.n[axis]),
+               cross = field.lattice.cell_volume() / (h * slope);
+  double covers[2] = {0.0, 0.0};
+  std::vector<std::array<double, 2>> shares;
+  int at[3] = {index[0], index[1], index[2]};
+  for (int i = low - AROUND; i <= high + AROUND; i++) {
+    at[axis] = i;
+    shares.push_back({0.0, 0.0});
+    for (int k = 0; k < 2; k++) {
+      const Body &body = bodies[k ? tie.b : tie.a];
+      const int64_t node = node_at(*body.field, at);
+      if (node < 0) continue;
+      double g[3];
+      const int slot = (int) (node / NODES_PER_BLOCK), n = (int) (node % NODES_PER_BLOCK);
+      gradient_at(body, slot, n, g);
+      const double circle = body.field->frame->node_circle(slot, n),
+                   along = MathExtra::dot3(g, tie.n);
+      if (circle > 0.0) covers[k] += (k ? -along : along) / (cross * circle);
+      shares.back()[k] = share_of(body, at);
+    }
+  }
+  for (int k = 0; k < 2; k++) {
+    for (const auto &share : shares) covers[k] = std::max(covers[k], share[k]);
+    covers[k] = std::min(covers[k], 1.0);
+    if (covers[k] < COVERED) return false;
+  }
+  // from where one body fills most to where the other one does: behind are other surfaces of these
+  const auto fullest = [&](int k) {
+    return std::max_element(shares.begin(), shares.end(), [k](const auto &s, const auto &t) {
+      return s[k] < t[k];
+    });
+  };
+  auto from = fullest(0), to = fullest(1);
+  if (to < from) std::swap(from, to);
+  double missing = 0.0;
+  for (auto share = from; share <= to; ++share)
+    missing += 1.0 - (*share)[0] / covers[0] - (*share)[1] / covers[1];
+  gap = h * (slope * missing - (1.0 - full));
+  return true;
+}
+
+/** places: node index along the axis and pair, of which those from first to last are next to each other. */
+void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first,
+                            std::size_t last, int axis)
+{
+  Tie tie = {};
+  const Pair &begin = pairs[places[first % places.size()].second];
+  const int dim = bodies[begin.a].field->lattice.dim;
+  tie.a = begin.a;
+  tie.b = begin.b;
+  tie.owned = owned_pairs[places[first % places.size()].second];
+  tie.first = (int) links.size();
+  double area = 0.0;
+  for (std::size_t k = first; k < last; k++) {
+    const Pair &pair = pairs[places[k % places.size()].second];
+    area += pair.area;
+    for (int d = 0; d < 3; d++) tie.n[d] += pair.area * pair.n[d];
+  }
+  MathExtra::norm3(tie.n);
+  const auto number = [&](const Body &body, const double *record) {
+    return (record - body.field->grid.nodes()) / body.field->grid.nreal;
+  };
+  const Body &a = bodies[tie.a], &b = bodies[tie.b];
+  for (std::size_t k = first; k < last; k++) {
+    const Pair &pair = pairs[places[k % places.size()].second];
+    Link link = {place_of(*a.field) + number(a, pair.ra),
+                 place_of(*b.field) + number(b, pair.rb),
+                 pair.ra,
+                 pair.rb,
+                 pair.area / area,
+                 {pair.n[0], pair.n[1], pair.n[2]}};
+    for (int d = 0; d < dim; d++) {
+      double soft = 0.0;
+      for (int body = 0; body < 2; body++) {
+        const auto &walls = body ? pair.walls_b : pair.walls_a;
+        if (walls.held >> d & 1) continue;
+        soft += 1.0 / (walls.mirrored >> d & 1 ? walls.mass[d] : (body ? pair.rb : pair.ra)[3]);
+      }
+      soft *= link.share * link.share;
+      if (law == STICK)
+        tie.diagonal[d] += soft;
+      else
+        tie.diagonal[0] += soft * link.n[d] * link.n[d];
+    }
+    links.push_back(link);
+  }
+  tie.last = (int) links.size();
+
+  int index[3];
+  a.field->grid.node_index(number(a, begin.ra), index);
+  const int low = places[first].first, high = low + (int) (last - first) - 1;
+  for (const int end :
+       {low - 1, high + 1}) {    // a rank may have a part of a line that none of its points reaches
+    index[axis] = end;
+    if (is_known(a, index) && is_known(b, index)) continue;
+    links.resize(tie.first);
+    return;
+  }
+  if (gap) {
+    if (!measure_gap(tie, axis, index, low, high, tie.gap)) {
+      links.resize(tie.first);
+      return;
+    }
+    tie.gap = std::max(tie.gap, 0.0);
+  }
+  ties.push_back(tie);
+}
+
+/** Lines of nodes with their two bodies, and their gaps. */
+void FixMPMContact::find_ties()
+{
+  // by the bodies, the axis and the direction of the normal, and the indices across
+
+  std::map<std::array<int, 6>, std::vector<std::pair<int, int>>> lines;
+  const Lattice &lattice = bodies[0].field->lattice;
+  owned_pairs.assign(pairs.size(), 0);
+  for (const auto &node : nodes)
+    for (int p = node.first; p < node.last; p++) {
+      Pair &pair = pairs[p];
+      owned_pairs[p] = node.owned;
+      if (is_beyond_walls(pair)) continue;
+      int axis = 0, index[3];
+      for (int d = 1; d < lattice.dim; d++)
+        if (std::fabs(pair.n[d]) > std::fabs(pair.n[axis]) + STEEPER) axis = d;
+      const Grid &grid = bodies[pair.a].field->grid;
+      grid.node_index((pair.ra - bodies[pair.a].field->grid.nodes()) / grid.nreal, index);
+      const int at = index[axis];
+      index[axis] = 0;
+      lines[{pair.a, pair.b, 2 * axis + (pair.n[axis] > 0.0), index[0], index[1], index[2]}]
+          .emplace_back(at, p);
+    }
+  for (auto &[key, places] : lines) {
+    const int axis = key[2] / 2;
+    std::sort(places.begin(), places.end());
+    const std::size_t n = places.size();
+    const auto joined = [&](std::size_t k) {    // to the one before
+      const int before = places[(k + n - 1) % n].first, now = places[k % n].first;
+      if (k % n) return now == before + 1;
+      return n > 1 && lattice.periodic[axis] && now == 0 && before == lattice.ncell[axis] - 1;
+    };
+    std::size_t begin = 0;
+    while (begin < n && joined(begin)) begin++;
+    if (begin == n) begin = 0;    // all around a box
+    for (std::size_t first = begin, last; first < begin + n; first = last) {
+      for (last = first + 1; last < begin + n && joined(last);) last++;
+      add_tie(places, first, last, axis);
+    }
+  }
+  check_overlap();
+}
+
+/** An error if bodies share more of the volume of a node than when the run began, by as much as is told of then. Collective. */
+void FixMPMContact::check_overlap()
+{
+  double mine = 0.0, most;
+  for (std::size_t p = 0; p < pairs.size(); p++) {
+    if (!owned_pairs[p]) continue;
+    const Pair &pair = pairs[p];
+    Grid &grid = bodies[pair.a].field->grid;
+    int index[3];
+    grid.node_index((pair.ra - grid.nodes()) / grid.nreal, index);
+    const double Va = share_of(bodies[pair.a], index), Vb = share_of(bodies[pair.b], index);
+    if (std::min(Va, Vb) >= OVERLAP_EACH) mine = std::max(mine, Va + Vb);
+  }
+  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (look) shared_at_start = most;
+  if (most < std::max(OVERLAP, ROOM * shared_at_start)) return;
+  error->all(FLERR, Error::NOLASTLINE,
+             "Fix mpm/contact {}: bodies have come into each other in the implicit steps of this "
+             "run, so that they fill {:.3g} of the volume of a node: contact sees bodies that are "
+             "up to about a node spacing away from each other when a step begins: use smaller "
+             "steps",
+             id, most);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMContact::begin_trials(MPMField &, double dt, double, double eps, bool rests)
+{
+  trial_dt = dt;
+  trial_eps = eps;
+  soft = 0.0;
+  closes = false;
+  rounds = 0;
+  nodes.clear();
+  pairs.clear();
+  ties.clear();
+  links.clear();
+  if (!lists_valid) list_common_blocks();
+  if (look) warn_thin();
+  if (may_touch && map_bodies()) {
+    if (look) warn_overlap();
+    find_contacts();
+    find_ties();
+  }
+  look = false;
+
+  const double h = bodies[0].field->lattice.h;
+  int mine = 0, any;
+  for (const auto &tie : ties)
+    if (tie.owned && tie.gap <= TOUCHED * h) mine = 1;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  for (auto &tie : ties) {
+    if (any && tie.gap <= NEXT_TO * h) tie.gap = 0.0;
+    tie.active = any ? tie.gap == 0.0 : rests && tie.gap < NEARBY * h;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the projection
+------------------------------------------------------------------------- */
+
+bool FixMPMContact::touches() const
+{
+  return std::any_of(ties.begin(), ties.end(), [](const Tie &tie) {
+    return tie.active && tie.owned;
+  });
+}
+
+bool FixMPMContact::close_gaps(bool yes)
+{
+  closes = yes;
+  return yes && std::any_of(ties.begin(), ties.end(), [](const Tie &tie) {
+           return tie.active && tie.gap > 0.0;
+         });
+}
+
+void FixMPMContact::find_approach(const double *v, bool with_gaps, double *rows) const
+{
+  const int dim = bodies[0].field->lattice.dim, nrow = rows_of_tie();
+  for (const auto &tie : ties) {
+    double u[3] = {0.0, 0.0, 0.0}, along = 0.0;
+    for (int k = tie.first; k < tie.last; k++) {
+      const Link &link = links[k];
+      for (int d = 0; d < dim; d++) {
+        const double du = link.share * (v[dim * link.a + d] - v[dim * link.b + d]);
+        u[d] += du;
+        along += link.n[d] * du;
+      }
+    }
+    const double closing = with_gaps && closes ? tie.gap / trial_dt : 0.0;
+    for (int r = 0; r < nrow; r++, rows++)
+      *rows = !tie.active || tie.diagonal[r] == 0.0
+          ? 0.0
+          : (nrow == 1 ? along - closing : u[r] - closing * tie.n[r]);
+  }
+}
+
+void FixMPMContact::add_squares(const double *rows, const double *v, double *sums) const
+{
+  const int dim = bodies[0].field->lattice.dim, nrow = rows_of_tie();
+  sums[0] = sums[1] = 0.0;
+  for (const auto &tie : ties) {
+    double speed = 0.0;
+    for (int k = tie.first; k < tie.last && v && tie.owned && tie.active; k++)
+      for (int d = 0; d < dim; d++)
+        speed += links[k].share *
+            (std::fabs(v[dim * links[k].a + d]) + std::fabs(v[dim * links[k].b + d]));
+    if (closes) speed += tie.gap / trial_dt;
+    for (int r = 0; r < nrow; r++, rows++) {
+      if (!tie.owned || !tie.active || tie.diagonal[r] == 0.0) continue;
+      sums[0] += *rows * *rows / tie.diagonal[r];
+      sums[1] += speed * speed / tie.diagonal[r];
+    }
+  }
+}
+
+void FixMPMContact::precondition(const double *rows, double gain, double *along) const
+{
+  const int nrow = rows_of_tie();
+  for (const auto &tie : ties)
+    for (int r = 0; r < nrow; r++, rows++, along++)
+      *along = (tie.diagonal[r] > 0.0 ? *rows / tie.diagonal[r] : 0.0) + gain * *along;
+}
+
+/** Adds the forces of these rows of a tie on the bodies at a link, on a with the sign of the row: force[dim]. */
+void FixMPMContact::add_force(const Tie &tie, const Link &link, const double *rows,
+                              double *force) const
+{
+  const int dim = bodies[tie.a].field->lattice.dim;
+  for (int d = 0; d < dim; d++)
+    force[d] += link.share * (law == STICK ? rows[d] : rows[0] * link.n[d]);
+}
+
+void FixMPMContact::spread(const double *rows, double *v) const
+{
+  const int dim = bodies[0].field->lattice.dim, nrow = rows_of_tie();
+  for (const auto &tie : ties) {
+    for (int k = tie.first; k < tie.last && tie.active; k++) {
+      const Link &link = links[k];
+      double force[3] = {0.0, 0.0, 0.0};
+      add_force(tie, link, rows, force);
+      for (int d = 0; d < dim; d++) {
+        v[dim * link.a + d] += force[d] / link.ra[3];
+        v[dim * link.b + d] -= force[d] / link.rb[3];
+      }
+    }
+    rows += nrow;
+  }
+}
+
+double FixMPMContact::product(const double *a, const double *b) const
+{
+  const int nrow = rows_of_tie();
+  double sum = 0.0;
+  for (const auto &tie : ties)
+    for (int r = 0; r < nrow; r++, a++, b++)
+      if (tie.owned && tie.active) sum += *a * *b;
+  return sum;
+}
+
+void FixMPMContact::forget_pushes()
+{
+  for (auto &tie : ties) MathExtra::zero3(tie.push);
+}
+
+void FixMPMContact::push(double factor, const double *rows)
+{
+  const int nrow = rows_of_tie();
+  for (auto &tie : ties)
+    for (int r = 0; r < nrow; r++, rows++)
+      if (tie.active) tie.push[r] += factor * *rows;
+}
+
+void FixMPMContact::take_base()
+{
+  for (auto &tie : ties) MathExtra::copy3(tie.push, tie.base);
+}
+
+void FixMPMContact::take_forces(double scale)
+{
+  for (auto &tie : ties)
+    for (int r = 0; r < 3; r++) tie.force[r] = (tie.push[r] - tie.base[r]) / scale;
+}
+
+/* ----------------------------------------------------------------------
+   friction of ties that touch, as that of walls (fix_mpm_boundary_trial.cpp): on the nodes of both bodies in their shares of the interface
+------------------------------------------------------------------------- */
+
+/** (|s|^2 + eps^2)^(1/2) */
+double FixMPMContact::slip_length(const Tie &tie) const
+{
+  const double width = std::max(trial_eps, soft);
+  return std::sqrt(MathExtra::lensq3(tie.slip) + width * width);
+}
+
+/** Motion of a on b along the interface. */
+void FixMPMContact::find_slip(const Tie &tie, const double *u, double *slip) const
+{
+  const int dim = bodies[tie.a].field->lattice.dim;
+  MathExtra::zero3(slip);
+  for (int k = tie.first; k < tie.last; k++)
+    for (int d = 0; d < dim; d++)
+      slip[d] += links[k].share * (u[dim * links[k].a + d] - u[dim * links[k].b + d]);
+  const double along = MathExtra::dot3(slip, tie.n);
+  for (int d = 0; d < 3; d++) slip[d] -= along * tie.n[d];
+}
+
+/** (ds - w s.ds/l)/l, the change of direction that Newton's method knows, see fix_mpm_boundary_trial.cpp */
+void FixMPMContact::change_of_direction(const Tie &tie, const double *slip, double *change) const
+{
+  const double length = slip_length(tie), along = MathExtra::dot3(tie.slip, slip) / length;
+  for (int d = 0; d < 3; d++) change[d] = (slip[d] - along * tie.dual[d]) / length;
+}
+
+/** Adds a force on a, and its reaction. */
+void FixMPMContact::rub(const Tie &tie, const double *on_a, double *force) const
+{
+  const int dim = bodies[tie.a].field->lattice.dim;
+  for (int k = tie.first; k < tie.last; k++)
+    for (int d = 0; d < dim; d++) {
+      force[dim * links[k].a + d] += links[k].share * on_a[d];
+      force[dim * links[k].b + d] -= links[k].share * on_a[d];
+    }
+}
+
+void FixMPMContact::add_friction(const double *u, double *force)
+{
+  if (!has_friction()) return;
+  for (auto &tie : ties) {
+    MathExtra::zero3(tie.rubs);
+    if (!tie.active) continue;
+    find_slip(tie, u, tie.slip);
+    if (!(tie.force[0] > 0.0)) continue;
+    const double length = slip_length(tie);
+    for (int d = 0; d < 3; d++)
+      tie.rubs[d] = -kinetic_friction * tie.force[0] * tie.slip[d] / length;
+    rub(tie, tie.rubs, force);
+  }
+}
+
+void FixMPMContact::add_friction_change(const double *du, double scale, double *dforce)
+{
+  if (!has_friction()) return;
+  for (auto &tie : ties) {
+    if (!tie.active || !(tie.force[0] > 0.0)) continue;
+    double slip[3], turn[3], change[3];
+    find_slip(tie, du, slip);
+    change_of_direction(tie, slip, turn);
+    const double length = slip_length(tie), more = (tie.push[0] - tie.base[0]) / scale;
+    for (int d = 0; d < 3; d++)
+      change[d] = -kinetic_friction * (more * tie.slip[d] / length + tie.force[0] * turn[d]);
+    rub(tie, change, dforce);
+  }
+}
+
+void FixMPMContact::correct(const double *du)
+{
+  if (!has_friction()) return;
+  for (auto &tie : ties) {
+    if (!tie.active) continue;
+    double slip[3], turn[3];
+    find_slip(tie, du, slip);
+    change_of_direction(tie, slip, turn);
+    const double length = slip_length(tie);
+    for (int d = 0; d < 3; d++) tie.dual[d] = tie.slip[d] / length + turn[d];
+    const double size = MathExtra::len3(tie.dual);
+    if (size > LONGEST) MathExtra::scale3(LONGEST / size, tie.dual);
+  }
+}
+
+void FixMPMContact::add_friction_blocks(double *blocks)
+{
+  const int dim = bodies[0].field->lattice.dim;
+  if (!has_friction()) return;
+  for (const auto &tie : ties) {
+    if (!tie.active || !(tie.force[0] > 0.0)) continue;
+    const double slope = kinetic_friction * tie.force[0];
+    for (int e = 0; e < dim; e++) {
+      double along[3], turn[3];
+      for (int d = 0; d < 3; d++) along[d] = (d == e) - tie.n[d] * tie.n[e];
+      change_of_direction(tie, along, turn);
+      for (int k = tie.first; k < tie.last; k++)
+        for (int d = 0; d < dim; d++) {
+          const double stiffness = links[k].share * links[k].share * slope * turn[d];
+          blocks[dim * dim * links[k].a + dim * d + e] += stiffness;
+          blocks[dim * dim * links[k].b + dim * d + e] += stiffness;
+        }
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   All that is wrong is changed at first. Where this goes to and fro, only what is most wrong is, and what is all but right stays
+------------------------------------------------------------------------- */
+
+bool FixMPMContact::decide(const double *u)
+{
+  const double h = bodies[0].field->lattice.h;
+  const int dim = bodies[0].field->lattice.dim;
+  std::vector<double> along(ties.size(), 0.0), wrong(ties.size(), 0.0);
+  double mine = 0.0, largest, worst;
+  for (std::size_t k = 0; k < ties.size(); k++) {
+    const Tie &tie = ties[k];
+    if (!tie.active) continue;
+    along[k] = law == STICK ? MathExtra::dot3(tie.force, tie.n) : tie.force[0];
+    if (tie.owned) mine = std::max(mine, std::fabs(along[k]));
+  }
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  mine = 0.0;
+  for (std::size_t k = 0; k < ties.size(); k++) {
+    const Tie &tie = ties[k];
+    if (tie.active) {
+      wrong[k] = largest > 0.0 ? -along[k] / largest : 0.0;
+    } else {
+      double approach = -tie.gap;
+      for (int j = tie.first; j < tie.last; j++)
+        for (int d = 0; d < dim; d++)
+          approach +=
+              links[j].share * links[j].n[d] * (u[dim * links[j].a + d] - u[dim * links[j].b + d]);
+      wrong[k] = approach / h;
+    }
+    if (tie.owned) mine = std::max(mine, wrong[k]);
+  }
+  MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE, MPI_MAX, world);
+  const bool all = rounds++ < AT_ONCE;
+  if (worst <= (all ? WRONG : STILL_RIGHT)) return false;
+  bool changed = false;
+  for (std::size_t k = 0; k < ties.size(); k++) {
+    if (wrong[k] <= (all ? WRONG : 0.5 * worst)) continue;
+    ties[k].active = !ties[k].active;
+    changed = true;
+  }
+  return changed;
+}
+
+/* ----------------------------------------------------------------------
+   Nodes have what they need besides the forces of contact, and walls, which act after this
+------------------------------------------------------------------------- */
+
+void FixMPMContact::act_after_trials()
+{
+  const int dim = bodies[0].field->lattice.dim;
+  std::vector<Velocities> before(nodes.size());
+  for (std::size_t n = 0; n < nodes.size(); n++)
+    for (std::size_t k = 0; k < bodies.size(); k++)
+      if (nodes[n].record[k]) std::copy_n(nodes[n].record[k], 3, before[n][k].begin());
+  for (const auto &tie : ties) {
+    Account &entry = accounts[pair_index(tie.a, tie.b, (int) bodies.size())];
+    for (int k = tie.first; k < tie.last && tie.active; k++) {
+      const Link &link = links[k];
+      double impulse[3] = {0.0, 0.0, 0.0};
+      add_force(tie, link, tie.force, impulse);
+      for (int d = 0; d < dim; d++) {
+        impulse[d] = trial_dt * (impulse[d] - link.share * tie.rubs[d]);
+        link.ra[d] -= impulse[d] / link.ra[3];
+        link.rb[d] += impulse[d] / link.rb[3];
+        if (tie.owned) entry.impulse[d] += impulse[d];
+      }
+      if (tie.owned) entry.count += 1.0;
+    }
+    if (tie.owned && tie.active) entry.work += MathExtra::dot3(tie.rubs, tie.slip);
+  }
+  for (std::size_t n = 0; n < nodes.size(); n++)
+    for (std::size_t k = 0; k < bodies.size(); k++) {
+      const double *const record = nodes[n].record[k];
+      Grid &grid = bodies[k].field->grid;
+      // another rank may own the node in this field: what else acts on it is booked there
+      if (!record || !grid.owns((record - grid.nodes()) / grid.nreal)) continue;
+      double change[3] = {0.0, 0.0, 0.0};
+      for (int d = 0; d < dim; d++) change[d] = record[d] - before[n][k][d];
+      bodies[k].field->ledger.count_push(record, change);
+    }
+}

@@ -1,0 +1,299 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi input
+// mpi: 1 4
+
+// Bodies that are fields of their own and touch by fix mpm/contact, in the implicit steps of fix mpm/implicit.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** Two blocks of linear elastic material on each other in a box of 0.8 by 1, the upper one with E = 1 MPa, the lower one with another; the interface is at this height, and
+ *  rises by this slope. */
+std::string blocks(const std::string &contact, double height, double slope, double E, double nu,
+                   const std::string &box = "0 0.8 0 1", const std::string &implicit = "static")
+{
+  return plane("si", "f f", box, 2, 0.02) + "region body block 0 0.8 0 1 INF INF\n" +
+      strprintf("region below plane 0.4 %.17g 0 %.17g -1 0\n", height, slope) +
+      strprintf("region above plane 0.4 %.17g 0 %.17g 1 0\n", height, -slope) +
+      "region low intersect 2 body below\nregion up intersect 2 body above\n"
+      "group up type 2\ngroup low type 1\n"
+      "fix a up mpm 0.1\nfix b low mpm 0.1\n"
+      "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix "
+      "a\n"
+      "group up type 2\ngroup low type 1\n" +
+      strprintf("fix ma up mpm/material density 1000 linear 1e6 %g\n", nu) +
+      strprintf("fix mb low mpm/material density 1000 linear %g %g\n", E, nu) +
+      "fix touch all mpm/contact a b " + contact + "\nfix solve all mpm/implicit " + implicit +
+      "\ntimestep 1.0\n";
+}
+
+/** Largest difference of the stress of points of the mean, along this axis, over its mean. */
+double scatter(Scene &run, int axis)
+{
+  double mean = 0.0, most = 0.0;
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < run.n(); i++) {
+      double stress[6];
+      run.points().cauchy(i, stress);
+      if (pass)
+        most = std::max(most, std::fabs(stress[axis] - mean) / std::fabs(mean));
+      else
+        mean += stress[axis] / run.n();
+    }
+  return most;
+}
+
+double touch(Scene &run, int column)
+{
+  return run.fix("touch")->compute_array(0, column);
+}
+
+}    // namespace
+
+// blocks that are pressed together have uniform stress, wherever the interface is between nodes, with free sides
+SERIAL_TEST(Blocks, ArePressed)
+{
+  for (const char *contact : {"", "law stick", "law coulomb 0.3", "gap no"})
+    for (const double height : {0.5, 0.55}) {
+      Scene run(blocks(contact, height, 0.0, 1e6, 0.3, "0 1 0 1") +
+                "fix left all mpm/boundary xlo slip\n"
+                "fix floor all mpm/boundary ylo slip\n"
+                "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\nrun 1\n");
+      EXPECT_LT(
+          measured(strprintf("%s at %g: scatter of stress", contact, height), scatter(run, 1)),
+          1e-5);
+      // plane strain, logarithmic strain, over the present width
+      const double strain = std::log(0.99), force = touch(run, 1);
+      const double exact =
+          1e6 / (1.0 - 0.09) * strain * 0.8 / 0.99 * std::exp(-0.3 / 0.7 * strain) * 0.99;
+      EXPECT_NEAR(measured("force over that of theory", force / exact), 1.0, 1e-2);
+      EXPECT_NEAR(run.fix("floor")->compute_vector(1) / force, 1.0, 1e-6);
+      EXPECT_NEAR(run.fix("lid")->compute_vector(1) / -force, 1.0, 1e-6);
+    }
+}
+
+// a soft block on one that is ten times as stiff: each has its own strain, up to the interface
+SERIAL_TEST(Blocks, OfTwoMaterials)
+{
+  for (const double height : {0.5, 0.55}) {
+    Scene run(blocks("", height, 0.0, 1e7, 0.0) +
+              "fix sides all mpm/boundary xlo xhi slip\n"
+              "fix floor all mpm/boundary ylo slip\n"
+              "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\nrun 1\n");
+    EXPECT_LT(measured(strprintf("%g: scatter of stress", height), scatter(run, 1)), 1e-6);
+    // E ln(l) / l of both is the same
+    double low = 0.0, high = 0.01;
+    const double H = 1.0 - height;
+    for (int k = 0; k < 60; k++) {
+      const double d = 0.5 * (low + high), l = 1.0 - d / H, m = 1.0 - (0.01 - d) / height;
+      (std::log(l) / l * 1e6 < std::log(m) / m * 1e7 ? high : low) = d;
+    }
+    const double l = 1.0 - low / H;
+    EXPECT_NEAR(measured("force over that of theory", touch(run, 1) / (0.8e6 * std::log(l) / l)),
+                1.0, 1e-4);
+  }
+}
+
+// an interface that is inclined, under the same pressure from all sides: the force is that on a plane one, though points next to it have stresses that scatter
+SERIAL_TEST(Blocks, WithAnInclinedInterface)
+{
+  double force[2];
+  for (const double slope : {0.0, 0.4}) {
+    Scene run(blocks("", slope == 0.0 ? 0.5 : 0.51, slope, 1e6, 0.2) +
+              "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n"
+              "fix right all mpm/boundary xhi slip velocity -0.008 0 0\n"
+              "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\nrun 1\n");
+    force[slope > 0.0] = touch(run, 1);
+    measured("scatter of stress", scatter(run, 1));
+  }
+  EXPECT_NEAR(measured("force over that on a level interface", force[1] / force[0]), 1.0, 0.03);
+}
+
+// what is pulled parts, and touches again where it has parted
+SERIAL_TEST(Blocks, Part)
+{
+  Scene run(blocks("", 0.55, 0.0, 1e6, 0.0) +
+            "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
+            "variable v equal 0.01-0.03*(step<2)\n"
+            "fix lid all mpm/boundary yhi stick velocity 0 v_v 0\nrun 1\n");
+  EXPECT_LT(touch(run, 1), -1e4);
+  run.commands("run 3\n");
+  EXPECT_NEAR(touch(run, 1), 0.0, 1e-3);
+  EXPECT_EQ(touch(run, 3), 0.0);
+  EXPECT_NEAR(run.fix("floor")->compute_vector(1), 0.0, 1e-3);
+}
+
+// a block above the other one by parts of a node spacing comes to it in the step, and not nearer
+SERIAL_TEST(Blocks, ComeTogether)
+{
+  for (const double gap : {0.1, 0.35}) {
+    Scene run(blocks("", 0.5, 0.0, 1e6, 0.0, "0 0.8 0 1.2", "static") +
+              strprintf("displace_atoms up move 0 %.17g 0\n", gap * 0.1) +
+              "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
+              "fix load up addforce 0 -200 0\nrun 1\n");
+    double low = 0.0, up = 0.0;
+    int nlow = 0, nup = 0;
+    for (int i = 0; i < run.n(); i++) {
+      const bool is_low = run.lmp->atom->type[i] == 1;
+      (is_low ? low : up) += run.x()[i][1];
+      (is_low ? nlow : nup)++;
+    }
+    const double force = -200.0 * nup;
+    EXPECT_NEAR(touch(run, 1) / force, 1.0, 1e-6);
+    EXPECT_NEAR(run.fix("floor")->compute_vector(1) / force, 1.0, 1e-6);
+    // the lower block bears all of it, the upper one its share
+    const double s = force / 0.8e6, exact_low = 0.25 * (1.0 + s),
+                 exact_up = 0.5 * (1.0 + s) + 0.25 + s / 6.0;
+    EXPECT_NEAR(measured("lower block, in node spacings", (low / nlow - exact_low) / 0.1), 0.0,
+                0.02);
+    EXPECT_NEAR(measured("upper block", (up / nup - exact_up) / 0.1), 0.0, 0.03);
+  }
+}
+
+// a block of rubber on another one sticks on a slope below the coefficient of friction
+SERIAL_TEST(Block, SticksOnAnotherOne)
+{
+  const auto scene = [](double along, const std::string &implicit, const std::string &law) {
+    return plane("si", "f f", "0 1.5 0 0.8", 2, 0.02) +
+        "group up type 2\ngroup low type 1\nfix a up mpm 0.1\nfix b low mpm 0.1\n"
+        "region low block 0 1.5 0 0.25 INF INF\nregion up block 0.3 1.1 0.25 0.65 INF INF\n"
+        "create_points 1 region low spacing 0.05 fix b\ncreate_points 2 region up spacing 0.05 fix "
+        "a\n"
+        "group up type 2\ngroup low type 1\n"
+        "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
+        "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n"
+        "fix touch all mpm/contact b a " +
+        law + "\nfix floor all mpm/boundary ylo stick\n" +
+        strprintf("fix g all gravity 10 vector %g -1 0\n", along) + "fix solve all mpm/implicit " +
+        implicit + "\ntimestep 1.0\n";
+  };
+  const double mass = 0.8 * 0.4 * 1000.0;
+  {
+    Scene run(scene(0.2, "static", "law coulomb 0.3") + "run 1\n");
+    const double g = 10.0 / std::sqrt(1.04);
+    EXPECT_NEAR(measured("weight", touch(run, 1) / (mass * g)), 1.0, 1e-6);
+    EXPECT_NEAR(measured("shear force over normal force", touch(run, 0) / -touch(run, 1)), 0.2,
+                1e-5);
+  }
+  {
+    Scene run(scene(0.5, "euler", "law coulomb 0.3") + "timestep 0.02\nrun 2\n");
+    EXPECT_NEAR(measured("of what slides", touch(run, 0) / -touch(run, 1)), 0.3, 0.3 * 1e-2);
+    EXPECT_LT(run.fix("touch")->compute_scalar(), 0.0);
+  }
+}
+
+// Lame: two rings of different stiffness with a pressure in the bore
+SERIAL_TEST(Rings, PressOnEachOther)
+{
+  double error[2];
+  for (const int fine : {0, 1}) {
+    Scene run(plane("si", "f f", "0 2.5 0 2.5", 2, 0.03) +
+              "region outer cylinder z 0 0 2 INF INF\nregion mid cylinder z 0 0 1.5 INF INF\n"
+              "region beyond cylinder z 0 0 1.5 INF INF side out\n"
+              "region bore cylinder z 0 0 1 INF INF side out\n"
+              "region ring1 intersect 2 mid bore\nregion ring2 intersect 2 outer beyond\n"
+              "group one type 1\ngroup two type 2\n" +
+              strprintf("fix a one mpm %g\nfix b two mpm %g\n", fine ? 0.0625 : 0.125,
+                        fine ? 0.0625 : 0.125) +
+              "create_points 1 region ring1 ppc 2 outside ignore fix a cut yes\n"
+              "create_points 2 region ring2 ppc 2 outside ignore fix b cut yes\n"
+              "group one type 1\ngroup two type 2\n"
+              "fix ma one mpm/material density 1000 linear 1e6 0.3\n"
+              "fix mb two mpm/material density 1000 linear 4e6 0.3\n"
+              "fix touch all mpm/contact a b\nfix walls all mpm/boundary xlo ylo slip\n"
+              "fix gas one mpm/traction region bore pressure 1e4 area $(PI/2)\n"
+              "fix solve all mpm/implicit static\ntimestep 1.0\nrun 1\n");
+    const double exact = 5045.045;    // thick tubes with the same displacement at r = 1.5
+    for (const int d : {0, 1}) {
+      error[fine] = measured("pressure between the rings", touch(run, d) / 1.5 / exact) - 1.0;
+      EXPECT_LT(std::fabs(error[fine]), fine ? 0.02 : 0.03);
+    }
+  }
+}
+
+// two free bodies that collide
+SERIAL_TEST(Bodies, KeepTheirMomentum)
+{
+  Scene run(plane("si", "p p", "0 3 0 1", 2, 0.02) +
+            "group up type 2\ngroup low type 1\nfix a up mpm 0.1\nfix b low mpm 0.1\n"
+            "region low block 0.5 1.2 0.2 0.8 INF INF\nregion up block 1.23 1.8 0.1 0.6 INF INF\n"
+            "create_points 1 region low spacing 0.05 fix b\ncreate_points 2 region up spacing 0.05 "
+            "fix a\n"
+            "group up type 2\ngroup low type 1\n"
+            "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
+            "fix mb low mpm/material density 2000 neohookean 3e6 0.3\n"
+            "fix touch all mpm/contact a b law coulomb 0.2\n"
+            "velocity low set 1.0 0.3 0\n"
+            "fix solve all mpm/implicit euler tolerance 1e-12\ntimestep 2e-3\n");
+  const auto sums = [&]() {
+    std::array<double, 3> s = {0.0, 0.0, 0.0};
+    for (int i = 0; i < run.n(); i++) {
+      const double *v = run.v()[i], m = run.mass()[i];
+      s[0] += m * v[0];
+      s[1] += m * v[1];
+      s[2] += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
+    }
+    return s;
+  };
+  const auto start = sums();
+  double energy = start[2], push = 0.0;
+  run.commands("compute stored all mpm/energy\nthermo_style custom step c_stored[1] c_stored[2]\n");
+  for (int k = 0; k < 15; k++) {
+    run.commands("run 2\n");
+    const auto now = sums();
+    EXPECT_NEAR(now[0] / start[0], 1.0, 1e-10);
+    EXPECT_NEAR(now[1] / start[1], 1.0, 1e-10);
+    EXPECT_LT(now[2], energy * (1.0 + 1e-6));
+    energy = std::max(now[2], 0.6 * start[2]);
+    push = std::max(push, touch(run, 3));
+  }
+  EXPECT_GT(push, 0.0);
+  EXPECT_LT(measured("kinetic energy over that of the start", sums()[2] / start[2]), 0.95);
+}
+
+TEST(Blocks, OnRanks)
+{
+  OnRanks run(blocks("", 0.53, 0.1, 3e6, 0.3, "0 1 0 1", "static tolerance 1e-11") +
+                  "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n"
+                  "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\n",
+              "run 2\n");
+  EXPECT_LT(measured("difference", run.difference()), 1e-7);
+}
+
+TEST(Blocks, Restart)
+{
+  const std::string fixes = "fix a up mpm 0.1\nfix b low mpm 0.1\n"
+                            "fix ma up mpm/material density 1000 linear 1e6 0.3\n"
+                            "fix mb low mpm/material density 1000 linear 3e6 0.3\n"
+                            "fix touch all mpm/contact a b \nfix solve all mpm/implicit static\n",
+                    walls =
+                        "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n"
+                        "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\ntimestep 1.0\n";
+  Continued run(blocks("", 0.53, 0.0, 3e6, 0.3, "0 1 0 1") + walls, 1, fixes + walls, 2);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+}
+
+TEST(BadInput, IsRefused)
+{
+  const std::string walls = "fix floor all mpm/boundary ylo slip\n";
+  const auto scene = [](const std::string &contact, const std::string &implicit) {
+    return blocks(contact, 0.5, 0.0, 1e6, 0.3, "0 1 0 1", implicit);
+  };
+  expect_error(scene("law adhesive 1e3 1e3 1", "static") + walls + "run 0\n", "law adhesive");
+  expect_error(scene("law coulomb 0.2 0.3", "static") + walls + "run 0\n", "static friction");
+  expect_error(scene("normal volume", "static") + walls + "run 0\n", "remove normal");
+  expect_error(scene("", "newmark") + walls + "run 0\n", "use static or euler");
+  expect_error(scene("", "static solver multigrid") + walls + "run 0\n", "use solver blocks");
+  expect_error(scene("", "static slip 0.1") + walls + "run 0\n", "walls with friction");
+  expect_error(scene("", "static") + "fix floor all mpm/boundary ylo separate\nrun 0\n",
+               "use stick or slip");
+  expect_error(scene("", "static") + "fix floor all mpm/boundary ylo slip friction 0.1\nrun 0\n",
+               "use stick or slip");
+  expect_error(scene("", "static") + "unfix touch\n" + walls + "run 0\n",
+               "name all of them in one fix mpm/contact");
+}
