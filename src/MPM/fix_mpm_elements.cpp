@@ -26,6 +26,7 @@
 #include "mesh/bending.h"
 #include "mesh/element.h"
 #include "mesh/shared_strain.h"
+#include "mesh/triangle_gap.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_image.h"
@@ -1023,6 +1024,22 @@ template <class Visit> void FixMPMElements::for_faces(Visit visit) const
       }
     }
   }
+}
+
+double FixMPMElements::widest_gap() const
+{
+  double widest = 0.0, all;
+  for_faces([&](double, const double *const at[3], const int *) {
+    const auto side = [&](int a, int b) {
+      double edge[3];
+      MathExtra::sub3(at[a], at[b], edge);
+      return sqrt(dot(edge, edge));
+    };
+    widest = std::max(
+        widest, along == 1 ? 0.5 * side(0, 1) : triangle_gap(side(0, 1), side(1, 2), side(2, 0)));
+  });
+  MPI_Allreduce(&widest, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
 }
 
 /* ----------------------------------------------------------------------

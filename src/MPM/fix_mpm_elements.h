@@ -153,6 +153,10 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
    *  first one on. An edge is there once for each of its elements. */
   std::vector<MPM_NS::NearNodes::Edge> edges() const;
 
+  /** Of a surface or line as it is now, and of all ranks together: the largest distance from the nodes around it of a place on it, through which
+   *  something can pass that keeps less than this distance from nodes. */
+  double widest_gap() const;
+
  private:
   struct Work;
   struct IDs {    // of the nodes: their number and range

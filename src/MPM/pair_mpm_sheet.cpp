@@ -70,7 +70,11 @@ void PairMPMSheet::compute(int eflag, int vflag)
     double n[3];
     MathExtra::sub3(x[i], x[j], n);
     const double rsq = MathExtra::lensq3(n);
-    if (rsq >= distance * distance || rsq == 0.0) continue;
+    if (rsq >= distance * distance) continue;
+    if (rsq == 0.0) {    // no direction to push to
+      deep = i;
+      continue;
+    }
     const Coeff &c = coeff_of(type[i], type[j]);
     const double r = sqrt(rsq), overlap = distance - r, elastic = c.stiffness * overlap;
     if (r < DEEP * distance) deep = i;
@@ -129,6 +133,8 @@ void PairMPMSheet::find_pairs()
     }
   }
   warn_about_step();
+  if (starting) warn_about_start();
+  if (!warned_gap) warn_about_gaps();
 }
 
 int PairMPMSheet::body_of(int i) const
@@ -162,6 +168,61 @@ void PairMPMSheet::warn_about_step()
                    "Pair style mpm/sheet: the time step {:.6g} is above the limit {:.6g} of a node "
                    "between two others: use a smaller stiffness or time step",
                    update->dt, all);
+}
+
+/* ----------------------------------------------------------------------
+   Layers that lie too close in the mesh jump apart. Those of a restart file have come as close as they are by forces
+------------------------------------------------------------------------- */
+
+void PairMPMSheet::warn_about_start()
+{
+  constexpr double CLOSER = 1.0e-6;    // part of the distance, for round-off
+  starting = false;
+  double mine[2] = {0.0, 0.0}, sums[2], least = distance, closest;
+  for (const auto &[i, j] : pairs) {
+    double n[3];
+    MathExtra::sub3(atom->x[i], atom->x[j], n);
+    const double r = MathExtra::len3(n), overlap = distance - r;
+    if (!(overlap > CLOSER * distance)) continue;
+    const double share = force->newton_pair || j < atom->nlocal ? 1.0 : 0.5;
+    mine[0] += share;
+    mine[1] += 0.5 * share * coeff_of(atom->type[i], atom->type[j]).stiffness * overlap * overlap;
+    least = std::min(least, r);
+  }
+  MPI_Allreduce(mine, sums, 2, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&least, &closest, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (sums[0] == 0.0 || comm->me != 0) return;
+  error->warning(
+      FLERR,
+      "Pair style mpm/sheet: {} pairs of nodes, or of a node and another atom, are closer than the "
+      "distance {} at the start, the closest by {:.4g}: they push each other away at once, with an "
+      "energy of {:.6g}: use a smaller distance, which may need a finer mesh, or layers that are "
+      "farther apart",
+      (bigint) std::lround(sums[0]), distance, closest, sums[1]);
+}
+
+/* ----------------------------------------------------------------------
+   A node of another layer that is in a triangle keeps at most this distance from the corners of it, and feels nothing there if it is
+   above that of the contact
+------------------------------------------------------------------------- */
+
+void PairMPMSheet::warn_about_gaps()
+{
+  const bool touches = std::any_of(coeffs.begin(), coeffs.end(), [](const Coeff &c) {
+    return c.stiffness > 0.0;
+  });
+  for (const auto &body : bodies) {
+    const double gap = body.elements->widest_gap();
+    if (!touches || gap < distance) continue;
+    warned_gap = true;
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Pair style mpm/sheet: fix mpm/elements {} has places that are {:.4g} from all nodes "
+          "around them at step {}, not less than the distance {}, so that what touches it can "
+          "pass between these: use a larger distance or a finer mesh",
+          body.elements->id, gap, update->ntimestep, distance);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -247,7 +308,8 @@ void PairMPMSheet::init_style()
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/sheet with damping needs the velocities of ghost atoms: use "
                "comm_modify vel yes");
-  warned_deep = warned_dt = false;
+  warned_deep = warned_dt = warned_gap = false;
+  if (modify->nfix_restart_peratom) starting = false;
   neighbor->add_request(this);
 }
 

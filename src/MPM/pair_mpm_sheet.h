@@ -73,12 +73,15 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<Body> bodies;
   std::vector<std::pair<int, int>> pairs;    // that can touch, of the present neighbor list
-  bool warned_deep = false, warned_dt = false;
+  bool starting = true;    // before the first step of bodies that are not from a restart file
+  bool warned_deep = false, warned_dt = false, warned_gap = false;
 
   void allocate();
   void find_bodies();
   void find_pairs();
   void warn_about_step();
+  void warn_about_start();
+  void warn_about_gaps();
   int body_of(int i) const;
   Coeff &coeff_of(int i, int j);
 };

@@ -3,11 +3,17 @@
 
 // labels: unit
 
-// Nodes that are near each other along a surface.
+// Nodes that are near each other along a surface, and what fits between them.
 
 #include "mesh/near_nodes.h"
+#include "mesh/triangle_gap.h"
 
 #include "gtest/gtest.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
 
 using namespace MPM_NS;
 
@@ -37,4 +43,36 @@ TEST(NearNodes, ShortestPaths)
   const NearNodes fine(5, {{0, 1, 0.3}, {1, 2, 0.3}, {2, 3, 0.3}, {3, 4, 0.3}}, 1.0);
   for (int i = 0; i < 5; i++) EXPECT_EQ(fine.near(0, i), i < 4);
   EXPECT_GT(nodes.memory(), 0.0);
+}
+
+// the place in a triangle that is farthest from its corners, by looking at many of them; known for equal sides, right angles, and all but flat ones
+TEST(TriangleGap, FarthestFromCorners)
+{
+  EXPECT_NEAR(triangle_gap(1.0, 1.0, 1.0), 1.0 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(triangle_gap(3.0, 5.0, 4.0), 2.5, 1e-12);
+  EXPECT_NEAR(triangle_gap(1.0, 1.0, 2.0), 0.5, 1e-12);
+  EXPECT_NEAR(triangle_gap(1.0, 3.0, 2.0), 1.0, 1e-12);
+  std::mt19937 random(1);
+  for (int k = 0; k < 20; k++) {
+    std::array<double, 2> x[3];
+    for (auto &corner : x)
+      for (double &c : corner) c = random() * 0x1p-32;
+    const auto from = [&](int i, double px, double py) {
+      return std::hypot(px - x[i][0], py - x[i][1]);
+    };
+    double farthest = 0.0;
+    const int n = 400;
+    for (int i = 0; i <= n; i++)
+      for (int j = 0; j <= n - i; j++) {
+        const double u = (double) i / n, v = (double) j / n;
+        const double px = x[0][0] + u * (x[1][0] - x[0][0]) + v * (x[2][0] - x[0][0]),
+                     py = x[0][1] + u * (x[1][1] - x[0][1]) + v * (x[2][1] - x[0][1]);
+        farthest =
+            std::max(farthest, std::min({from(0, px, py), from(1, px, py), from(2, px, py)}));
+      }
+    const double a = from(0, x[1][0], x[1][1]), b = from(1, x[2][0], x[2][1]),
+                 c = from(2, x[0][0], x[0][1]);
+    EXPECT_NEAR(triangle_gap(a, b, c), farthest, 0.005);
+    EXPECT_EQ(triangle_gap(a, b, c), triangle_gap(b, c, a));
+  }
 }

@@ -194,6 +194,86 @@ TEST(Sheets, RanksAndRestart)
   EXPECT_TRUE(identical(state, run.again.gather()));
 }
 
+// layers in the mesh that are closer than the distance are told, with the energy that pushes them apart: once, and not after a restart
+TEST(Sheets, WarnsOfLayersThatAreTooClose)
+{
+  const auto warnings = [&](double gap, double k, bool again) {
+    ScratchFile file("close.msh", folded(3, 6, 3, 0.05, gap));
+    const std::string fixes = "fix m all mpm/material density 1000 neohookean 1e5 0.3\n"
+                              "fix e all mpm/elements " +
+        file.name + " thickness 0.001\nfix move all nve\ntimestep 1e-5\n";
+    const std::string pair = strprintf("pair_style mpm/sheet 0.045\npair_coeff * * %g\n", k);
+    const ScratchFile kept("close.restart");
+    std::string commands = MPM_TEST::box(3, "si", "f f f", "-0.3 0.6 -0.3 0.6 -0.3 0.6", 1, 0.02) +
+        "create_points 1 mesh " + file.name + " thickness 0.001\n" + fixes + pair +
+        "run 1\nrun 1\n";
+    for (const bool repeated : {false, true})
+      if (again)
+        commands += "write_restart " + kept.name + "\nclear\nread_restart " + kept.name +
+            "\nneighbor 0.02 bin\n" + fixes + (repeated ? pair : "") + "run 1\n";
+    return lines_that_say(commands, "closer than the distance");
+  };
+  // of two pairs of layers with 28 nodes each, four at a fold are near along the sheet
+  const auto close = warnings(0.04, 8.0, true);
+  ASSERT_EQ(close.size(), 1u);
+  EXPECT_THAT(close[0], HasSubstr(" 48 pairs of nodes"));
+  EXPECT_THAT(close[0], HasSubstr("the closest by 0.04"));
+  EXPECT_THAT(close[0], HasSubstr(strprintf("an energy of %.6g", 48 * 0.5 * 8.0 * 25e-6)));
+  EXPECT_EQ(warnings(0.045, 8.0, false).size(), 0u);
+  EXPECT_EQ(warnings(0.04, 0.0, false).size(), 0u);
+}
+
+// nodes at the same place have no direction to push each other to
+SERIAL_TEST(Sheets, WarnsOfNodesAtTheSamePlace)
+{
+  const double gap = 0.03;
+  for (const bool moved : {false, true}) {
+    ScratchFile file("same.msh", folded(2, 6, 3, 0.05, gap));
+    const auto lines = lines_that_say(
+        free_body(3, -0.3, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+            "pair_style mpm/sheet 0.045\npair_coeff * * 8\nfix move all nve\ntimestep 1e-5\n" +
+            (moved ? strprintf("set atom 10 z %.17g\n", gap) : "") + "run 0\n",
+        "they may pass each other");
+    EXPECT_EQ(lines.size(), moved ? 1u : 0u);    // onto node 46
+  }
+}
+
+// what keeps less than D from all nodes can be in the middle of a triangle where the nodes around are farther than D, also when this
+// has been stretched
+TEST(Sheets, WarnsOfMeshesThatAreTooCoarse)
+{
+  const double a = 0.05;
+  const auto warnings = [&](double D, double k, const std::string &run) {
+    ScratchFile file("coarse.msh", folded(1, 6, 3, a, 0.0));
+    return lines_that_say(
+        free_body(3, -0.3, 0.8, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+            strprintf("pair_style mpm/sheet %g\npair_coeff * * %g\n", D, k) +
+            "fix move all nve\ntimestep 1e-5\n" + run,
+        "can pass between these");
+  };
+  const auto coarse = warnings(0.99 * a / sqrt(2.0), 1.0, "run 1\nrun 0\n");
+  ASSERT_EQ(coarse.size(), 2u);    // once in each run
+  EXPECT_THAT(
+      coarse[0],
+      HasSubstr(strprintf("fix mpm/elements e has places that are %.4g from", a / sqrt(2.0))));
+  EXPECT_EQ(warnings(0.99 * a / sqrt(2.0), 0.0, "run 1\n").size(), 0u);
+  const std::string stretch = "run 1\nvariable x atom 1.2*x\nset group all x v_x\n";
+  EXPECT_EQ(warnings(1.01 * a / sqrt(2.0), 1.0, stretch).size(), 0u);
+  EXPECT_EQ(warnings(1.01 * a / sqrt(2.0), 1.0, stretch + "run 1\n").size(), 1u);
+
+  // lines: half of their length
+  for (const double D : {0.024, 0.026}) {
+    ScratchFile file("lines.msh", hanging(20, 0.9, 2));
+    EXPECT_EQ(lines_that_say(
+                  free_body(3, -0.6, 1.2, 0.02, file.name, "section 1e-6", "neohookean 1e5 0.3") +
+                      strprintf("pair_style mpm/sheet %g\npair_coeff * * 1\n", D) +
+                      "fix move all nve\ntimestep 1e-5\nrun 1\n",
+                  "can pass between these")
+                  .size(),
+              D < 0.025 ? 1u : 0u);
+  }
+}
+
 SERIAL_TEST(Sheets, BadInput)
 {
   ScratchFile file("strip.msh", folded(3, 6, 3, 0.05, 0.045));
