@@ -446,6 +446,12 @@ SERIAL_TEST(BadInput, IsRefused)
     EXPECT_EQ(layer(shape, "block 0 8 0 2 INF INF"), 0u);
     EXPECT_EQ(layer(shape, "block 2 6 2 6 INF INF"), 0u);
     EXPECT_EQ(layer(shape, "block 4 8 0 8 INF INF"), 0u);
+    // a lattice that fills one cell between two others
+    EXPECT_EQ(lines_that_say(plane("lj", "f f", "-1 13 -1 12", 3, 0.2) + nested(2, 3, shape, "") +
+                                 law + "run 1\n",
+                             "fill one coarse cell")
+                  .size(),
+              0u);
   }
   const std::string skin =
       replaced(scene("", "0.5 origin 0.25 0.25"), "atom_style mpm", "atom_style hybrid sphere mpm");

@@ -315,7 +315,7 @@ void FixMPMRefine::find_tied()
                    (bigint) pair->fine.map->runs.size()};
     MPI_Allreduce(mine, all, 4, MPI_LMP_BIGINT, MPI_SUM, world);
     static constexpr double SOME = 0.1;
-    if (all[0] && all[1] && pair->share_of_thin() > SOME && comm->me == 0)
+    if (all[0] && all[1] && pair->share_of_thin(fields) > SOME && comm->me == 0)
       error->warning(FLERR,
                      "Fix mpm/refine {}: between the surface of the body and points of fix mpm {} "
                      "those of {} fill one coarse cell: loads and walls there have errors of 4 to "

@@ -26,6 +26,7 @@
 
 #include "mpm_heat_levels.h"
 
+#include "atom.h"
 #include "comm.h"
 #include "error.h"
 #include "mpm_field.h"
@@ -35,12 +36,70 @@
 #include "mpm_two_scale.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
 
 using namespace LAMMPS_NS;
+
+/* ----------------------------------------------------------------------
+   Materials of different conductivity get means next to their interface where they share a field (MPMLayerMean), and none where the
+   rim between two lattices is there. Does it happen on this rank, with points of both in cells of the coarse lattice that touch?
+------------------------------------------------------------------------- */
+
+static bool has_layers_at_rim(const MPMField &coarse, const MPMField &fine)
+{
+  static constexpr double DIFFERENT = 1.2;
+  const auto &lattice = coarse.lattice;
+  const Atom &atom = *coarse.atom;
+  struct Range {
+    double least = std::numeric_limits<double>::max(), most = 0.0;
+  };
+  using Cell = std::array<int, 3>;
+  const auto visit = [&](const MPMField &field, const auto &f) {
+    for (int i = 0; i < atom.nlocal; i++) {
+      const auto *const fix = field.is_point(i) ? field.material_of(i) : nullptr;
+      if (!fix || !fix->material->conducts()) continue;
+      Cell cell = {0, 0, 0};
+      for (int d = 0; d < lattice.dim; d++)
+        cell[d] = (int) std::floor((atom.x[i][d] - lattice.origin[d]) / lattice.h);
+      f(cell, fix->material->conduction(fix->history[i]).conductivity);
+    }
+  };
+  std::map<Cell, Range> cells;
+  visit(coarse, [&](const Cell &cell, double k) {
+    Range &range = cells[cell];
+    range.least = std::min(range.least, k);
+    range.most = std::max(range.most, k);
+  });
+  bool any = false;
+  visit(fine, [&](const Cell &cell, double k) {
+    for (int n = 0; !any && n <= 2 * lattice.dim; n++) {
+      Cell next = cell;
+      if (n < 2 * lattice.dim) next[n / 2] += n % 2 ? 1 : -1;
+      const auto at = cells.find(next);
+      if (at == cells.end()) continue;
+      any = at->second.most > DIFFERENT * k || k > DIFFERENT * at->second.least;
+    }
+  });
+  return any;
+}
 
 MPMHeatLevels::MPMHeatLevels(LAMMPS *lmp, const std::vector<Pair> &list) :
     Pointers(lmp), pairs(list)
 {
+  for (const auto &pair : pairs) {
+    int mine = has_layers_at_rim(pair.coarse->field, pair.fine->field), all;
+    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
+    if (all && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix mpm/heat: materials of different conductivity meet where the lattices of fix mpm {} "
+          "and {} do: too much heat goes through, by 3 % where one conducts 10 times as well, and "
+          "by 11 % for 100 times: let one lattice go on for a coarse cell in the other material",
+          pair.coarse->field.id(), pair.fine->field.id());
+  }
   levels.push_back(pairs[0].coarse);
   for (const auto &pair : pairs) levels.push_back(pair.fine);
   for (auto *level : levels) level->scalar.is_level = level->faces.is_level = true;

@@ -436,7 +436,7 @@ void MPMTwoScale::greatest_from_parents(const std::vector<double> &of_coarse,
 
 /* ---------------------------------------------------------------------- */
 
-double MPMTwoScale::share_of_thin() const
+double MPMTwoScale::share_of_thin(const std::vector<MPMField *> &body) const
 {
   const Grid &grid = coarse.grid;
   const int dim = grid.lattice.dim;
@@ -452,11 +452,13 @@ double MPMTwoScale::share_of_thin() const
   };
   enum { COARSE, FINE, NKIND };
   std::vector<double> has(NKIND * grid.nnodes(), 0.0);
-  for (int kind = 0; kind < NKIND; kind++)
-    visit(kind == FINE ? fine : coarse, [&](const int *cell) {
+  for (const auto *field : body) {
+    const int kind = field->lattice.h > 0.75 * grid.lattice.h ? COARSE : FINE;
+    visit(*field, [&](const int *cell) {
       const int64_t node = canonical_node(grid, cell);
       if (node >= 0) has[NKIND * node + kind] = 1.0;
     });
+  }
   coarse.nodes.sum(has.data(), NKIND, 0, NKIND);
   const auto is_in = [&](const int *cell, int kind) {
     const int64_t node = canonical_node(grid, cell);

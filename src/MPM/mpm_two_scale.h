@@ -76,8 +76,8 @@ class MPMTwoScale : protected Pointers {
     bigint tied = 0, free = 0;
   } count;
   /** Share of the surface of the fine points, by the coarse cells that they fill, below which coarse points begin in the next cell:
-   *  functions at this surface are those of nodes that are tied and of nodes outside of the body. Collective. */
-  double share_of_thin() const;
+   *  functions at this surface are those of nodes that are tied and of nodes outside of the body. body: its fields. Collective. */
+  double share_of_thin(const std::vector<MPMField *> &body) const;
   double memory_usage() const;
 
  private:
