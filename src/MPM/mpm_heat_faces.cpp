@@ -423,13 +423,15 @@ bool MPMHeatFaces::is_near(const double *place, double distance) const
   });
 }
 
+/** Nodes with a small weight at the face may be out of reach of points. */
 bool MPMHeatFaces::has_part_of_line(const std::function<bool(int64_t)> &taken) const
 {
+  static constexpr double SEEN = 0.25;
   for (const auto &face : faces)
     for (const auto &line : face.lines) {
       int count = 0, all = 0;
-      for (int k = 0; line.response > 0.0 && k < face.n; k++) {
-        if (!(face.weight[k] > 0.0) || !(face.full[k] > 0.0)) continue;
+      for (int k = 0; k < face.n; k++) {
+        if (face.weight[k] < SEEN) continue;
         all++;
         count += taken(line.node[k]);
       }
