@@ -14,6 +14,7 @@
 #include "error.h"
 #include "fix_mpm_contact.h"
 #include "fix_mpm_implicit.h"
+#include "fix_mpm_refine.h"
 #include "force.h"
 #include "input.h"
 #include "modify.h"
@@ -21,6 +22,7 @@
 #include "mpm_leaks.h"
 #include "mpm_options.h"
 #include "mpm_pair_styles.h"
+#include "mpm_two_scale.h"
 #include "pair_mpm_penalty.h"
 #include "region.h"
 #include "update.h"
@@ -488,7 +490,68 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
   }
   init_contacts();
+  init_levels(plan);
   each_step = needs_each_step();
+}
+
+/* ----------------------------------------------------------------------
+   bodies on several lattices: what is at nodes of one of them alone would be wrong at the rims
+------------------------------------------------------------------------- */
+
+void FixMPMHeat::init_levels(const MPMPlan &plan)
+{
+  refined.clear();
+  for (const auto *fix : find_fixes<FixMPMRefine>(lmp)) {
+    std::vector<MPMHeatLevels::Pair> lattices;
+    int count = 0, all = 0;
+    for (auto *field : plan.fields) {
+      if (!fix->has(field->id())) continue;
+      all++;
+      count += of(*field).conducts();
+    }
+    if (count == 0) continue;
+    if (count < all)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/heat {}: the fields of fix mpm/refine {} are one body, but the materials "
+                 "of some of them conduct heat and those of others do not: give all of them the "
+                 "part 'thermal conducting'",
+                 id, fix->id);
+    const auto refuse = [&](bool broken, const std::string &what, const std::string &remedy) {
+      if (broken)
+        error->all(
+            FLERR, Error::NOLASTLINE,
+            "Fix mpm/heat {}: {} does not go with bodies on several lattices, fix mpm/refine "
+            "{}: {}",
+            id, what, fix->id, remedy);
+    };
+    refuse(solver != nullptr, "time euler and sdirk2", "use time explicit");
+    refuse(transfer.kind == MPMHeatTransfer::XPIC, "transfer xpic", "use relax, affine, or pic");
+    refuse(!surfaces.empty(), "heat through surfaces and regions",
+           "use conditions on faces of the box, or a source");
+    refuse(grains, "grains yes", "leave it out");
+    refuse(penalty, "penalty yes", "leave it out");
+    refuse(every > 1 && rubs, "every with heat of friction", "use every 1");
+    refuse(std::any_of(pairs.begin(), pairs.end(),
+                       [fix](const auto &p) {
+                         return fix->has(p.field[0]) || fix->has(p.field[1]);
+                       }),
+           "contact",
+           "leave it out, as heat goes from one body to another one at nodes of one lattice");
+    for (const auto &two : fix->lattices()) {
+      auto &coarse = of(two->coarse), &fine = of(two->fine);
+      const bool weighs = coarse.faces.any() && weighs_faces(two->coarse);
+      lattices.push_back({two.get(), &coarse, &fine, weighs ? &body_of(two->coarse) : nullptr,
+                          weighs ? &body_of(two->fine) : nullptr});
+    }
+    refined.push_back(std::make_unique<MPMHeatLevels>(lmp, lattices));
+  }
+}
+
+MPMHeatLevels *FixMPMHeat::levels_of(const MPMConduction &one) const
+{
+  for (const auto &levels : refined)
+    if (levels->has(one)) return levels.get();
+  return nullptr;
 }
 
 MPMHeatBody &FixMPMHeat::body_of(const MPMField &field)
@@ -601,7 +664,7 @@ void FixMPMHeat::extend_topology(MPMField &field)
 void FixMPMHeat::topology_changed(MPMField &field)
 {
   of(field).faces.topology_changed();
-  of(field).find_points(bodies.empty());
+  of(field).find_points(bodies.empty() && !levels_of(of(field)));
   for (auto &body : bodies) body->topology_changed();
   for (auto &skin : skins) skin->topology_changed();
   for (auto &contact : contacts) contact->topology_changed();
@@ -704,7 +767,9 @@ void FixMPMHeat::find_surfaces()
   if (!skins.empty())
     for (auto &body : bodies)
       if (!body->conduction) body->want_all();
-  for (auto &body : bodies) body->find_surface();
+  for (auto &body : bodies)
+    if (!body->conduction || !levels_of(*body->conduction)) body->find_surface();
+  for (auto &levels : refined) levels->find_surface();
   const bool looks = (!skins.empty() || !contacts.empty()) &&
       thin.looks((int) (surfaces.size() + contacts.size()));
   for (std::size_t k = 0; k < contacts.size(); k++)
@@ -786,10 +851,15 @@ int FixMPMHeat::count_stages()
   look_for_leaks();
   std::vector<double> mine(NRATE * fields.size(), 0.0), all;
   find_surfaces();
+  for (auto &levels : refined) {
+    const double bound = levels->points_to_nodes(gradients, !solver);
+    for (std::size_t k = 0; k < fields.size(); k++)
+      if (levels->has(*fields[k])) mine[NRATE * k] = bound;
+  }
   for (std::size_t k = 0; k < fields.size(); k++) {
     auto &field = *fields[k];
     if (!field.conducts()) continue;
-    mine[NRATE * k] = field.points_to_nodes(gradients, !solver);
+    if (!levels_of(field)) mine[NRATE * k] = field.points_to_nodes(gradients, !solver);
     if (field.faces.any())
       field.faces.begin_step(field.node_capacity(), field.node_volume(),
                              weighs_faces(field.field) ? &body_of(field.field) : nullptr,
@@ -851,11 +921,16 @@ int FixMPMHeat::count_stages()
 void FixMPMHeat::find_rates()
 {
   std::fill(present.begin(), present.end(), 0.0);
+  for (auto &field : fields)
+    if (field->conducts())
+      field->find_rates(source.empty() ? nullptr : source_values.data(), present);
+  for (auto &levels : refined) levels->sum_rates();
   for (auto &field : fields) {
     if (!field->conducts()) continue;
-    field->find_rates(source.empty() ? nullptr : source_values.data(), present);
+    field->add_given();
     field->faces.add_rates(field->temperature, field->rate, present);
   }
+  for (auto &levels : refined) levels->rates_from_parents();
   if (contacts.empty() && skins.empty()) return;
   for (auto &body : bodies)
     if (body->conduction) body->begin_stage();
@@ -969,6 +1044,10 @@ void FixMPMHeat::conduct()
   const int stages = count_stages();
   for (auto &field : fields)
     if (field->conducts()) field->faces.hold(field->temperature, in_step);
+  for (auto &levels : refined) {
+    levels->look_for_thin_skins();
+    levels->temperatures_from_parents();
+  }
   dt_last = waited.time;
   waited = {};
   if (solver)

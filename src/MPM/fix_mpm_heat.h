@@ -19,6 +19,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "mpm_diffusion_solver.h"
 #include "mpm_grain_heat.h"
 #include "mpm_heat_contact.h"
+#include "mpm_heat_levels.h"
 #include "mpm_heat_surface.h"
 #include "mpm_heat_thin.h"
 #include "mpm_physics.h"
@@ -110,7 +111,8 @@ class FixMPMHeat :
   };
   static constexpr int GIVERS = MPMHeatFaces::NFACE + 1;    // place in lists of heat
 
-  std::vector<std::unique_ptr<MPMHeatBody>> bodies;    // fields that have surfaces with heat
+  std::vector<std::unique_ptr<MPMHeatLevels>> refined;    // bodies on several lattices
+  std::vector<std::unique_ptr<MPMHeatBody>> bodies;       // fields that have surfaces with heat
   std::vector<std::unique_ptr<MPMHeatContact>> contacts;
   std::vector<std::unique_ptr<MPMHeatSurfaces>>
       skins;             // surfaces of fields, if there are conditions
@@ -152,6 +154,8 @@ class FixMPMHeat :
   void give_rubbing(double dt);
   void find_neighbors();
   void init_contacts();
+  void init_levels(const MPMPlan &);
+  MPMHeatLevels *levels_of(const MPMConduction &) const;
   int places_of_surfaces() const { return GIVERS + NGIVER; }
   int places_of_contacts() const { return places_of_surfaces() + (int) surfaces.size(); }
   void find_surfaces();

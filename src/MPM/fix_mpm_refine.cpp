@@ -13,6 +13,7 @@
 #include "fix_mpm_boundary.h"
 #include "fix_mpm_contact.h"
 #include "fix_mpm_dashpot.h"
+#include "fix_mpm_heat.h"
 #include "fix_mpm_relax.h"
 #include "fix_mpm_rigid.h"
 #include "modify.h"
@@ -162,7 +163,8 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
   for (auto *physics : plan.physics) {
     auto *ifix = dynamic_cast<Fix *>(physics);
     if (!physics->only_loads() && !dynamic_cast<FixMPMRefine *>(physics) &&
-        !dynamic_cast<FixMPMRelax *>(physics) && !dynamic_cast<FixMPMDashpot *>(physics))
+        !dynamic_cast<FixMPMRelax *>(physics) && !dynamic_cast<FixMPMDashpot *>(physics) &&
+        !dynamic_cast<FixMPMHeat *>(physics))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/refine {} does not go with fix {} {}, whose values at nodes would not be "
                  "continuous from one lattice to the other: remove one of them",
@@ -312,6 +314,13 @@ void FixMPMRefine::find_tied()
         mine[4] = {pair->count.tied, pair->count.free, (bigint) pair->coarse.map->runs.size(),
                    (bigint) pair->fine.map->runs.size()};
     MPI_Allreduce(mine, all, 4, MPI_LMP_BIGINT, MPI_SUM, world);
+    static constexpr double SOME = 0.1;
+    if (all[0] && all[1] && pair->share_of_thin(fields) > SOME && comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/refine {}: between the surface of the body and points of fix mpm {} "
+                     "those of {} fill one coarse cell: loads and walls there have errors of 4 to "
+                     "35 %: let them fill two or more",
+                     id, pair->coarse.id(), pair->fine.id());
     if (comm->me || !all[2] || !all[3] || (all[0] && all[1])) continue;
     if (all[0])
       error->warning(FLERR,

@@ -42,6 +42,8 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   void extend_for_finer(const MPMField &) const;
   /** Is this a field of such a body that has contact with others? It may have no points then. */
   static bool serves_contact(const MPMField &);
+  /** Pairs of its lattices, from the coarsest on; from init_action() on. */
+  const std::vector<std::unique_ptr<MPMTwoScale>> &lattices() const { return pairs; }
   bool has(const std::string &name) const { return level(name) < (int) ids.size(); }
   void init() override;
   double compute_vector(int) override;

@@ -14,6 +14,7 @@
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_refine.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
@@ -156,6 +157,12 @@ void FixMPMSurface::init()
                  {{field->options.axisymmetric, "axisymmetric",
                    "a grain would be a ring: let bodies meet through fix mpm/contact, or use 3d "
                    "for grains"}});
+  if (comm->me == 0 && !find_fixes<FixMPMRefine>(lmp).empty())
+    error->warning(FLERR,
+                   "Fix mpm/surface {}: points at the rims between the lattices of fix mpm/refine "
+                   "count as surface, and have a radius, too: leave them out of group {} if they "
+                   "may touch something",
+                   id, group->names[igroup]);
   bigint mine[2] = {0, 0}, all[2];    // points, those with a radius below the largest one
   for (int i = 0; i < atom->nlocal; i++) {
     if (!has_radius(i)) continue;

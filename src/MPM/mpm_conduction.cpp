@@ -207,6 +207,18 @@ const MPMConduction::Thermal *MPMConduction::thermal(const FixMPMMaterial *fix) 
   return nullptr;
 }
 
+double MPMConduction::capacity_of(int i) const
+{
+  const Thermal *const t = thermal(field.material_of(i));
+  Conduction room;
+  return t ? atom->rmass[i] * t->at(i, room).capacity : 0.0;
+}
+
+double MPMConduction::crossing_rate() const
+{
+  return slowest / (field.lattice.h * field.lattice.h);
+}
+
 double MPMConduction::volume_of(int i) const
 {
   return atom->vfrac[i] * field.points->jacobian(i);
@@ -355,21 +367,30 @@ double MPMConduction::bound(const Thermal &t, int i, double volume) const
   return most * volume / (atom->rmass[i] * c.capacity) * (steep > 0.0 ? steep : 1.0);
 }
 
-/** A bound of the rates of the nodes, for functions that points alone do not bound. usual: that of nodes inside of a body.
- *  Nodes with a much greater one have next to no capacity: points conduct less there. */
-double MPMConduction::row_bound(double usual)
+bool MPMConduction::is_bounded_by_rows() const
 {
-  double mine[2] = {usual, 0.0}, all[2];
-  mine[1] = scalar.greatest_rate(
-      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-        const Thermal *const t = thermal(run.material);
-        for (int p = 0; p < n; p++) {
-          double k[3][3];
-          tensor(*t, first + p, k);
-          for (int a = 0; a < 3; a++)
-            q[p][a] = volumes[first + p] * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
-        }
-      });
+  return !field.boxes && !field.domains && steepest == 0.0;
+}
+
+/** Rows of the matrix of rates, for functions that points alone do not bound. */
+void MPMConduction::add_rows()
+{
+  scalar.add_rows([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+    const Thermal *const t = thermal(run.material);
+    for (int p = 0; p < n; p++) {
+      double k[3][3];
+      tensor(*t, first + p, k);
+      for (int a = 0; a < 3; a++)
+        q[p][a] = volumes[first + p] * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+    }
+  });
+}
+
+/** Nodes with a much greater rate than those inside of a body have next to no capacity: points conduct less there. */
+double MPMConduction::bound_by_rows(double greatest_of_rank)
+{
+  const double usual = 4.0 * field.lattice.dim / (field.lattice.h * field.lattice.h);
+  double mine[2] = {usual * fastest_point, greatest_of_rank}, all[2];
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   shares.clear();
   const double limit = MOST_AT_LIGHT_NODES * all[0];
@@ -410,11 +431,21 @@ template <int DIM> static void copy_rows(int n, const double *from, double *to)
 
 double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
 {
+  add_points(gradients, starts);
+  const double most = end_nodes();
+  if (!is_bounded_by_rows()) return most;
+  add_rows();
+  return bound_by_rows(most_of_rows());
+}
+
+void MPMConduction::add_points(const MPMRows &gradients, bool starts)
+{
   const int dim = field.lattice.dim;
   const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
   at_start = relaxes && starts && !faces.any() ? TO_BE_SEEN : OF_NODES;
   if (at_start == TO_BE_SEEN) seen.resize(atom->nmax);
-  const bool simple = !total && steepest > 0.0;
+  simple = !total && steepest > 0.0;
+  keeps = relaxes && at_start == OF_NODES;
   double most = 0.0;
   volumes.resize(atom->nmax);
   if (layers)
@@ -467,13 +498,15 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
           points.volume[p] = total ? vfrac[p] * field.frame->lattice_jacobian(first + p) : V[p];
         return true;
       },
-      relaxes && at_start == OF_NODES);
+      false);
+  fastest_point = most;
+}
+
+double MPMConduction::end_nodes()
+{
+  if (keeps) scalar.keep();
   if (transfer.kind == MPMHeatTransfer::XPIC) find_unseen();
-  if (simple)
-    most *= steepest;
-  else if (!field.boxes && !field.domains && steepest == 0.0)
-    most = row_bound(4.0 * dim / (field.lattice.h * field.lattice.h) * most);
-  return most;
+  return simple ? fastest_point * steepest : fastest_point;
 }
 
 /** XPIC: the place of the temperatures before gets by how much these are above those of the series, so that points get the new
@@ -604,6 +637,10 @@ void MPMConduction::find_rates(const double *source, Heats &power)
       power[SOURCES] += sum;
     });
   if (at_start == TO_BE_SEEN) at_start = SEEN;
+}
+
+void MPMConduction::add_given()
+{
   for (std::size_t k = 0; k < given.size(); k++)
     if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (duration * scalar.capacity[k]);
 }
@@ -635,7 +672,7 @@ void MPMConduction::give(std::vector<double> &energy)
 double MPMConduction::nodes_to_points(const MPMRows &gradients)
 {
   const int dim = field.lattice.dim;
-  const double crossings = slowest * duration / (field.lattice.h * field.lattice.h);
+  const double crossings = duration * (slowest_crossing > 0.0 ? slowest_crossing : crossing_rate());
   const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX,
              xpic = transfer.kind == MPMHeatTransfer::XPIC;
   const double keep = relaxes ? exp(-transfer.relax * crossings) : 0.0;

@@ -61,12 +61,25 @@ class MPMConduction : protected Pointers {
    *  the transfers pic and xpic. starts: the first call of find_rates() will be for these temperatures, but for those that faces hold.
    *  Returns the bound of the rates of conduction of this rank [1/time]. */
   double points_to_nodes(const MPMRows &gradients, bool starts);
+  /** The same of a field of a body on several lattices (MPMHeatLevels), in parts: sums of this rank's points; when tied nodes have given
+   *  theirs away, temperatures, and when tied nodes have theirs again, the bound. */
+  void add_points(const MPMRows &gradients, bool starts);
+  void sum_nodes() { scalar.sum_nodes(); }
+  double end_nodes();
+  /** Functions that points alone do not bound (shape linear): rows of the matrix of rates, in the place of rates, and what follows from
+   *  them when they are those of all lattices: the bound. usual: that of nodes inside of a body. Collective. */
+  bool is_bounded_by_rows() const;
+  void add_rows();
+  double most_of_rows() { return scalar.greatest_row(); }
+  double bound_by_rows(double greatest_of_rank);
   /** The bound of the rates of conduction on all ranks. */
   void keep_rate(double conduction) { conducted = conduction; }
   double bound_of_rates() const { return conducted; }
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
-   *  Adds the power of sources. */
+   *  Adds the power of sources. Then add_given(). */
   void find_rates(const double *source, Heats &power);
+  /** Heat from elsewhere. */
+  void add_given();
   /** The same for small changes of the temperatures, by conduction alone: the changes of the rates. */
   void find_changes();
   /** What each point of this rank adds to the matrix of conduction, see MPMDiffusion::Term. */
@@ -93,6 +106,12 @@ class MPMConduction : protected Pointers {
   const std::vector<double> &node_volume() const { return scalar.volume; }
   /** Of nodes, see MPMSuperStep. */
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
+
+  /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
+  double capacity_of(int i) const;
+  /** The slowest at which heat crosses a cell [1/time]; that of all fields of a body, if it is one. */
+  double crossing_rate() const;
+  double slowest_crossing = 0.0;    ///< 0: its own
 
   double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
   /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. Collective. */
@@ -141,6 +160,10 @@ class MPMConduction : protected Pointers {
   std::unique_ptr<MPMLayerMean>
       layers;               // of materials that conduct differently; null: points have their own
   double greatest = 0.0;    // of all conductivities, with layers
+  double fastest_point =
+      0.0;    // of this step: the greatest rate, but for the factor of the functions
+  bool simple = false,
+       keeps = false;    // are rates those of capacities and volumes; before = value
   bool told_of_orthotropic = false;
   std::vector<double>
       shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
@@ -158,7 +181,6 @@ class MPMConduction : protected Pointers {
   double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;
   double steepness(int i) const;
-  double row_bound(double usual);
   void init_layers();
   void find_unseen();
 };

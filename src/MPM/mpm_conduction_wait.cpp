@@ -92,7 +92,8 @@ bool FixMPMHeat::needs_each_step() const
     auto *const region = s.region.empty() ? nullptr : domain->get_region_by_id(s.region);
     return region && region->dynamic_check();
   });
-  return grains || penalty || solver || moves || has_variables() ||
+  const bool rubs_levels = rubs && !refined.empty();
+  return grains || penalty || solver || moves || rubs_levels || has_variables() ||
       !find_fixes<FixMPMImplicit>(lmp).empty();
 }
 

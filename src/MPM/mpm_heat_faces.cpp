@@ -374,8 +374,9 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
   const double near = there / (full * most);
   if (!(near > TOUCHES)) return;
 
-  const double aside =
-      most < NOT_FULL ? most : NOT_FULL + (most - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL);
+  const double aside = most < NOT_FULL || is_level
+      ? most
+      : NOT_FULL + (most - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL);
   line.area = std::min(1.0, aside) * cell / grid.lattice.h *
       (face.axis ? circle(line.node[0]) : field.frame->circle(face.x)) *
       std::min(1.0, (near - TOUCHES) / (IS_AT_FACE - TOUCHES));
@@ -413,6 +414,30 @@ bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line, const MPMHeatB
   if (!(length * sum > THICK * line.area)) return false;
   for (int k = 0; k < face.n; k++) line.weight[k] = weight[k] / sum;
   return true;
+}
+
+bool MPMHeatFaces::is_near(const double *place, double distance) const
+{
+  return std::any_of(faces.begin(), faces.end(), [&](const Face &face) {
+    return std::fabs(place[face.axis] - face.x) <= distance;
+  });
+}
+
+/** Nodes with a small weight at the face may be out of reach of points. */
+bool MPMHeatFaces::has_part_of_line(const std::function<bool(int64_t)> &taken) const
+{
+  static constexpr double SEEN = 0.25;
+  for (const auto &face : faces)
+    for (const auto &line : face.lines) {
+      int count = 0, all = 0;
+      for (int k = 0; k < face.n; k++) {
+        if (face.weight[k] < SEEN) continue;
+        all++;
+        count += taken(line.node[k]);
+      }
+      if (count > 0 && count < all) return true;
+    }
+  return false;
 }
 
 void MPMHeatFaces::mark_near(std::vector<char> &near) const

@@ -14,6 +14,7 @@
 #include "pointers.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -72,6 +73,12 @@ class MPMHeatFaces : protected Pointers {
    *  outside [1/time]. */
   void begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
                   const MPMHeatBody *body, const std::vector<double> &temperature, double rates[3]);
+  /** Its field is one lattice of several of a body (MPMHeatLevels): nodes at the rim have a part of their volume by their functions. */
+  bool is_level = false;
+  /** Is a place on the lattice at most so far from a face? */
+  bool is_near(const double *place, double distance) const;
+  /** Is there a line with heat some nodes of which are taken away and others are not? */
+  bool has_part_of_line(const std::function<bool(int64_t)> &taken) const;
   /** Lines for edges of other surfaces. */
   void note_edges(MPMHeatBody &) const;
   /** Where other surfaces have edges with faces, temperatures follow with the rate of conduction at the most. */

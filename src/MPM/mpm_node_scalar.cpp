@@ -102,11 +102,17 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
     kernels.flush(of_capacity, capacity.data(), slot, box);
     if (volumes) kernels.flush(of_volume, volume.data(), slot, box);
   }
+  if (is_level) return;
+  sum_nodes();
+  if (keeps) keep();
+}
+
+void MPMNodeScalar::sum_nodes()
+{
   sum(value);
   sum(capacity);
   if (volumes) sum(volume);
-  kernels.divide(value.data(), capacity.data(), nnodes);
-  if (keeps) before = value;
+  kernels.divide(value.data(), capacity.data(), value.size());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -165,6 +171,11 @@ void MPMNodeScalar::find_rates_by(const F &give, const std::function<void()> &mo
   }
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
   if (more) more();
+  if (!is_level) sum_rates();
+}
+
+void MPMNodeScalar::sum_rates()
+{
   sum(rate);
   kernels.divide(rate.data(), capacity.data(), rate.size());
 }
@@ -193,7 +204,7 @@ void MPMNodeScalar::find_rates_along(const Factors &find)
 
 /* ---------------------------------------------------------------------- */
 
-double MPMNodeScalar::greatest_rate(const Conduct &bound)
+void MPMNodeScalar::add_rows(const Conduct &bound)
 {
   std::fill(rate.begin(), rate.end(), 0.0);
   double q[BATCH + SPARE_ROWS][4];
@@ -213,6 +224,10 @@ double MPMNodeScalar::greatest_rate(const Conduct &bound)
           });
     kernels.flush(tile, rate.data(), field.grid.blocks[block.slot].slot, box_of(block));
   }
+}
+
+double MPMNodeScalar::greatest_row()
+{
   sum(rate);
   double most = 0.0;
   for (std::size_t k = 0; k < rate.size(); k++) {

@@ -63,12 +63,18 @@ class MPMNodeScalar {
    *  copies at periodic faces are not up to date. */
   std::vector<double> capacity, volume, value, before, rate;
 
+  /** Nodes of this field and of others exchange sums before ranks are summed (MPMHeatLevels): points_to_nodes() and find_rates()
+   *  leave them as what this rank's points gave, until sum_nodes(), keep(), and sum_rates() are called. */
+  bool is_level = false;
+
   explicit MPMNodeScalar(MPMField &field) : field(field) {}
 
   /** Start of a run. slopes: points have gradients g_p; volumes: those of nodes are wanted. */
   void init(bool slopes, bool volumes);
   /** Capacities, volumes, and values of nodes; keeps: before = value. */
   void points_to_nodes(const Fill &, bool keeps);
+  void sum_nodes();
+  void keep() { before = value; }
   /** Capacities C_p of the points of a run that has a part, as in points_to_nodes(). */
   using GiveValues =
       std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
@@ -81,9 +87,17 @@ class MPMNodeScalar {
   void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
   /** The same for fluxes along gradients alone, with less work. */
   void find_rates_along(const Factors &);
+  void sum_rates();
   /** A bound of the eigenvalues of minus the rates, by the rows of their matrix [1/time], of this rank; not with domains.
-   *  bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. */
-  double greatest_rate(const Conduct &bound);    // the rows stay in the place of rates
+   *  bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. Both one after the other, or, for a
+   *  level, with what is between. */
+  void add_rows(const Conduct &bound);    // the rows stay in the place of rates
+  double greatest_row();
+  double greatest_rate(const Conduct &bound)
+  {
+    add_rows(bound);
+    return greatest_row();
+  }
   /** changes: give the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
   void values_to_points(const TakeValues &);

@@ -111,7 +111,7 @@ double MPMTwoScale::memory_usage() const
 {
   return tied.capacity() * sizeof(Tied) + parents.capacity() * sizeof(Parent) +
       tied_of.capacity() * sizeof(int) + block_is_tied.capacity() +
-      shares.capacity() * sizeof(Share) + affine.capacity() * sizeof(double);
+      shares.capacity() * sizeof(Share) + (affine.capacity() + moments.capacity()) * sizeof(double);
 }
 
 /* ----------------------------------------------------------------------
@@ -321,28 +321,38 @@ void MPMTwoScale::find_shares()
   }
 }
 
-void MPMTwoScale::sum_affine(const MPMTwoScale *after)
+/** Sums of N_ip w_p times a row of each point at tied nodes, with what nodes of this lattice have got from finer ones that are tied to
+ *  them. */
+template <class Weight>
+void MPMTwoScale::sum_at_tied(const Weight &weight, const MPMRows &rows, int width,
+                              std::vector<double> &sums, const MPMTwoScale *after,
+                              const std::vector<double> *of_after) const
 {
-  const int nC = fine.affine->size();
-  const double *const mass = fine.atom->rmass;
-  const MPMRows C = fine.affine->C;
-  affine.assign(nC * tied.size(), 0.0);
+  sums.assign(width * tied.size(), 0.0);
   for (const auto &share : shares) {
-    const double m = share.weight * mass[share.point], *const from = C[share.point];
-    double *const to = &affine[nC * share.tied];
-    for (int c = 0; c < nC; c++) to[c] += m * from[c];
+    const double m = share.weight * weight(share.point), *const from = rows[share.point];
+    double *const to = &sums[(std::size_t) width * share.tied];
+    for (int c = 0; c < width; c++) to[c] += m * from[c];
   }
-
-  // what nodes of this lattice have got from finer ones that are tied to them
-
   if (!after) return;
   for (std::size_t finer = 0; finer < after->tied.size(); finer++)
     for (int k = after->tied[finer].first; k < after->tied[finer].last; k++) {
       const int t = tied_of[after->parents[k].node];
       if (t < 0) continue;
-      for (int c = 0; c < nC; c++)
-        affine[nC * t + c] += after->parents[k].weight * after->affine[nC * finer + c];
+      for (int c = 0; c < width; c++)
+        sums[(std::size_t) width * t + c] +=
+            after->parents[k].weight * (*of_after)[width * finer + c];
     }
+}
+
+void MPMTwoScale::sum_affine(const MPMTwoScale *after)
+{
+  const double *const mass = fine.atom->rmass;
+  sum_at_tied(
+      [mass](int i) {
+        return mass[i];
+      },
+      fine.affine->C, fine.affine->size(), affine, after, after ? &after->affine : nullptr);
 }
 
 void MPMTwoScale::to_parents(const MPMTwoScale *after)
@@ -375,4 +385,101 @@ void MPMTwoScale::from_parents()
         for (int d = 0; d < 3; d++) record[r + d] += parents[k].weight * from[r + d];
     }
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMTwoScale::sums_to_parents(std::vector<double> &of_fine, std::vector<double> &of_coarse,
+                                  int width) const
+{
+  for (const auto &t : tied) {
+    double *const from = &of_fine[width * t.node];
+    for (int k = t.first; k < t.last; k++)
+      for (int c = 0; c < width; c++)
+        of_coarse[width * parents[k].node + c] += parents[k].weight * from[c];
+    std::fill_n(from, width, 0.0);
+  }
+}
+
+void MPMTwoScale::moments_to_parents(const std::function<double(int)> &weight,
+                                     const MPMRows &slopes, const MPMTwoScale *after,
+                                     std::vector<double> &of_fine, std::vector<double> &of_coarse)
+{
+  const int dim = fine.lattice.dim;
+  if (slopes) {
+    sum_at_tied(weight, slopes, dim, moments, after, after ? &after->moments : nullptr);
+    for (std::size_t t = 0; t < tied.size(); t++)
+      for (int k = tied[t].first; k < tied[t].last; k++)
+        for (int d = 0; d < dim; d++)
+          of_coarse[parents[k].node] += parents[k].weight * moments[dim * t + d] * parents[k].r[d];
+  }
+  sums_to_parents(of_fine, of_coarse);
+}
+
+void MPMTwoScale::values_from_parents(const std::vector<double> &of_coarse,
+                                      std::vector<double> &of_fine) const
+{
+  for (const auto &t : tied) {
+    double sum = 0.0;
+    for (int k = t.first; k < t.last; k++) sum += parents[k].weight * of_coarse[parents[k].node];
+    of_fine[t.node] = sum;
+  }
+}
+
+void MPMTwoScale::greatest_from_parents(const std::vector<double> &of_coarse,
+                                        std::vector<double> &of_fine) const
+{
+  for (const auto &t : tied)
+    for (int k = t.first; k < t.last; k++)
+      of_fine[t.node] = std::max(of_fine[t.node], of_coarse[parents[k].node]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMTwoScale::share_of_thin(const std::vector<MPMField *> &body) const
+{
+  const Grid &grid = coarse.grid;
+  const int dim = grid.lattice.dim;
+  const auto visit = [&](const MPMField &field, const auto &f) {
+    for (const auto &run : field.map->runs)
+      for (int i = run.first; i < run.last; i++) {
+        const double *const x = field.frame->places()[i];
+        int cell[3] = {0, 0, 0};
+        for (int d = 0; d < dim; d++)
+          cell[d] = (int) std::floor((x[d] - grid.lattice.origin[d]) / grid.lattice.h);
+        f(cell);
+      }
+  };
+  enum { COARSE, FINE, NKIND };
+  std::vector<double> has(NKIND * grid.nnodes(), 0.0);
+  for (const auto *field : body) {
+    const int kind = field->lattice.h > 0.75 * grid.lattice.h ? COARSE : FINE;
+    visit(*field, [&](const int *cell) {
+      const int64_t node = canonical_node(grid, cell);
+      if (node >= 0) has[NKIND * node + kind] = 1.0;
+    });
+  }
+  coarse.nodes.sum(has.data(), NKIND, 0, NKIND);
+  const auto is_in = [&](const int *cell, int kind) {
+    const int64_t node = canonical_node(grid, cell);
+    return node >= 0 && has[NKIND * node + kind] > 0.0;
+  };
+
+  double mine[2] = {0.0, 0.0}, all[2];
+  visit(fine, [&](const int *cell) {
+    if (is_in(cell, COARSE)) return;
+    bool outside = false, thin = false;
+    for (int k = 0; k < 2 * dim; k++) {
+      int next[3] = {cell[0], cell[1], cell[2]}, below[3] = {cell[0], cell[1], cell[2]};
+      next[k / 2] += k % 2 ? 1 : -1;
+      below[k / 2] -= k % 2 ? 1 : -1;
+      if (is_in(next, FINE) || is_in(next, COARSE)) continue;
+      outside = true;
+      thin = thin || is_in(below, COARSE);
+    }
+    mine[0] += thin;
+    mine[1] += outside;
+  });
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  return all[1] > 0.0 ? all[0] / all[1] : 0.0;
 }

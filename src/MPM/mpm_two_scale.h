@@ -13,6 +13,7 @@
 #include "pointers.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -54,10 +55,29 @@ class MPMTwoScale : protected Pointers {
   /** Velocities of tied nodes, also the old ones. */
   void from_parents();
 
+  /** The same for numbers that others have at the nodes, [node][width]: what this rank's points gave to tied nodes. */
+  void sums_to_parents(std::vector<double> &of_fine, std::vector<double> &of_coarse,
+                       int width = 1) const;
+  /** Sums that points gave to nodes with their gradients g_p, N_ip w_p [u_p + g_p . (x_i - x_p)], go to parents with what they would have
+   *  given there. weight(i): w_p of a point; slopes: [n][dim], or null: there are none. after: as in to_parents(). */
+  void moments_to_parents(const std::function<double(int)> &weight, const MPMRows &slopes,
+                          const MPMTwoScale *after, std::vector<double> &of_fine,
+                          std::vector<double> &of_coarse);
+  /** Values of tied nodes, by those of their parents. */
+  void values_from_parents(const std::vector<double> &of_coarse,
+                           std::vector<double> &of_fine) const;
+  /** The greatest value of their parents. */
+  void greatest_from_parents(const std::vector<double> &of_coarse,
+                             std::vector<double> &of_fine) const;
+  bool is_tied(int64_t fine_node) const { return tied_of[fine_node] >= 0; }
+
   /** Nodes that are tied and free, of those that this rank counts. */
   struct Count {
     bigint tied = 0, free = 0;
   } count;
+  /** Share of the surface of the fine points, by the coarse cells that they fill, below which coarse points begin in the next cell:
+   *  functions at this surface are those of nodes that are tied and of nodes outside of the body. body: its fields. Collective. */
+  double share_of_thin(const std::vector<MPMField *> &body) const;
   double memory_usage() const;
 
  private:
@@ -90,7 +110,8 @@ class MPMTwoScale : protected Pointers {
     double weight;
   };
   std::vector<Share> shares;
-  std::vector<double> affine;    // [tied][dim*dim] sums of N m C over points
+  std::vector<double> affine;     // [tied][dim*dim] sums of N m C over points
+  std::vector<double> moments;    // [tied][dim] the same of w g, see moments_to_parents()
 
   bool is_marked(const int cell[3]) const;
   static void mark_points(const Marks &);
@@ -98,6 +119,9 @@ class MPMTwoScale : protected Pointers {
   void find_shares();
   static int64_t canonical_node(const MPM_NS::Grid &, const int index[3]);
   void sum_affine(const MPMTwoScale *after);
+  template <class Weight>
+  void sum_at_tied(const Weight &, const MPMRows &rows, int width, std::vector<double> &sums,
+                   const MPMTwoScale *after, const std::vector<double> *of_after) const;
 };
 
 }    // namespace LAMMPS_NS
