@@ -559,6 +559,31 @@ SERIAL_TEST(Traction, TellsOfLostPoints)
   }
 }
 
+// a plane in the middle of a body is no surface: its load would act on the section, as would that of a step on what goes on above it
+SERIAL_TEST(Plane, ThroughABodyIsTold)
+{
+  const auto told = [](const std::string &bodies, double height, const std::string &group) {
+    return lines_that_say(plane("si", "f f", "-1 2 -1 2", 1, 0.03) + "fix grid all mpm 0.1\n" +
+                              bodies + "create_points 1 region body ppc 2\n" +
+                              "fix m all mpm/material density 1000 linear 1e6 0.3\n" +
+                              strprintf("region top plane 0 %g 0 0 -1 0\n", height) + group +
+                              "fix load mine mpm/traction region top traction 0 -1e3 0\n"
+                              "fix dt all mpm/dt 0.5\nrun 1\n",
+                          "goes through the inside of a body")
+        .size();
+  };
+  const std::string
+      block = "region body block 0 1 0 1 INF INF\n",
+      step = "region wide block 0 1 0 0.5 INF INF\nregion narrow block 0 0.4 0.5 1 INF INF\n"
+             "region body union 2 wide narrow\n",
+      all = "group mine union all\n",
+      below = "region beside block 0.4 1 INF INF INF INF\ngroup mine region beside\n";
+  EXPECT_EQ(told(block, 1.0, all), 0u);
+  EXPECT_EQ(told(block, 0.5, all), 1u);
+  EXPECT_EQ(told(step, 0.5, all), 1u);
+  EXPECT_EQ(told(step, 0.5, below), 0u);
+}
+
 SERIAL_TEST(Traction, BadInput)
 {
   const auto plain = bar("", 0.4, "", "");

@@ -490,6 +490,33 @@ double FixMPMPore::distance_to_bodies(const double *x, double far) const
   return least;
 }
 
+/** Soils without points, as with the ID of another material, leave the ground dry; one that is lighter than its water has grains with a weight
+ *  below zero, which without gravity is a way to have longer steps. Here: which soils have points on this rank. */
+static void warn_of_soils(LAMMPS *lmp, const std::string &id, const std::vector<MPMPoreSoil> &soils,
+                          const std::vector<int> &here, const MPMPoreWater &water, bool has_weight)
+{
+  std::vector<int> anywhere(here.size(), 0);
+  MPI_Allreduce(here.data(), anywhere.data(), (int) here.size(), MPI_INT, MPI_MAX, lmp->world);
+  for (std::size_t k = 0; k < soils.size() && lmp->comm->me == 0; k++) {
+    const auto &soil = soils[k];
+    const auto *const fix =
+        dynamic_cast<const FixMPMMaterial *>(lmp->modify->get_fix_by_id(soil.material));
+    if (!fix) continue;    // init() tells
+    const double density = fix->material->density(), of_water = soil.porosity * water.density;
+    if (!anywhere[k])
+      lmp->error->warning(FLERR,
+                          "Fix mpm/pore {} has no points of soil {}: only points of the fix "
+                          "mpm/material that soil names have water",
+                          id, soil.material);
+    else if (has_weight && density <= of_water)
+      lmp->error->warning(FLERR,
+                          "Fix mpm/pore {}: soil {} has the density {:.6g}, which is not more than "
+                          "that of the water in its pores, {:.6g}, so that grains have a weight "
+                          "below zero: it must be that of saturated soil",
+                          id, soil.material, density, of_water);
+  }
+}
+
 void FixMPMPore::init_physics(MPMPlan &plan)
 {
   fields.clear();
@@ -522,6 +549,13 @@ void FixMPMPore::init_physics(MPMPlan &plan)
           "the pressure of the water is an average already: use locking none"}});
     steps.add(mine.nodes.value, mine.nodes.rate);
   }
+  std::vector<int> here(soils.size(), 0);
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto *const of_point = atom->vfrac[i] > 0.0 ? soil_of(i) : nullptr;
+    for (std::size_t k = 0; k < soils.size() && of_point; k++)
+      if (soils[k].material == of_point->material) here[k] = 1;
+  }
+  warn_of_soils(lmp, id, soils, here, water, !MPMGravity(lmp, "Fix mpm/pore").empty());
   find_longest_wait();
   warn_of_contact();
   is_implicit = !wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();

@@ -93,7 +93,7 @@ bool FixMPMHeat::needs_each_step() const
     return region && region->dynamic_check();
   });
   const bool rubs_levels = rubs && !refined.empty();
-  return grains || penalty || solver || moves || rubs_levels || has_variables() ||
+  return grains || penalty || solver || moves || has_variables() || rubs_levels ||
       !find_fixes<FixMPMImplicit>(lmp).empty();
 }
 

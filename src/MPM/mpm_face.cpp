@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -31,6 +32,8 @@ static constexpr double DEEPEST = 3.0;    // point with a share
 // layers below a plane; and what is told of these
 static constexpr double TOO_DEEP = 0.25, TOO_DEEP_CURVED = 0.6;
 static constexpr double TOO_UNEQUAL = 0.05, UNEQUAL = 0.01;
+// share of the area of a plane that has points above it, which is told
+static constexpr double CUT = 0.1;
 
 void MPMFace::declare(Options &o, double &spacing, double &area)
 {
@@ -122,6 +125,38 @@ MPMFace::Judgement MPMFace::judge() const
           all[1] / area, std::fabs((all[6] - all[7]) / area)};
 }
 
+/** A plane through a body is no surface there: the force acts on the section. Points above the plane, within a layer from it, would cover an
+ *  area; area: that of the points below it. */
+static void tell_of_cut(LAMMPS *lmp, Region *region, const std::string &user, int igroup,
+                        double spacing, double area)
+{
+  const auto *const atom = lmp->atom;
+  double mine = 0.0, beyond;
+  for (const auto *field : MPMField::all(lmp)) {
+    const int dim = field->lattice.dim;
+    const MPMRegionSurface surface(region, dim);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & lmp->group->bitmask[igroup]) || !field->is_point(i) ||
+          field->is_element_node(i))
+        continue;
+      const double *const x = atom->x[i];
+      if (region->match(x[0], x[1], x[2])) continue;
+      const double volume = atom->vfrac[i] * field->points->jacobian(i);
+      const double apart = spacing > 0.0 ? spacing
+                                         : std::pow(volume / field->frame->circle(x[0]), 1.0 / dim);
+      if (std::fabs(surface.distance(x, 1.01 * apart)) < apart) mine += volume / apart;
+    }
+  }
+  MPI_Allreduce(&mine, &beyond, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+  if (beyond > CUT * std::fabs(area) && lmp->comm->me == 0)
+    lmp->error->warning(
+        FLERR,
+        "{}: points of group {} are right above the plane of region {}, too, next to {:.3g} of its "
+        "{:.3g} of area: there it goes through the inside of a body, and is no surface; move the "
+        "plane, or give a group of the points that are below the surface",
+        user, lmp->group->names[igroup], region->id, beyond, area);
+}
+
 void MPMFace::check(const std::string &user, int igroup, bool area_known) const
 {
   double all[3];    // as in sums
@@ -149,6 +184,7 @@ void MPMFace::check(const std::string &user, int igroup, bool area_known) const
         "{}: the areas of two layers of points below region {} differ by "
         "{:.3g} %, and what is found may be wrong by more: use the keywords spacing or area",
         user, region->id, 100.0 * unequal);
+  if (strcmp(region->style, "plane") == 0) tell_of_cut(lmp, region, user, igroup, spacing, all[0]);
 }
 
 void MPMFace::add_stress(const double *T, const double *n, double share, double *tau)

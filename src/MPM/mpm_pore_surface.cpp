@@ -155,6 +155,8 @@ void MPMPoreSurface::map_volume()
   work.stress.resize(6 * nmax);
   PointRows rows = field.rows_at_rest(work.vectors.data(), work.weights.data());
   rows.tau = work.stress.data();
+  // read, and multiplied by zero: the means that steps of every K have in this place are not there before the first one
+  rows.f = &field.atom->f[0][0];
   TransferStep step = field.step_data(1.0);
   step.force_scale = 0.0;
   step.stress_scale = 1.0;
@@ -565,6 +567,8 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
     const auto &condition = conditions[place.part];
     double Q = place.area * condition.now;
     const double p = at_surface(scalar, place);
+    // where a pressure is given, water comes and goes with that, and what p is off is dissipated
+    double behind = p;
     if (condition.kind != MPMPoreCondition::FLUX) {
       double inside = 0.0;
       for (int k = place.first; k < place.first + place.n; k++)
@@ -575,11 +579,12 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
       Q = flow_is_given ? place.inflow + LEAK * place.out * (place.outside_at - p)
                         : std::min(driven, most);
       place.slope = driven > most ? 0.0 : drop > 0.0 ? place.in : place.out;
+      if (flow_is_given || driven <= most) behind = place.outside_at;
     }
     for (int k = place.first_at; k < place.first_at + place.n_at; k++)
       scalar.rate[node[k]] += weight[k] * Q;
     inflow[place.part] += Q;
-    inflow[ENERGY] += Q * p;
+    inflow[ENERGY] += Q * behind;
   }
 }
 

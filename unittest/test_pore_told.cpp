@@ -1,0 +1,87 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics input
+// timeout: 300
+
+// Fix mpm/pore: what it tells of input that is likely to be wrong, and what it must not take for wrong.
+
+#include "pore_testing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+/** A column with the pressure 1 kPa at first, which the load bears, and 300 Pa outside. options: of fix mpm; more: of fix mpm/pore. */
+std::string jump(const std::string &options, const std::string &more)
+{
+  return replaced(column(10,
+                         "2.2e9 1000 9810 soil m 0.4 constant 1e-3 initial 1e3 free pressure 300 " +
+                             more,
+                         SOIL, 1.2, 0.3),
+                  "origin", options + " origin") +
+      "region top block INF INF 0.95 INF INF INF\ngroup top region top\n"
+      "variable fy equal -1e3*lx/count(top)\nfix load top addforce 0 v_fy 0\n";
+}
+
+}    // namespace
+
+// Water leaves with the pressure outside, however far that at the surface is from it: what is left of its energy is dissipated.
+// Where the pressure jumps at the surface both are far apart for a while with u-v-p, and the watch of energies called that numerical errors
+SERIAL_TEST(Energy, OfWaterThatLeaves)
+{
+  for (const std::string formulation : {"formulation u-p", "formulation u-v-p"}) {
+    const std::string scene = jump("", formulation) + "fix dt all mpm/dt 0.5\n";
+    EXPECT_EQ(lines_that_say(scene + "run 1000\n", "Numerical errors").size(), 0u) << formulation;
+    Scene run(scene + "compute e all mpm/energy\nvariable came equal c_e[16]\n");
+    run.commands("run 300\n");
+    const double volume = run.fix("water")->compute_scalar();
+    EXPECT_LT(volume, 0.0);
+    EXPECT_NEAR(measured(formulation + ": energy over that of the pressure outside",
+                         run.variable("came") / (300.0 * volume)),
+                1.0, 1e-9);
+  }
+}
+
+// With every K points take the same steps, as the load is constant. The surface was looked for before there were means of forces
+SERIAL_TEST(Every, IsTheSame)
+{
+  double mean[2], out[2];
+  for (const bool every : {false, true}) {
+    Scene run(jump(every ? "every 4" : "", "") + (every ? "timestep 1e-5\n" : "timestep 4e-5\n"));
+    Water water(run);
+    run.commands(every ? "run 2000\n" : "run 500\n");
+    mean[every] = water.mean(0.0, 1.0);
+    out[every] = run.fix("water")->compute_scalar();
+  }
+  EXPECT_LT(out[0], 0.0);
+  EXPECT_NEAR(measured("pressure with every 4 over that without", mean[1] / mean[0]), 1.0, 1e-9);
+  EXPECT_NEAR(measured("water that left", out[1] / out[0]), 1.0, 1e-9);
+}
+
+// the ID of a material without points, and a density that grains cannot have: the ground would be dry, or too light
+SERIAL_TEST(Soils, WithoutPointsOrTooLightAreTold)
+{
+  const auto told = [](const char *soil, const char *density, const char *weight,
+                       const char *what) {
+    return lines_that_say(plane("si", "p f", "0 0.2 0 1.2", 1, 0.03) +
+                              "region soil block INF INF 0 1 INF INF\n"
+                              "create_points 1 region soil spacing 0.05\nfix grid all mpm 0.1\n"
+                              "group none empty\nfix m all mpm/material density " +
+                              density +
+                              " linear 1e7 0.3\n"
+                              "fix dry none mpm/material density 2000 linear 1e7 0.3\n"
+                              "fix floor all mpm/boundary ylo slip\n" +
+                              weight +
+                              "fix water all mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-4 " +
+                              soil + "\ntimestep 1e-6\nrun 1\n",
+                          what)
+        .size();
+  };
+  const char *const gravity = "fix g all gravity 9.81 vector 0 -1 0\n";
+  EXPECT_EQ(told("", "2000", gravity, "WARNING: Fix mpm/pore"), 0u);
+  EXPECT_EQ(told("soil dry 0.4 constant 1e-4", "2000", gravity, "has no points of soil dry"), 1u);
+  EXPECT_EQ(told("", "400", gravity, "grains have a weight below zero"), 1u);
+  EXPECT_EQ(told("", "401", gravity, "WARNING: Fix mpm/pore"), 0u);
+  EXPECT_EQ(told("", "400", "", "WARNING: Fix mpm/pore"), 0u);
+}
