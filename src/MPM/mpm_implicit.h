@@ -229,8 +229,7 @@ class MPMImplicit : private MPMNodeSystem {
   void foresee(std::vector<double> &u);
   void remember(const std::vector<double> &u);
   bool make_factors(const std::vector<double> &u);
-  void find_turns(const std::vector<double> &u, std::vector<double> &turns);
-  void turn_from_factors(const std::vector<double> &u);
+  void turn_from_factors();
   void turn(bool back, std::vector<double> &of_heavy) const;
   void find_correction();
   double product_of_heavy(const std::vector<double> &a, const std::vector<double> &b);

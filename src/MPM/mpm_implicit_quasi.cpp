@@ -23,8 +23,6 @@
 #include "mpm_field.h"
 #include "mpm_plan.h"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 
@@ -35,8 +33,8 @@ static constexpr double SAME = 1.0e-10;         // of what walls leave
 static constexpr double SYMMETRIC = 1.0e-3;     // of tangents
 static constexpr double ROUND_OFF = 2.0e-16;    // of strains: forces are not known better
 static constexpr double CURVED = 1.0e-10;       // s . y over the lengths of both, least
-static constexpr int MOST_PAIRS = 12;
-static constexpr int COST = 6;                  // of factors, in iterations
+static constexpr int MOST_PAIRS = 24;
+static constexpr int COST = 20;                 // of factors, in iterations
 static constexpr int MOST_FACTORS = 3;          // in a step
 static constexpr int MOST_WITH_FACTORS = 25;    // iterations in a step
 static constexpr std::size_t MOTIONS = 2;       // that are kept
@@ -109,44 +107,12 @@ void MPMImplicit::remember(const std::vector<double> &u)
   memory.motions.push_front(std::move(motion));
 }
 
-/** The rotation in the deformation F, of dim times dim, in its place: unity where there is none. */
-static void take_rotation(int dim, double *F)
-{
-  if (dim == 2) {
-    const double c = F[0] + F[3], s = F[2] - F[1], size = std::hypot(c, s);
-    const bool good = size > 0.0 && std::isfinite(size);
-    F[0] = F[3] = good ? c / size : 1.0;
-    F[2] = good ? s / size : 0.0;
-    F[1] = -F[2];
-    return;
-  }
-  using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  Eigen::Map<Matrix> of(F);
-  const Eigen::JacobiSVD<Matrix> parts(of, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix R = parts.matrixU() * parts.matrixV().transpose();
-  if (!(of.determinant() > 0.0) || !R.allFinite()) R.setIdentity();
-  of = R;
-}
-
-/** Rotations of the body around nodes with a mass, after the motion u. */
-void MPMImplicit::find_turns(const std::vector<double> &u, std::vector<double> &rotations)
-{
-  const int square = width * width;
-  std::vector<double> mean;
-  tangent.mean_deformations(part_of(u), mean);
-  rotations.resize(heavy.size() * square);
-  for (std::size_t k = 0; k < heavy.size(); k++) {
-    std::copy_n(&mean[heavy[k] * square], square, &rotations[k * square]);
-    take_rotation(width, &rotations[k * square]);
-  }
-}
-
-/** Those since the factors, R R0^T. */
-void MPMImplicit::turn_from_factors(const std::vector<double> &u)
+/** Rotations of the body around nodes since the factors, R R0^T. */
+void MPMImplicit::turn_from_factors()
 {
   const int w = width, square = w * w;
   std::vector<double> rotations;
-  find_turns(u, rotations);
+  tangent.mean_rotations(heavy, rotations);
   turns.assign(rotations.size(), 0.0);
   for (std::size_t k = 0; k < rotations.size(); k += square)
     for (int a = 0; a < w; a++)
@@ -175,7 +141,9 @@ void MPMImplicit::turn(bool back, std::vector<double> &x) const
 bool MPMImplicit::make_factors(const std::vector<double> &u)
 {
   memory.drop_factors();
+  tangent.keep_deformations(true);
   memory.stiffness = tangent.linearize(part_of(u), part * dt);
+  tangent.keep_deformations(false);
   memory.asymmetry = tangent.asymmetry();
   if (memory.asymmetry > SYMMETRIC) return false;
   // nodes and walls are those of the factors before, if there were any
@@ -187,15 +155,20 @@ bool MPMImplicit::make_factors(const std::vector<double> &u)
   now.made++;
   large = !multigrid->is_whole();
   turns.clear();
-  if (!large) find_turns(u, memory.turned);
+  if (!large) tangent.mean_rotations(heavy, memory.turned);
   return memory.factorized = multigrid->usable() && !large;
 }
 
 /** The product of two vectors of nodes with a mass, in the order of ranks. Collective. */
 double MPMImplicit::product_of_heavy(const std::vector<double> &a, const std::vector<double> &b)
 {
-  double mine = 0.0, value;
-  for (std::size_t k = 0; k < heavy_owned * width; k++) mine += a[k] * b[k];
+  // several sums at a time, as one waits for its last addition
+  double part[4] = {0.0, 0.0, 0.0, 0.0}, mine = 0.0, value;
+  const std::size_t n = heavy_owned * width, whole = n - n % 4;
+  for (std::size_t k = 0; k < whole; k += 4)
+    for (int i = 0; i < 4; i++) part[i] += a[k + i] * b[k + i];
+  for (std::size_t k = whole; k < n; k++) mine += a[k] * b[k];
+  mine += (part[0] + part[1]) + (part[2] + part[3]);
   sum_in_order(lmp, 1, &mine, of_ranks, &value);
   return value;
 }
@@ -224,27 +197,23 @@ void MPMImplicit::find_correction()
     for (std::size_t k = 0; k < to.size(); k++) to[k] += share * of[k];
   };
   take_heavy(free, of_heavy);
+  turn(true, of_heavy);
   for (int k = n - 1; k >= 0; k--) {
     const auto &pair = memory.pairs[k];
     along[k] = product_of_heavy(pair.s, of_heavy) / pair.sy;
     add(-along[k], pair.y, of_heavy);
   }
   trial = free;
-  turn(true, of_heavy);
   put_heavy(of_heavy, trial);
   multigrid->precondition(trial.data(), change.data());
-  if (!turns.empty()) {
-    take_heavy(change, of_heavy);
-    turn(false, of_heavy);
-    put_heavy(of_heavy, change);
-  }
-  project(change.data());
   take_heavy(change, of_heavy);
   for (int k = 0; k < n; k++) {
     const auto &pair = memory.pairs[k];
     add(along[k] - product_of_heavy(pair.y, of_heavy) / pair.sy, pair.s, of_heavy);
   }
+  turn(false, of_heavy);
   put_heavy(of_heavy, change);
+  project(change.data());
 }
 
 /** What the correction from u0 to u told, with forces f0 that were left before and those that are now: u0 and f0 of nodes with a mass. */
@@ -260,7 +229,13 @@ void MPMImplicit::learn(const std::vector<double> &u0, const std::vector<double>
   take_heavy(free, pair.y);
   double mine[3] = {0.0, 0.0, 0.0}, sums[3];
   for (std::size_t k = 0; k < pair.s.size(); k++) {
-    const double s = pair.s[k] -= u0[k], y = pair.y[k] = f0[k] - pair.y[k];
+    pair.s[k] -= u0[k];
+    pair.y[k] = f0[k] - pair.y[k];
+  }
+  turn(true, pair.s);
+  turn(true, pair.y);
+  for (std::size_t k = 0; k < pair.s.size(); k++) {
+    const double s = pair.s[k], y = pair.y[k];
     if (k >= heavy_owned * width) continue;
     mine[0] += s * y;
     mine[1] += s * s;
@@ -282,10 +257,12 @@ bool MPMImplicit::go_on(std::vector<double> &u)
   if (memory.factorized && memory.steps > 0 &&
       memory.last * memory.steps > memory.iterations + COST)
     memory.drop_factors();
-  memory.pairs.clear();
   turns.clear();
-  if (memory.factorized) turn_from_factors(u);
-  if (!find_residual(u, size)) return false;
+  tangent.keep_deformations(memory.factorized);
+  const bool begun = find_residual(u, size);
+  tangent.keep_deformations(false);
+  if (!begun) return false;
+  if (memory.factorized) turn_from_factors();
   while (true) {
     now.residuals.push_back(now.unbalanced);
     const double enough = std::max({options.tolerance * size, options.absolute * lmp->force->ftm2v,

@@ -30,8 +30,11 @@
 #include "mpm_time_limit.h"
 #include "update.h"
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -101,9 +104,12 @@ void MPMTangent::scatter(const double *forces_of_points, double *force)
 /** use(run, first, n, H): H [n][nH] of up to BATCH points. */
 template <class Use> void MPMTangent::gather(const double *u, const Use &use)
 {
-  nodes.assign(field.grid.nnodes() * with.nreal, 0.0);
-  for (int64_t n = 0; n < field.grid.nnodes(); n++)
-    for (int d = 0; d < dim; d++) nodes[with.nreal * n + d] = u[dim * n + d];
+  nodes.resize(field.grid.nnodes() * with.nreal);
+  double *record = nodes.data();
+  for (int64_t n = 0; n < field.grid.nnodes(); n++, record += with.nreal) {
+    std::fill_n(record, with.nreal, 0.0);
+    for (int d = 0; d < dim; d++) record[d] = u[dim * n + d];
+  }
   field.nodes.complete(nodes.data(), with.nreal, 3);
   PointRows rows = field.rows();
   rows.P = P.data();
@@ -180,14 +186,24 @@ bool MPMTangent::add_between(const double *u, double &carried)
 void MPMTangent::lattice_F(int first, int n, const double *H, double *F) const
 {
   const bool total = field.frame->is_total();
-  for (int p = 0; p < n; p++, F += 9, H += nH) {
-    if (total)
-      field.frame->lattice_F(first + p, reinterpret_cast<double(*)[3]>(F));
-    else
-      for (int k = 0; k < 9; k++) F[k] = k % 4 == 0;
-    for (int r = 0; r < dim; r++)
-      for (int c = 0; c < dim; c++) F[3 * r + c] += H[dim * c + r];
-  }
+  if (!total)
+    for (int p = 0; p < n; p++)
+      for (int k = 0; k < 9; k++) F[9 * p + k] = k % 4 == 0;
+  else if (!field.frame->refers())    // that of the points
+    std::copy_n(field.points->F[first], 9 * n, F);
+  else
+    for (int p = 0; p < n; p++)
+      field.frame->lattice_F(first + p, reinterpret_cast<double(*)[3]>(F + 9 * p));
+  const auto add = [&](auto width) {
+    constexpr int D = decltype(width)::value;
+    for (int p = 0; p < n; p++, F += 9, H += nH)
+      for (int r = 0; r < D; r++)
+        for (int c = 0; c < D; c++) F[3 * r + c] += H[D * c + r];
+  };
+  if (dim == 2)
+    add(std::integral_constant<int, 2>());
+  else
+    add(std::integral_constant<int, 3>());
 }
 
 /** Kinematics of n points from first on after H [n][nH], in the batch. */
@@ -195,16 +211,51 @@ void MPMTangent::deform(int first, int n, const double *H)
 {
   const auto &batches = *field.batch_kernels;
   const auto &frame = *field.frame;
+  const bigint row = first;
+  if (nH == nL && !frame.refers()) {
+    (frame.is_total() ? batches.load_total
+                      : batches.load)(*batch, n, 1.0, H, field.points->F[0] + 9 * row,
+                                      field.points->tau[0] + 6 * row, atom->vfrac + row, nullptr);
+    return;
+  }
   double L[9 * BATCH], hoop[BATCH];
   for (int p = 0; p < n; p++) {
     std::copy_n(H + nH * p, nL, L + nL * p);
     if (nH > nL) hoop[p] = H[nH * p + nL];
   }
   frame.refer_gradients(first, n, L);
-  const bigint i = first;
   (frame.is_total() ? batches.load_total : batches.load)(
-      *batch, n, 1.0, L, field.points->F[0] + 9 * i, field.points->tau[0] + 6 * i, atom->vfrac + i,
-      nH > nL ? hoop : nullptr);
+      *batch, n, 1.0, L, field.points->F[0] + 9 * row, field.points->tau[0] + 6 * row,
+      atom->vfrac + row, nH > nL ? hoop : nullptr);
+}
+
+/** P [n][DIM*DIM] of the stress in a batch, whose F is that of the places of the lattice; or that is unity and H, where this is given. */
+template <int DIM> static void piola_of_batch(const Batch &b, int n, const double *H, double *P)
+{
+  constexpr int SIZE = DIM * DIM;
+  for (int p = 0; p < n; p++) {
+    double f[9] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0};
+    for (int r = 0; r < DIM; r++)
+      for (int c = 0; c < DIM; c++)
+        f[3 * r + c] = H ? (r == c) + H[SIZE * p + DIM * c + r] : b.F[3 * r + c][p];
+    const double cofactors[9] = MPM_COFACTORS(f), J = b.J[p];
+    const double scale = J / (f[0] * cofactors[0] + f[1] * cofactors[1] + f[2] * cofactors[2]);
+    const double xx = scale * b.stress[0][p], yy = scale * b.stress[1][p],
+                 zz = scale * b.stress[2][p], xy = scale * b.stress[3][p],
+                 xz = scale * b.stress[4][p], yz = scale * b.stress[5][p];
+    double *const to = P + SIZE * p;
+    for (int j = 0; j < DIM; j++) {
+      const double x = cofactors[j], y = cofactors[3 + j], z = cofactors[6 + j];
+      if constexpr (DIM == 2) {
+        to[2 * j] = xx * x + xy * y;
+        to[2 * j + 1] = xy * x + yy * y;
+      } else {
+        to[3 * j] = xx * x + xy * y + xz * z;
+        to[3 * j + 1] = xy * x + yy * y + yz * z;
+        to[3 * j + 2] = xz * x + yz * y + zz * z;
+      }
+    }
+  }
 }
 
 /** P [n][nH] of the Kirchhoff stress tau [n][6] after H. */
@@ -235,7 +286,6 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
     std::fill_n(stress, nH * n, 0.0);
     return true;
   }
-  double tau[6 * BATCH + 8];
   deform(first, n, H);
   b.dt = dt;
   b.time = elapsed_time(*update);
@@ -250,12 +300,23 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
     material->material->update(b);
 
   bool good = true;
-  for (int p = 0; p < n; p++) {
-    good = good && b.J[p] > 0.0;
-    for (int c = 0; c < 6; c++) tau[6 * p + c] = b.J[p] * b.stress[c][p];
+  for (int p = 0; p < n; p++) good &= b.J[p] > 0.0;
+  const bool total = field.frame->is_total();
+  if (nH == nL && !(total && field.frame->refers())) {
+    (dim == 2 ? piola_of_batch<2> : piola_of_batch<3>) (b, n, total ? nullptr : H, stress);
+  } else {
+    double tau[6 * BATCH + 8];
+    for (int p = 0; p < n; p++)
+      for (int c = 0; c < 6; c++) tau[6 * p + c] = b.J[p] * b.stress[c][p];
+    find_piola(first, n, H, tau, stress);
   }
-  find_piola(first, n, H, tau, stress);
-  for (int k = 0; k < nH * n; k++) good = good && std::isfinite(stress[k]);
+  // finite ones times zero are zero, and all others are not
+  double zero[2] = {0.0, 0.0};
+  for (int k = 0; k + 1 < nH * n; k += 2) {
+    zero[0] += 0.0 * stress[k];
+    zero[1] += 0.0 * stress[k + 1];
+  }
+  good = good && zero[0] == 0.0 && zero[1] == 0.0 && std::isfinite(stress[nH * n - 1]);
   if (averages)
     for (int p = 0; p < n; p++)
       mean_stress[first + p] = (b.stress[0][p] + b.stress[1][p] + b.stress[2][p]) / 3.0;
@@ -309,6 +370,7 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
   double sum = 0.0, stresses[10 * BATCH + 8];
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
     if (!stress(run, first, n, H, dt, stresses)) bad = 1;
+    if (keeps_deformations) keep_deformations(first, n, H);
     for (int p = 0; p < n; p++) {
       const double *const s = stresses + nH * p;
       double square = 0.0;
@@ -567,6 +629,7 @@ double MPMTangent::linearize(const double *u, double dt)
   if (adds()) volume_gradients.resize((std::size_t) atom->nmax * nH);
   double sum = 0.0, all;
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
+    if (keeps_deformations) keep_deformations(first, n, H);
     if (!run.material)
       std::fill_n(&tangents[(bigint) first * nH * nH], n * nH * nH, 0.0);
     else if (run.material->material->has_tangent())
@@ -667,29 +730,62 @@ void MPMTangent::volume_changes(const double *u, double *dV)
   });
 }
 
-/** As forces on points, one row of each deformation after the other. */
-void MPMTangent::mean_deformations(const double *u, std::vector<double> &of_nodes)
+/** The rotation in the deformation F, of dim times dim, in its place; in the plane, in that of its parts c and s. Unity where there is none. */
+static void take_rotation(int dim, double *F)
 {
-  const std::size_t nmax = atom->nmax, nnodes = field.grid.nnodes();
-  deformations.assign(3 * nmax * dim, 0.0);
-  gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
-    double F[9 * BATCH];
-    lattice_F(first, n, H, F);
-    for (int p = 0; p < n; p++)
-      for (int r = 0; r < dim; r++)
-        for (int c = 0; c < dim; c++)
-          deformations[3 * (nmax * r + first + p) + c] =
-              atom->vfrac[first + p] * F[9 * p + 3 * r + c];
-  });
+  if (dim == 2) {
+    const double c = F[0], s = F[1], size = std::hypot(c, s);
+    const bool good = size > 0.0 && std::isfinite(size);
+    F[0] = F[3] = good ? c / size : 1.0;
+    F[2] = good ? s / size : 0.0;
+    F[1] = -F[2];
+    return;
+  }
+  using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  Eigen::Map<Matrix> of(F);
+  const Eigen::JacobiSVD<Matrix> parts(of, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix R = parts.matrixU() * parts.matrixV().transpose();
+  if (!(of.determinant() > 0.0) || !R.allFinite()) R.setIdentity();
+  of = R;
+}
+
+/** As forces on points. In the plane, a rotation is the direction of F_xx + F_yy and F_yx - F_xy; in space there is one force for each row of F. */
+void MPMTangent::keep_deformations(int first, int n, const double *H)
+{
+  double F[9 * BATCH];
+  lattice_F(first, n, H, F);
+  const std::size_t nmax = atom->nmax;
+  for (int p = 0; p < n; p++) {
+    const std::size_t i = first + p;
+    const double V = atom->vfrac[i], *const f = F + 9 * p;
+    if (dim == 2) {
+      deformations[3 * i] = V * (f[0] + f[4]);
+      deformations[3 * i + 1] = V * (f[3] - f[1]);
+      continue;
+    }
+    for (int r = 0; r < 3; r++)
+      for (int c = 0; c < 3; c++) deformations[3 * (nmax * r + i) + c] = V * f[3 * r + c];
+  }
+}
+
+void MPMTangent::keep_deformations(bool keeps)
+{
+  keeps_deformations = keeps;
+  if (keeps) deformations.assign(3 * (std::size_t) atom->nmax * (dim == 2 ? 1 : 3), 0.0);
+}
+
+void MPMTangent::mean_rotations(const std::vector<int64_t> &of, std::vector<double> &rotations)
+{
   std::fill(P.begin(), P.end(), 0.0);
   std::fill(hoop_stress.begin(), hoop_stress.end(), 0.0);
-  of_nodes.resize(nnodes * nL);
-  std::vector<double> row(nnodes * dim);
-  for (int r = 0; r < dim; r++) {
-    scatter(&deformations[3 * nmax * r], row.data());
-    for (std::size_t n = 0; n < nnodes; n++)
-      std::copy_n(&row[n * dim], dim, &of_nodes[n * nL + dim * r]);
+  rotations.resize(of.size() * nL);
+  std::vector<double> row(field.grid.nnodes() * dim);
+  for (int r = 0; r < (dim == 2 ? 1 : 3); r++) {
+    scatter(&deformations[3 * (std::size_t) atom->nmax * r], row.data());
+    for (std::size_t k = 0; k < of.size(); k++)
+      std::copy_n(&row[of[k] * dim], dim, &rotations[k * nL + dim * r]);
   }
+  for (std::size_t k = 0; k < of.size(); k++) take_rotation(dim, &rotations[k * nL]);
 }
 
 void MPMTangent::find_moduli(std::vector<double> &moduli) const

@@ -79,8 +79,11 @@ class MPMTangent : protected Pointers {
   void volume_changes(const double *u, double *dV);
   /** [n] Moduli of points that cannot widen, by their tangents, the mean of all axes [pressure]. */
   void find_moduli(std::vector<double> &moduli) const;
-  /** Mean deformation of the places of the lattice after the motion u of the points around each node, [node][dim][dim], times a factor. Collective. */
-  void mean_deformations(const double *u, std::vector<double> &of_nodes);
+  /** From now on, forces() and linearize() keep how points are deformed; or no more. */
+  void keep_deformations(bool keeps);
+  /** [k][dim][dim] Rotations of the places of the lattice around the nodes of a list, by the mean deformation of the points there after the last motion
+   *  that was kept; unity where there are no points. Collective. */
+  void mean_rotations(const std::vector<int64_t> &of, std::vector<double> &rotations);
   /** Minus the change of forces of each node by its own motion alone: [node][dim][dim]. Collective. */
   void diagonal(std::vector<double> &blocks);
   /** Forces of loads that follow the deformation after the motion u, less those that atom->f has. Collective. */
@@ -126,6 +129,8 @@ class MPMTangent : protected Pointers {
   void move_points(const double *u);
   bool add_between(const double *u, double &carried);
 
+  bool keeps_deformations = false;
+  void keep_deformations(int first, int n, const double *H);
   template <class Use> void gather(const double *u, const Use &use);
   void scatter(const double *forces_of_points, double *force);
   bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
