@@ -101,6 +101,25 @@ SERIAL_TEST(Channel, IsWiderThanItsMouth)
   EXPECT_LT(measured("divergence", run.fix("w")->compute_vector(DIVERGENCE)), 1e-6);
 }
 
+// A channel between regions that cut cells in the middle: as much flows as comes, and not what is left of it in cut cells
+SERIAL_TEST(Channel, BetweenRegions)
+{
+  Scene run(
+      plane("si", "f f", "0 20 0 12", 1, 0.3) +
+      "region low block INF INF INF 1.5 INF INF\nregion high block INF INF 9.5 INF INF INF\n"
+      "region mouth block 0 2.3 1.5 9.5 INF INF\nregion out block 17.6 INF INF INF INF INF\n"
+      "region water block 2.3 17.6 1.5 9.5 INF INF\ncreate_points 1 region water spacing 0.5\n"
+      "fix in all mpm/emit 1 region mouth velocity 0.37 0 0\nfix w all mpm/incompressible 1.0 "
+      "1000 region low region high\nfix out all mpm/absorb region out\ntimestep 0.8\nrun 40\n");
+  double sum = 0.0, n = 0.0;
+  for (const auto &s : run.gather())
+    if (s.x[0] > 6.0 && s.x[0] < 14.0) {
+      sum += s.v[0];
+      n++;
+    }
+  EXPECT_NEAR(measured("mean velocity / inflow", sum / n / 0.37), 1.0, 0.005);
+}
+
 // With friction at its walls, the flow in the channel becomes that of Poiseuille, of the rate that comes
 SERIAL_TEST(Channel, BecomesPoiseuille)
 {

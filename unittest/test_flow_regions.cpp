@@ -261,4 +261,15 @@ SERIAL_TEST(Regions, BadInput)
       "create_points 1 region dry spacing 0.05\n" +
       fix + "region plate\ntimestep 0.001\nrun 1\n";
   EXPECT_EQ(lines_that_say(plate, "thinner than a node spacing").size(), 1u);
+  for (const double gap : {0.07, 0.2}) {
+    const auto blocks =
+        plane("si", "f f", "0 1 0 1", 1, 0.02) +
+        strprintf(
+            "region a block 0.15 0.4 0.2 0.8 INF INF\nregion b block %g 0.9 0.2 0.8 INF INF\n",
+            0.4 + gap) +
+        "region u union 2 a b side out\ncreate_points 1 region u spacing 0.05\n" + fix +
+        "region a region b\ntimestep 0.001\nrun 1\n";
+    EXPECT_EQ(lines_that_say(blocks, "gaps of less than a node spacing").size(),
+              gap < 0.1 ? 1u : 0u);
+  }
 }

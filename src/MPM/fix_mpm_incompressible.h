@@ -47,6 +47,7 @@ struct MPMIncompressibleOptions {
   double tension = 0.0;
   double angle = 90.0;    ///< between surfaces and walls, degrees
   Transfer transfer = APIC;
+  bool transfer_is_given = false;
   double flip = 0.0;       ///< share of FLIP
   double reflect = 0.0;    ///< share of the change by the pressure that comes once more
   double spread = 0.5;     ///< share of an excess of points that spreads in a step

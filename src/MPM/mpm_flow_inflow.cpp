@@ -9,6 +9,7 @@
 #include "mpm_flow_inflow.h"
 
 #include "fix_mpm_emit.h"
+#include "mpm_flow_regions.h"
 #include "mpm_mouth.h"
 
 #include "error.h"
@@ -27,6 +28,9 @@ using namespace MPM_NS;
 static constexpr double AT_FACE = 1.0e-6;
 // component of the direction of a flow along an axis of the lattice
 static constexpr double ALONG = 1.0 - 1.0e-9;
+
+// least open part of a face over the share of a section in it: that of a corner that columns of points just fit in
+static constexpr double LEAST_OPEN = 0.25;
 
 MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, const Fix &flow) :
     Pointers(lmp), cells(cells)
@@ -83,7 +87,8 @@ void MPMFlowInflow::find_section(Mouth &one) const
     one.section.push_back({{index[0], index[1]}, area / face});
 }
 
-void MPMFlowInflow::find()
+/** What flows through a face that a region cuts is its velocity times the share that is open, which has all of the section. */
+void MPMFlowInflow::find(const MPMFlowRegions *regions)
 {
   const int dim = cells.lattice.dim;
   const double h = cells.lattice.h;
@@ -104,7 +109,9 @@ void MPMFlowInflow::find()
     for (const auto &part : one.section) {
       for (int face = one.first; face <= one.last; face++)
         visit(face, part, [&](int64_t number) {
-          held.push_back({number * dim + one.axis, part.share * v});
+          const double open = regions ? regions->open(number, one.axis) : 1.0;
+          held.push_back(
+              {number * dim + one.axis, part.share * v / std::max(open, LEAST_OPEN * part.share)});
         });
       visit(upstream, part, [&](int64_t number) {
         source[number] += part.share * std::fabs(v) / h;

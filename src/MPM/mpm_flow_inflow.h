@@ -15,6 +15,7 @@
 
 namespace LAMMPS_NS {
 class FixMPMEmit;
+class MPMFlowRegions;
 
 /** Fluid that comes into an incompressible flow through the mouths of fix mpm/emit, along an axis of the lattice.
  *
@@ -27,8 +28,8 @@ class MPMFlowInflow : protected Pointers {
   /** The mouths of points that belong to this flow. */
   MPMFlowInflow(class LAMMPS *, const MPMFlowLattice &, const class Fix &flow);
   bool any() const { return !mouths.empty(); }
-  /** Velocities of this step, and the faces that there are; collective. */
-  void find();
+  /** Velocities of this step, and the faces that there are; collective. regions: that cut these, null: none. */
+  void find(const MPMFlowRegions *regions);
   /** Velocities [cell][dim] of faces in mouths, and where those are not solved for, factor 0 of the gradient of the pressure, null: only
    *  velocities. */
   void hold(std::vector<double> &velocity, std::vector<double> *mobility) const;

@@ -28,6 +28,8 @@ using namespace MPM_NS;
 
 // distance in which a wall is looked at, and in which closed faces have its normal velocity, in spacings
 static constexpr double FAR = 4.0, HELD = 3.5;
+// distance between two regions from which on there is a gap, in spacings
+static constexpr double LEAST_GAP = 0.05;
 // open share of a face that is none but rounding
 static constexpr double NO_SHARE = 1.0e-9;
 // points are kept so far outside of walls, in spacings
@@ -400,7 +402,26 @@ void MPMFlowRegions::find_cuts()
   std::vector<double> flag(cells.size(), 0.0);
   cuts.clear();
   helds.clear();
-  int nthin = 0;
+  int nthin = 0, ngaps = 0;
+
+  // Less than a spacing between two regions that face each other: a cell has a part of one wall, so that forces on the other one would be
+  // those on this
+
+  const auto is_gap = [&](const MPMFlowLattice::Cell &cell) {
+    constexpr double AGAINST = -0.5, middle[3] = {0.5, 0.5, 0.5};
+    double x[3], normal[2][3];
+    int wall;
+    place(cell.index, middle, x);
+    const double first = distance(x, far, wall);
+    normal_at(wall, x, normal[0]);
+    for (int w = 0; w < n(); w++) {
+      const double sum = w == wall ? 0.0 : first + distance_from(walls[w], x, far);
+      if (!(sum > LEAST_GAP * h && sum < 0.999 * h)) continue;
+      normal_at(w, x, normal[1]);
+      if (MathExtra::dot3(normal[0], normal[1]) < AGAINST) return 1;
+    }
+    return 0;
+  };
   for (int k = 0; k < (int) cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
     Cut cut = {cell.number, 0, {0.0, 0.0, 0.0}};
@@ -415,6 +436,7 @@ void MPMFlowRegions::find_cuts()
     }
     if (most == 0.0) flag[cell.number] = 1.0;
     if (!told_of_thin && levels[cell.number] < 0.5 * h) nthin += is_thin(cell);
+    if (!told_of_thin && std::fabs(levels[cell.number]) < 0.5 * h) ngaps += is_gap(cell);
     double x[3];
     if (!whole && most > 0.0) {
       constexpr double middle[3] = {0.5, 0.5, 0.5};
@@ -440,7 +462,19 @@ void MPMFlowRegions::find_cuts()
   }
   cells.publish(flag.data(), 1);
   for (int64_t number = 0; number < cells.size(); number++) closed[number] = flag[number] > 0.0;
-  if (!told_of_thin) warn_of_thin(nthin);
+  if (told_of_thin) return;
+  warn_of_thin(nthin);
+  int all_gaps;
+  MPI_Allreduce(&ngaps, &all_gaps, 1, MPI_INT, MPI_SUM, world);
+  if (all_gaps == 0) return;
+  told_of_thin = true;
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/incompressible: regions leave gaps of less than a node spacing in {} cells, in "
+        "which the flow, its pressure, and the forces on either region are wrong: use a smaller "
+        "node spacing, or close the gap",
+        all_gaps);
 }
 
 /** Is there a wall between the middles of opposite faces that are open? */
