@@ -236,6 +236,7 @@ class FixMPMContact :
   // in trials
 
   bool tries = false;    // are the steps of this run those of a solver?
+  bool told_of_inclined = false;
   std::vector<Tie> ties;
   std::vector<Link> links;
   std::vector<char> owned_pairs;    // of nodes that this rank counts
@@ -301,6 +302,7 @@ class FixMPMContact :
                int axis);
   void find_ties();
   void check_overlap();
+  void warn_of_inclined();
   double slip_length(const Tie &) const;
   void find_slip(const Tie &, const double *u, double *slip) const;
   void change_of_direction(const Tie &, const double *slip, double *change) const;

@@ -53,6 +53,8 @@ static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;    // see fix_mpm_co
 static constexpr double ROOM =
     1.1;    // for what bodies that overlap at the start of a run share later
 static constexpr double STILL_RIGHT = 1.0e-4;    // the same in the end
+static constexpr double ALIGNED = 0.98;          // cosine between a normal and an axis, least
+static constexpr double FEW = 0.2;               // of ties, which can be those at edges
 static constexpr int AT_ONCE = 6;                // times that all is changed
 
 /* ---------------------------------------------------------------------- */
@@ -383,6 +385,30 @@ void FixMPMContact::begin_trials(MPMField &, double dt, double, double eps, bool
     if (any && tie.gap <= NEXT_TO * h) tie.gap = 0.0;
     tie.active = any ? tie.gap == 0.0 : rests && tie.gap < NEARBY * h;
   }
+  if (!told_of_inclined) warn_of_inclined();
+}
+
+/** Where points in a lattice make steps along an interface, their stresses scatter. Collective. */
+void FixMPMContact::warn_of_inclined()
+{
+  bigint mine[2] = {0, 0}, all[2];    // ties that touch, those of them that are inclined
+  for (const auto &tie : ties) {
+    if (!tie.owned || !tie.active) continue;
+    double along = 0.0;
+    for (const double n : tie.n) along = std::max(along, std::fabs(n));
+    mine[0]++;
+    if (along < ALIGNED) mine[1]++;
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if ((double) all[1] <= FEW * (double) all[0]) return;
+  told_of_inclined = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/contact {}: bodies touch along a surface that is inclined to the axes "
+                   "of the lattice: in implicit steps the stress of single points next to it can "
+                   "be wrong by half of itself, and the force by some percent: use means of many "
+                   "points there, and points that follow the surfaces of bodies",
+                   id);
 }
 
 /* ----------------------------------------------------------------------
