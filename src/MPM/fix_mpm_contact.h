@@ -175,6 +175,10 @@ class FixMPMContact :
     void move_mirrors(const double *record, const std::array<double, 3> &before);
 
     void mark_near(int slot);
+    const double *gradient_of(int slot, int n) const
+    {
+      return &gradient[3 * ((int64_t) slot * MPM_NS::NODES_PER_BLOCK + n)];
+    }
   };
 
   // contact of which a solver decides (fix_mpm_contact_trial.cpp)
@@ -184,14 +188,16 @@ class FixMPMContact :
     double *ra, *rb;       // records
     double share, n[3];    // of the interface; normal there
   };
-  struct Tie {                  // two bodies at a line of nodes through their interface
-    int first, last;            // range in links
-    int a, b;                   // places in bodies
-    bool owned;                 // in sums
-    bool active;                // it touches
-    double n[3];                // mean normal from a to b
-    double gap;                 // that is to be closed [distance]
-    double diagonal[3];         // of C P_w M^-1 C^T
+  struct Tie {             // two bodies at a line of nodes through their interface
+    int first, last;       // range in links
+    int a, b;              // places in bodies
+    bool owned;            // in sums
+    bool active;           // it touches
+    double n[3];           // mean normal from a to b
+    double along[2][3];    // unit vectors along the interface, or zero
+    double gap;            // that is to be closed [distance]
+    // rows of C are along the normals and, with law stick, along the interface: diagonal of C P_w M^-1 C^T
+    double diagonal[3];
     double push[3], base[3];    // of rows: impulse so far, and that by the motion of walls alone
     double force[3];            // of rows, of a on b
     // friction, see fix_mpm_boundary_trial.cpp: slip of a on b in the step, its direction as an unknown of its own, force on a
@@ -236,7 +242,6 @@ class FixMPMContact :
   // in trials
 
   bool tries = false;    // are the steps of this run those of a solver?
-  bool told_of_inclined = false;
   std::vector<Tie> ties;
   std::vector<Link> links;
   std::vector<char> owned_pairs;    // of nodes that this rank counts
@@ -300,9 +305,17 @@ class FixMPMContact :
   bool measure_gap(Tie &, int axis, const int *index, int low, int high, double &gap) const;
   void add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first, std::size_t last,
                int axis);
+  void find_tangents(Tie &, int held) const;
+  static bool can_slide(const Tie &tie)
+  {
+    return tie.along[0][0] != 0.0 || tie.along[0][1] != 0.0 || tie.along[0][2] != 0.0;
+  }
+  const double *direction(const Tie &tie, const Link &link, int row) const
+  {
+    return row == 0 ? link.n : tie.along[row - 1];
+  }
   void find_ties();
   void check_overlap();
-  void warn_of_inclined();
   double slip_length(const Tie &) const;
   void find_slip(const Tie &, const double *u, double *slip) const;
   void change_of_direction(const Tie &, const double *slip, double *change) const;

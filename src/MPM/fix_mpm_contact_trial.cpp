@@ -22,7 +22,7 @@
 //
 //    g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
 //
-// What touches is held along the normal (law stick: along all axes) without any penalty, as long as it would not be pulled.
+// What touches is held along the normal (law stick: and along the mean plane of the interface of the line) without any penalty, as long as it would not be pulled.
 
 #include "fix_mpm_contact.h"
 
@@ -53,8 +53,8 @@ static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;    // see fix_mpm_co
 static constexpr double ROOM =
     1.1;    // for what bodies that overlap at the start of a run share later
 static constexpr double STILL_RIGHT = 1.0e-4;    // the same in the end
-static constexpr double ALIGNED = 0.98;          // cosine between a normal and an axis, least
-static constexpr double FEW = 0.2;               // of ties, which can be those at edges
+static constexpr double ALONG_AXIS = 0.99;       // cosine between a normal and an axis
+static constexpr double HELD = 1.0e-12;          // of what rows would move without walls
 static constexpr int AT_ONCE = 6;                // times that all is changed
 
 /* ---------------------------------------------------------------------- */
@@ -98,7 +98,8 @@ int FixMPMContact::rows_of_tie() const
 /* ----------------------------------------------------------------------
    Two bodies at a node, with the integral A of the gradient of its function over their interface as area and normal. The integrals over the
    bodies are g_a = A + L_a and g_b = -A + L_b with those of their free sides, which are in proportion to the volumes that they have at the node where one side
-   is the continuation of the other. L_a + L_b is g_a + g_b, so that
+   is the continuation of the other, also at walls (with images, as explicit steps have them, an inclined interface would not be in balance next to a
+   wall, where nodes and images move along it each for itself). L_a + L_b is g_a + g_b, so that
 
       A = [g_a - g_b - (g_a + g_b) (V_a - V_b)/(V_a + V_b)]/2
 ------------------------------------------------------------------------- */
@@ -107,10 +108,9 @@ bool FixMPMContact::make_trial_pair(const Common &c, int n, int a, int b, Pair &
 {
   constexpr double SMALL = 1.0e-10;
   const MPMField &field = *bodies[a].field;
-  double ga[3], gb[3];
+  const double *const ga = bodies[a].gradient_of(c.slot[a], n),
+                      *const gb = bodies[b].gradient_of(c.slot[b], n);
   int index[3];
-  gradient_at(bodies[a], c.slot[a], n, ga);
-  gradient_at(bodies[b], c.slot[b], n, gb);
   field.grid.node_index(field.grid.blocks[c.slot[a]], n, index);
   const double Va = share_of(bodies[a], index), Vb = share_of(bodies[b], index);
   if (!(Va + Vb > 0.0)) return false;
@@ -220,6 +220,33 @@ bool FixMPMContact::measure_gap(Tie &tie, int axis, const int *index, int low, i
   return true;
 }
 
+/** Directions along the interface in which bodies can move against each other; none where walls hold them: held, components in both bodies. */
+void FixMPMContact::find_tangents(Tie &tie, int held) const
+{
+  const int dim = bodies[tie.a].field->lattice.dim;
+  MathExtra::zero3(tie.along[0]);
+  MathExtra::zero3(tie.along[1]);
+  int axis = -1, nheld = 0, least = 0;
+  for (int d = 0; d < dim; d++) {
+    if (std::fabs(tie.n[d]) < std::fabs(tie.n[least])) least = d;
+    if (!(held >> d & 1) || std::fabs(tie.n[d]) > ALONG_AXIS) continue;
+    axis = d;
+    nheld++;
+  }
+  if (dim == 2) {
+    if (nheld) return;
+    tie.along[0][0] = -tie.n[1];
+    tie.along[0][1] = tie.n[0];
+    return;
+  }
+  if (nheld > 1) return;
+  double e[3] = {0.0, 0.0, 0.0};
+  e[nheld ? axis : least] = 1.0;
+  MathExtra::cross3(tie.n, e, tie.along[0]);
+  MathExtra::norm3(tie.along[0]);
+  if (!nheld) MathExtra::cross3(tie.n, tie.along[0], tie.along[1]);
+}
+
 /** places: node index along the axis and pair, of which those from first to last are next to each other. */
 void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first,
                             std::size_t last, int axis)
@@ -238,6 +265,13 @@ void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std:
     for (int d = 0; d < 3; d++) tie.n[d] += pair.area * pair.n[d];
   }
   MathExtra::norm3(tie.n);
+  int held = (1 << dim) - 1;    // components that walls hold, or take from images, in both bodies
+  for (std::size_t k = first; k < last; k++) {
+    const Pair &pair = pairs[places[k % places.size()].second];
+    const auto &wa = pair.walls_a, &wb = pair.walls_b;
+    held &= (wa.held | wa.outside) & (wb.held | wb.outside);
+  }
+  find_tangents(tie, held);
   const auto number = [&](const Body &body, const double *record) {
     return (record - body.field->grid.nodes()) / body.field->grid.nreal;
   };
@@ -250,22 +284,26 @@ void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std:
                  pair.rb,
                  pair.area / area,
                  {pair.n[0], pair.n[1], pair.n[2]}};
-    for (int d = 0; d < dim; d++) {
-      double soft = 0.0;
+    double soft[3] = {0.0, 0.0, 0.0};
+    for (int d = 0; d < dim; d++)
       for (int body = 0; body < 2; body++) {
         const auto &walls = body ? pair.walls_b : pair.walls_a;
         if (walls.held >> d & 1) continue;
-        soft += 1.0 / (walls.mirrored >> d & 1 ? walls.mass[d] : (body ? pair.rb : pair.ra)[3]);
+        soft[d] += 1.0 / (walls.mirrored >> d & 1 ? walls.mass[d] : (body ? pair.rb : pair.ra)[3]);
       }
-      soft *= link.share * link.share;
-      if (law == STICK)
-        tie.diagonal[d] += soft;
-      else
-        tie.diagonal[0] += soft * link.n[d] * link.n[d];
+    for (int r = 0; r < rows_of_tie(); r++) {
+      const double *const e = direction(tie, link, r);
+      for (int d = 0; d < dim; d++)
+        tie.diagonal[r] += link.share * link.share * soft[d] * e[d] * e[d];
     }
     links.push_back(link);
   }
   tie.last = (int) links.size();
+  double free = 0.0;
+  for (int k = tie.first; k < tie.last; k++)
+    free += links[k].share * links[k].share * (1.0 / links[k].ra[3] + 1.0 / links[k].rb[3]);
+  for (double &diagonal : tie.diagonal)
+    if (diagonal < HELD * free) diagonal = 0.0;
 
   int index[3];
   a.field->grid.node_index(number(a, begin.ra), index);
@@ -385,30 +423,6 @@ void FixMPMContact::begin_trials(MPMField &, double dt, double, double eps, bool
     if (any && tie.gap <= NEXT_TO * h) tie.gap = 0.0;
     tie.active = any ? tie.gap == 0.0 : rests && tie.gap < NEARBY * h;
   }
-  if (!told_of_inclined) warn_of_inclined();
-}
-
-/** Where points in a lattice make steps along an interface, their stresses scatter. Collective. */
-void FixMPMContact::warn_of_inclined()
-{
-  bigint mine[2] = {0, 0}, all[2];    // ties that touch, those of them that are inclined
-  for (const auto &tie : ties) {
-    if (!tie.owned || !tie.active) continue;
-    double along = 0.0;
-    for (const double n : tie.n) along = std::max(along, std::fabs(n));
-    mine[0]++;
-    if (along < ALIGNED) mine[1]++;
-  }
-  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  if ((double) all[1] <= FEW * (double) all[0]) return;
-  told_of_inclined = true;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix mpm/contact {}: bodies touch along a surface that is inclined to the axes "
-                   "of the lattice: in implicit steps the stress of single points next to it can "
-                   "be wrong by half of itself, and the force by some percent: use means of many "
-                   "points there, and points that follow the surfaces of bodies",
-                   id);
 }
 
 /* ----------------------------------------------------------------------
@@ -434,20 +448,18 @@ void FixMPMContact::find_approach(const double *v, bool with_gaps, double *rows)
 {
   const int dim = bodies[0].field->lattice.dim, nrow = rows_of_tie();
   for (const auto &tie : ties) {
-    double u[3] = {0.0, 0.0, 0.0}, along = 0.0;
+    double u[3] = {0.0, 0.0, 0.0};
     for (int k = tie.first; k < tie.last; k++) {
       const Link &link = links[k];
-      for (int d = 0; d < dim; d++) {
-        const double du = link.share * (v[dim * link.a + d] - v[dim * link.b + d]);
-        u[d] += du;
-        along += link.n[d] * du;
+      for (int r = 0; r < nrow; r++) {
+        const double *const e = direction(tie, link, r);
+        for (int d = 0; d < dim; d++)
+          u[r] += link.share * e[d] * (v[dim * link.a + d] - v[dim * link.b + d]);
       }
     }
     const double closing = with_gaps && closes ? tie.gap / trial_dt : 0.0;
     for (int r = 0; r < nrow; r++, rows++)
-      *rows = !tie.active || tie.diagonal[r] == 0.0
-          ? 0.0
-          : (nrow == 1 ? along - closing : u[r] - closing * tie.n[r]);
+      *rows = !tie.active || tie.diagonal[r] == 0.0 ? 0.0 : u[r] - (r == 0 ? closing : 0.0);
   }
 }
 
@@ -483,8 +495,10 @@ void FixMPMContact::add_force(const Tie &tie, const Link &link, const double *ro
                               double *force) const
 {
   const int dim = bodies[tie.a].field->lattice.dim;
-  for (int d = 0; d < dim; d++)
-    force[d] += link.share * (law == STICK ? rows[d] : rows[0] * link.n[d]);
+  for (int r = 0; r < rows_of_tie(); r++) {
+    const double *const e = direction(tie, link, r);
+    for (int d = 0; d < dim; d++) force[d] += link.share * rows[r] * e[d];
+  }
 }
 
 void FixMPMContact::spread(const double *rows, double *v) const
@@ -584,7 +598,7 @@ void FixMPMContact::add_friction(const double *u, double *force)
   if (!has_friction()) return;
   for (auto &tie : ties) {
     MathExtra::zero3(tie.rubs);
-    if (!tie.active) continue;
+    if (!tie.active || !can_slide(tie)) continue;
     find_slip(tie, u, tie.slip);
     if (!(tie.force[0] > 0.0)) continue;
     const double length = slip_length(tie);
@@ -598,7 +612,7 @@ void FixMPMContact::add_friction_change(const double *du, double scale, double *
 {
   if (!has_friction()) return;
   for (auto &tie : ties) {
-    if (!tie.active || !(tie.force[0] > 0.0)) continue;
+    if (!tie.active || !can_slide(tie) || !(tie.force[0] > 0.0)) continue;
     double slip[3], turn[3], change[3];
     find_slip(tie, du, slip);
     change_of_direction(tie, slip, turn);
@@ -613,7 +627,7 @@ void FixMPMContact::correct(const double *du)
 {
   if (!has_friction()) return;
   for (auto &tie : ties) {
-    if (!tie.active) continue;
+    if (!tie.active || !can_slide(tie)) continue;
     double slip[3], turn[3];
     find_slip(tie, du, slip);
     change_of_direction(tie, slip, turn);
@@ -629,7 +643,7 @@ void FixMPMContact::add_friction_blocks(double *blocks)
   const int dim = bodies[0].field->lattice.dim;
   if (!has_friction()) return;
   for (const auto &tie : ties) {
-    if (!tie.active || !(tie.force[0] > 0.0)) continue;
+    if (!tie.active || !can_slide(tie) || !(tie.force[0] > 0.0)) continue;
     const double slope = kinetic_friction * tie.force[0];
     for (int e = 0; e < dim; e++) {
       double along[3], turn[3];
@@ -658,7 +672,7 @@ bool FixMPMContact::decide(const double *u)
   for (std::size_t k = 0; k < ties.size(); k++) {
     const Tie &tie = ties[k];
     if (!tie.active) continue;
-    along[k] = law == STICK ? MathExtra::dot3(tie.force, tie.n) : tie.force[0];
+    along[k] = tie.force[0];
     if (tie.owned) mine = std::max(mine, std::fabs(along[k]));
   }
   MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
