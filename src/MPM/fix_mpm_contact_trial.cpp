@@ -85,7 +85,7 @@ void FixMPMContact::refuse_trials() const
                id, what, instead);
 }
 
-/** Rows of a tie: along the normal, or along all axes. */
+/** Rows of a tie: along the normals, and with law stick also along the interface. */
 int FixMPMContact::rows_of_tie() const
 {
   return law == STICK ? bodies[0].field->lattice.dim : 1;
