@@ -93,14 +93,17 @@ SERIAL_TEST(Boat, Floats)
   for (const double h : {0.04, 0.02}) {
     const double depth = 0.06, level = (0.8 - 0.4 * (0.4 - 0.3337) + 0.4 * depth) / 2.0;
     Scene run(boat(h, 300.0, 0.4337, "hold x rz") + "run 200\n");
-    double sum = 0.0;
+    double sum = 0.0, lift = 0.0;
     int n = 0;
     run.each_step([&](double **) {
       sum += body(run, CENTER + 1);
+      lift += run.fix("w")->compute_vector(15);    // the flow has the same force on its region
       n++;
     });
     run.commands("run 200\n");
     EXPECT_NEAR(measured("depth over theory", (level - (sum / n - 0.1)) / depth), 1.0, 0.02);
+    EXPECT_NEAR(measured("force on the region over weight", lift / n / (300.0 * 0.08 * 9.81)), 1.0,
+                0.02);
   }
 }
 

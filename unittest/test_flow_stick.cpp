@@ -77,7 +77,7 @@ std::string honey(int dim, double h)
 std::string fixes(double h)
 {
   return strprintf("fix w all mpm/incompressible %g 1000 viscosity 100 implicit yes stick bowl "
-                   "tolerance 1e-11\n",
+                   "tolerance 1e-12\n",
                    h) +
       "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5 max 0.02\n";
 }

@@ -862,12 +862,24 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
     }
   if (regions) {
     std::fill(last.regions.begin(), last.regions.end(), 0.0);
+    const double duration = pressure_to_psi / acceleration_of_stress();
+    const int dim = cells.lattice.dim, width = 3 * dim + 1;
     regions->add_forces(
         pressure->psi.data(),
         [this](int64_t number) {
           return pressure->is_wet(number);
         },
-        last.regions.data());
+        [&](const MPMFlowLattice::Cell &cell, double *push) {    // by forces, at its faces
+          for (int c = 0; c < dim; c++) {
+            double force_of_points = 0.0, mass = 0.0;
+            for (const int64_t k : {(int64_t) cell.number, (int64_t) cell.near[2 * c + 1]}) {
+              force_of_points += sums[k * width + 2 * dim + c];
+              mass += sums[k * width + dim + c];
+            }
+            push[c] = mass > 0.0 ? duration * force->ftm2v * force_of_points / mass : 0.0;
+          }
+        },
+        1.0 / (1.0 + reflect), last.regions.data());
     for (double &f : last.regions) f /= pressure_to_psi * force->nktv2p;
   }
   pressure->extend_into_air(pressures, surface_psi());
@@ -1069,25 +1081,33 @@ double FixMPMIncompressible::compute_vector(int k)
   return all;
 }
 
-/** The duration of the last step, and the limit of the one to come, with forces. */
+/** The duration of the last step, and the limit of the one to come, with forces; motion of regions. */
 void FixMPMIncompressible::write_restart(FILE *fp)
 {
   tagint tag;
   double mine = stable_dt(tag), limit;
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
   if (comm->me) return;
-  const double state[] = {dt_before, limit};
-  const int size = sizeof(state);
+  std::vector<double> state = {dt_before, limit, 0.0};
+  if (regions) {
+    const auto motion = regions->motion();
+    state[2] = (double) motion.size();
+    state.insert(state.end(), motion.begin(), motion.end());
+  }
+  const int size = state.size() * sizeof(double);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(state, size, 1, fp);
+  fwrite(state.data(), size, 1, fp);
 }
 
 void FixMPMIncompressible::restart(char *buf)
 {
-  double state[2];
+  double state[3];
   memcpy(state, buf, sizeof(state));
   dt_before = state[0];
   limit_before = state[1];
+  std::vector<double> motion((std::size_t) state[2]);
+  memcpy(motion.data(), buf + sizeof(state), motion.size() * sizeof(double));
+  if (regions) regions->set_motion(motion);
 }
 
 double FixMPMIncompressible::memory_usage()

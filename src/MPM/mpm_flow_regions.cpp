@@ -78,6 +78,52 @@ double positive(double a, double b, double c, double d)
 {
   return 0.25 * (positive(a, b, c) + positive(a, c, d) + positive(a, b, d) + positive(b, c, d));
 }
+
+/** Length, and its moment about the middle, of what is positive of a linear function on a segment of length one, to sum[2]. */
+void add_positive(double a, double b, double *sum)
+{
+  const double length = positive(a, b);
+  sum[0] += length;
+  sum[1] += 0.5 * length * (1.0 - length) * (a > b ? -1.0 : 1.0);
+}
+
+/** Area, and its moments, of what is positive of a linear function with the values f at the corners of a triangle, times weight, to sum[3]. */
+void add_positive(const double f[3], const double corner[3][2], double weight, double *sum)
+{
+  double x[4][2];    // of what is positive, a triangle or a square
+  int n = 0;
+  for (int k = 0; k < 3; k++) {
+    const int next = (k + 1) % 3;
+    if (f[k] > 0.0) std::copy_n(corner[k], 2, x[n++]);
+    if ((f[k] > 0.0) == (f[next] > 0.0)) continue;
+    const double part = f[k] / (f[k] - f[next]);
+    for (int e = 0; e < 2; e++) x[n][e] = corner[k][e] + part * (corner[next][e] - corner[k][e]);
+    n++;
+  }
+  for (int k = 2; k < n; k++) {
+    const double area = 0.5 * weight *
+        std::fabs((x[k - 1][0] - x[0][0]) * (x[k][1] - x[0][1]) -
+                  (x[k - 1][1] - x[0][1]) * (x[k][0] - x[0][0]));
+    sum[0] += area;
+    for (int e = 0; e < 2; e++) sum[1 + e] += area * (x[0][e] + x[k - 1][e] + x[k][e]) / 3.0;
+  }
+}
+
+/** The same of a square of area one with these corners, one after the other, about its middle. */
+void add_positive(double a, double b, double c, double d, double *sum)
+{
+  const double f[4] = {a, b, c, d};
+  constexpr double x[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+  for (int left_out = 0; left_out < 4; left_out++) {
+    double at[3], corner[3][2];
+    for (int k = 0; k < 3; k++) {
+      const int from = k < left_out ? k : k + 1;
+      at[k] = f[from];
+      std::copy_n(x[from], 2, corner[k]);
+    }
+    add_positive(at, corner, 0.5, sum);
+  }
+}
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
@@ -142,6 +188,8 @@ void MPMFlowRegions::find(double duration)
 {
   if (known && !any_moves && nbuild == cells.nbuild) return;
 
+  duration_of_motion = duration;
+
   // others may have looked at regions since the last step
 
   for (auto &wall : walls) {
@@ -166,6 +214,12 @@ void MPMFlowRegions::find(double duration)
       for (int d = 0; d < 3; d++) wall.spin[d] = rate * MPMRegionMotion::axis_of(wall.region)[d];
     }
     std::copy_n(end, 4, wall.before);
+    std::copy_n(wall.last, 9, wall.older);
+    std::copy_n(wall.shift, 3, wall.last);
+    std::copy_n(wall.spin, 3, wall.last + 3);
+    std::copy_n(wall.center, 3, wall.last + 6);
+    if (!wall.has_last) std::copy_n(wall.last, 9, wall.older);    // as if it had moved like that
+    wall.has_last = true;
   }
   find_shares();
   find_cuts();
@@ -424,7 +478,8 @@ void MPMFlowRegions::find_cuts()
   };
   for (int k = 0; k < (int) cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
-    Cut cut = {cell.number, 0, {0.0, 0.0, 0.0}};
+    Cut cut = {};
+    cut.cell = k;
     double most = 0.0;
     bool whole = true;
     for (int d = 0; d < dim; d++) {
@@ -442,6 +497,8 @@ void MPMFlowRegions::find_cuts()
       constexpr double middle[3] = {0.5, 0.5, 0.5};
       place(cell.index, middle, x);
       distance(x, far, cut.wall);
+      find_moments(cut);
+      find_change(cut, x);
       cuts.push_back(cut);
     }
     if (levels[cell.number] > 2.0 * h || levels[cell.number] <= -HELD * h) continue;
@@ -475,6 +532,80 @@ void MPMFlowRegions::find_cuts()
         "which the flow, its pressure, and the forces on either region are wrong: use a smaller "
         "node spacing, or close the gap",
         all_gaps);
+}
+
+/* ----------------------------------------------------------------------
+   integrals of the normal times the place over the part of a wall that is in a cell: what they are over all of the surface of what is open, its
+   volume, less those over the open faces
+------------------------------------------------------------------------- */
+
+void MPMFlowRegions::find_moments(Cut &cut) const
+{
+  const auto &cell = cells.cells[cut.cell];
+  const double h = cells.lattice.h, far = FAR * h, volume = cells.lattice.cell_volume();
+  const int ncorner = 1 << dim;
+  double level[8], of_face[3][2][3] = {};    // [axis][side]: area, and moments along the other axes
+  for (int k = 0; k < ncorner; k++) {
+    const double offset[3] = {(double) (k & 1), (double) (k >> 1 & 1), (double) (k >> 2 & 1)};
+    double x[3];
+    int any;
+    place(cell.index, offset, x);
+    level[k] = distance(x, far, any);
+  }
+  double faces = 0.0, square = 0.0;
+  for (int d = 0; d < dim; d++) {
+    const int e = d == 0 ? 2 : 1, f = d == 2 ? 2 : 4;
+    for (int s = 0; s < 2; s++) {
+      const int at = s ? 1 << d : 0;
+      if (dim == 2)
+        add_positive(level[at], level[at | e], of_face[d][s]);
+      else
+        add_positive(level[at], level[at | e], level[at | e | f], level[at | f], of_face[d][s]);
+      faces += 0.5 * of_face[d][s][0];
+    }
+    square += cut.area[d] * cut.area[d];
+  }
+  const double open =
+      (faces + levels[cell.number] / h * std::sqrt(square) * h / volume) / dim;    // in the cell
+  for (int d = 0; d < dim; d++)
+    for (int e = 0; e < dim; e++) {
+      const int k = 1 + (e > (d == 0 ? 1 : 0));    // the first or second one of the other axes
+      const auto *const low = of_face[d][0], *const high = of_face[d][1];
+      cut.moment[d][e] = volume * (d == e ? open - 0.5 * (low[0] + high[0]) : low[k] - high[k]);
+    }
+}
+
+/** Change of the velocity of what is at a place of a wall since the last step. */
+void MPMFlowRegions::find_change(Cut &cut, const double *x) const
+{
+  const auto &wall = walls[cut.wall];
+  if (!wall.moves) return;
+  double now[3], arm[3], turn[3];
+  velocity_at(cut.wall, x, now);
+  MathExtra::sub3(x, wall.older + 6, arm);
+  MathExtra::cross3(wall.older + 3, arm, turn);
+  for (int d = 0; d < 3; d++) cut.change[d] = now[d] - wall.older[d] - turn[d];
+  MathExtra::cross3(wall.spin, now, turn);    // along its way
+  for (int d = 0; d < 3; d++) cut.change[d] += duration_of_motion * turn[d];
+}
+
+std::vector<double> MPMFlowRegions::motion() const
+{
+  std::vector<double> all;
+  for (const auto &wall : walls) {
+    all.push_back(wall.has_last ? 1.0 : 0.0);
+    all.insert(all.end(), wall.last, wall.last + 9);
+  }
+  return all;
+}
+
+void MPMFlowRegions::set_motion(const std::vector<double> &all)
+{
+  if (all.size() != 10 * walls.size()) return;    // other regions
+  for (int w = 0; w < n(); w++) {
+    walls[w].has_last = all[10 * w] > 0.0;
+    std::copy_n(&all[10 * w + 1], 9, walls[w].last);
+  }
 }
 
 /** Is there a wall between the middles of opposite faces that are open? */
@@ -597,7 +728,8 @@ void MPMFlowRegions::continue_surface(std::vector<double> &share) const
     place(cell.index, center, x);
     distance(x, FAR * cells.lattice.h, wall);
     normal_at(wall, x, normal);
-    if (slope < LEAST_SLOPE) {    // all as deep: a film along the wall
+    if (slope <
+        LEAST_SLOPE * std::min(1.0, 2.0 * mean / n)) {    // all as deep: a film along the wall
       for (int d = 0; d < 3; d++) up[d] = -normal[d];
       slope = 1.0;
     }

@@ -80,13 +80,29 @@ class MPMFlowRegions : protected Pointers {
   /** Depth of a place in a wall, at most far. */
   double depth(const double *x, double far) const;
 
-  /** Adds the force of potentials psi of owned cells, those that wet(number) is true of, to force[3 n()]. */
-  template <class Wet> void add_forces(const double *psi, const Wet &wet, double *force) const
+  /** Adds the force of potentials psi of owned cells, those that wet(number) is true of, to force[3 n()]. Along a wall psi differs from
+   *  that in the middle of a cell by its slope, which is known there: push(cell, slope) is the velocity that forces give the water around a cell, and the
+   *  pressure takes what is not the change of the velocity of the wall, or a share of that. */
+  template <class Wet, class Push>
+  void add_forces(const double *psi, const Wet &wet, const Push &push, double share,
+                  double *force) const
   {
-    for (const auto &cut : cuts)
-      if (wet(cut.number))
-        for (int d = 0; d < dim; d++) force[3 * cut.wall + d] += psi[cut.number] * cut.area[d];
+    for (const auto &cut : cuts) {
+      const auto &cell = cells.cells[cut.cell];
+      if (!wet(cell.number)) continue;
+      double slope[3];
+      push(cell, slope);
+      for (int d = 0; d < dim; d++) slope[d] -= share * cut.change[d];
+      for (int d = 0; d < dim; d++) {
+        double sum = psi[cell.number] * cut.area[d];
+        for (int e = 0; e < dim; e++) sum += slope[e] * cut.moment[d][e];
+        force[3 * cut.wall + d] += sum;
+      }
+    }
   }
+  /** Velocities of the walls in the last step, which their changes in the next one belong to, for restart files. */
+  std::vector<double> motion() const;
+  void set_motion(const std::vector<double> &);
   /** Psi in closed cells that points near walls reach, linearly from the wet cells around; psi is complete, and zero there. */
   void extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const;
 
@@ -102,11 +118,16 @@ class MPMFlowRegions : protected Pointers {
     bool moves = false;
     double before[4];    // shift and angle at the start of the step
     double shift[3] = {}, spin[3] = {},
-           center[3] = {};    // velocity, angular velocity about a place
+           center[3] = {};                 // velocity, angular velocity about a place
+    double last[9] = {}, older[9] = {};    // these, of the last step, and of the one before it
+    bool has_last = false;
   };
   struct Cut {    // owned cell with a part of a wall
-    int number, wall;
+    int cell, wall;
     double area[3];    // of the wall, into it
+    double moment
+        [3][3];    // integrals over it: component of the normal, place from the middle of the cell
+    double change[3];    // of its velocity since the last step
   };
   struct Held {    // closed face near a wall
     int cell, axis, wall;
@@ -125,7 +146,7 @@ class MPMFlowRegions : protected Pointers {
   std::vector<Held> helds;
   bigint nbuild = -1;
   bool any_moves = false, any_bodies = false, known = false, told_of_thin = false;
-  double speed = 0.0;
+  double speed = 0.0, duration_of_motion = 0.0;
   std::vector<double> levels;    // distances in the middle of cells, at most far
   mutable std::vector<double> changed, slopes, values;
 
@@ -138,6 +159,8 @@ class MPMFlowRegions : protected Pointers {
   void continue_surface(std::vector<double> &share) const;
   void find_shares();
   void find_cuts();
+  void find_moments(Cut &) const;
+  void find_change(Cut &, const double *x) const;
   bool is_thin(const MPMFlowLattice::Cell &) const;
   void warn_of_thin(int nthin);
 };
