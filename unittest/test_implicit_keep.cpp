@@ -93,6 +93,18 @@ SERIAL_TEST(Keep, OnlyWhileNodesAreTheSame)
   }
 }
 
+// points of a beam that bends come to other ranks, and its nodes with them: what is kept goes along
+TEST(Keep, NodesMayChangeRanks)
+{
+  for (const char *processors : {"processors * 1 1\n", "processors 1 * 1\n"}) {
+    Scene run(processors +
+              swing("frame total transfer flip 1.0", "newmark solver multigrid", 50.0) +
+              "run 24\n");
+    EXPECT_LE(measured("factors", run.fix("solve")->compute_vector(10)), 2.0);
+    EXPECT_LE(measured("iterations in a step", run.fix("solve")->compute_vector(5) / 24.0), 8.0);
+  }
+}
+
 // of a wall that moves, and begins to in the run
 SERIAL_TEST(Keep, WallsMayMove)
 {

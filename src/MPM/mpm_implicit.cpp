@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -103,16 +104,43 @@ template <class Use> void MPMImplicit::each_record(const Use &use)
 {
   for (auto &member : members) {
     double *record = member->field.grid.nodes();
-    for (int64_t n = member->first; n < member->end(); n++, record += 8) use(*member, n, record);
+    const int64_t end = member->end();
+    for (int64_t n = member->first; n < end; n++, record += 8) use(*member, n, record);
   }
 }
 
 /** use(n) for all nodes with a mass that this rank owns. */
 template <class Use> void MPMImplicit::each_owned(const Use &use) const
 {
-  for (const auto &member : members)
-    for (int64_t n = member->first; n < member->end(); n++)
-      if (mass[n] > 0.0 && member->owns(n)) use(n);
+  for (std::size_t k = 0; k < heavy_owned; k++) use(heavy[k]);
+}
+
+/** use(n, k) for all entries k of vectors, those of nodes n with a mass. The width is a constant in the innermost loop. */
+template <class Use> void MPMImplicit::each_entry(const Use &use) const
+{
+  const auto all = [&](auto dim) {
+    constexpr int W = decltype(dim)::value;
+    for (const int64_t n : heavy)
+      for (int d = 0; d < W; d++) use(n, W * n + d);
+  };
+  if (width == 2)
+    all(std::integral_constant<int, 2>());
+  else
+    all(std::integral_constant<int, 3>());
+}
+
+void MPMImplicit::find_heavy()
+{
+  heavy.clear();
+  heavy_records.clear();
+  for (const bool owned : {true, false}) {
+    each_record([&](const Member &member, int64_t n, double *record) {
+      if (!(mass[n] > 0.0) || member.owns(n) != owned) return;
+      heavy.push_back(n);
+      heavy_records.push_back(record);
+    });
+    if (owned) heavy_owned = heavy.size();
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -129,7 +157,7 @@ void MPMImplicit::take_nodes()
   if (by_reach) find_reach();
   mass.resize(nnodes);
   for (auto *list : {&before, &explicit_velocity, &outer, &inner, &from, &residual, &free, &trial,
-                     &change, &room})
+                     &change, &correction, &room})
     list->assign(nreals(), 0.0);
   each_record([&](const Member &, int64_t n, double *record) {
     mass[n] = record[3] > 0.0 ? record[3] : 0.0;
@@ -143,6 +171,7 @@ void MPMImplicit::take_nodes()
       before[width * n + d] = record[4 + d];
     }
   });
+  find_heavy();
 }
 
 /* ----------------------------------------------------------------------
@@ -178,13 +207,12 @@ void MPMImplicit::act(double *velocities)
 
 void MPMImplicit::act_by_walls(double *velocities)
 {
-  each_record([&](const Member &, int64_t n, double *record) {
-    for (int d = 0; d < width; d++) record[d] = velocities[width * n + d];
-  });
+  const std::size_t n = heavy.size();
+  for (std::size_t i = 0; i < n; i++)
+    for (int d = 0; d < width; d++) heavy_records[i][d] = velocities[width * heavy[i] + d];
   for (int k = 0; k < repeats; k++) field.plan->act_on_nodes(MPMNodeAction::TRIAL);
-  each_record([&](const Member &, int64_t n, const double *record) {
-    for (int d = 0; d < width; d++) velocities[width * n + d] = mass[n] > 0.0 ? record[d] : 0.0;
-  });
+  for (std::size_t i = 0; i < n; i++)
+    for (int d = 0; d < width; d++) velocities[width * heavy[i] + d] = heavy_records[i][d];
 }
 
 void MPMImplicit::find_constraints()
@@ -206,12 +234,12 @@ void MPMImplicit::find_constraints()
     wall_speed = std::sqrt(product(wall.data(), wall.data()));
     int index[3];
     for (std::size_t k = 0; k < members.size(); k++)
-      for (int64_t n = members[k]->first; n < members[k]->end(); n++) {
+      for (const int64_t n : heavy) {
+        if (n < members[k]->first || n >= members[k]->end()) continue;
         members[k]->field.grid.node_index(n - members[k]->first, index);
         for (int d = 0; d < width; d++)
-          once[width * n + d] = mass[n] > 0.0
-              ? std::sin(1.0 + 3.1 * index[0] + 5.3 * index[1] + 7.7 * index[2] + 2.3 * d + 4.1 * k)
-              : 0.0;
+          once[width * n + d] =
+              std::sin(1.0 + 3.1 * index[0] + 5.3 * index[1] + 7.7 * index[2] + 2.3 * d + 4.1 * k);
       }
     project(once.data());
     twice = once;
@@ -314,24 +342,29 @@ void MPMImplicit::project(double *x)
   if (wall_speed > 0.0) {
     const double size = std::sqrt(product(x, x));
     if (size > 0.0) scale = wall_speed / size;
-    for (int64_t k = 0; k < nreals(); k++) x[k] *= scale;
+    each_entry([&](int64_t, int64_t k) {
+      x[k] *= scale;
+    });
   }
   of_pushes = scale;
   act(x);
   if (wall_speed > 0.0)
-    for (int64_t k = 0; k < nreals(); k++) x[k] = (x[k] - wall[k]) / scale;
+    each_entry([&](int64_t, int64_t k) {
+      x[k] = (x[k] - wall[k]) / scale;
+    });
 }
 
 /** f <- P^T f = M P M^-1 f */
 void MPMImplicit::project_forces(double *f)
 {
   if (!constrained) return;
-  for (int64_t k = 0; k < nreals(); k++) {
-    const double m = mass[k / width];
-    f[k] = m > 0.0 ? f[k] / m : 0.0;
-  }
+  each_entry([&](int64_t n, int64_t k) {
+    f[k] /= mass[n];
+  });
   project(f);
-  for (int64_t k = 0; k < nreals(); k++) f[k] *= mass[k / width];
+  each_entry([&](int64_t n, int64_t k) {
+    f[k] *= mass[n];
+  });
 }
 
 /** Friction after the motion u, with the forces that press by the residual, in which that of other walls has a part. */
@@ -448,17 +481,26 @@ void MPMImplicit::check_contacts()
   for (auto *contact : contacts) contact->check_arrival();
 }
 
-/** Of the vectors of all nodes; of_corners: of what these are for corners of domains, see find_reach(). */
-double MPMImplicit::sum_of_sizes(const std::vector<double> &f, bool of_corners)
+/** The sum of the sizes of the vectors of the nodes of this rank; of_corners: of what these are for corners of domains, see find_reach(). */
+double MPMImplicit::size_of(const std::vector<double> &f, bool of_corners) const
 {
-  double mine = 0.0, sum;
-  each_owned([&](int64_t n) {
-    double square = 0.0;
-    for (int d = 0; d < width; d++) square += f[width * n + d] * f[width * n + d];
-    mine += std::sqrt(square) / (of_corners && field.domains ? reach[n] : 1.0);
-  });
-  sum_in_order(lmp, 1, &mine, of_ranks, &sum);
-  return sum;
+  double mine = 0.0;
+  if (of_corners && field.domains)
+    each_owned([&](int64_t n) {
+      double square = 0.0;
+      for (int d = 0; d < width; d++) square += f[width * n + d] * f[width * n + d];
+      mine += std::sqrt(square) / reach[n];
+    });
+  else if (width == 2)
+    each_owned([&](int64_t n) {
+      mine += std::sqrt(f[2 * n] * f[2 * n] + f[2 * n + 1] * f[2 * n + 1]);
+    });
+  else
+    each_owned([&](int64_t n) {
+      const double *const of = &f[3 * n];
+      mine += std::sqrt(of[0] * of[0] + of[1] * of[1] + of[2] * of[2]);
+    });
+  return mine;
 }
 
 /* ----------------------------------------------------------------------
@@ -474,10 +516,9 @@ void MPMImplicit::apply(const double *x, double *y)
     x = allowed.data();
   }
   change_of_forces(x, y);
-  for (int64_t k = 0; k < nreals(); k++) {
-    const double m = mass[k / width];
-    y[k] = m > 0.0 ? inertia * m * x[k] - late * part * y[k] : 0.0;
-  }
+  for (int64_t n = 0, k = 0; n < (int64_t) mass.size(); n++)
+    for (int d = 0; d < width; d++, k++)
+      y[k] = mass[n] > 0.0 ? inertia * mass[n] * x[k] - late * part * y[k] : 0.0;
   if (rubs) {
     friction.assign(nreals(), 0.0);
     for (int round = 0; round < ROUNDS; round++) {
@@ -497,17 +538,19 @@ void MPMImplicit::precondition(const double *r, double *z)
 {
   if (by_levels) {
     multigrid->precondition(r, z);
+    // nodes that are left alone, see find_reach(), have a stiffness, but no mass
+    for (int64_t k = 0; by_reach && k < nreals(); k++)
+      if (!(mass[k / width] > 0.0)) z[k] = 0.0;
     project(z);
     return;
   }
-  for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
-    const double *const block = &blocks[width * width * n];
-    for (int a = 0; a < width; a++) {
-      double sum = 0.0;
-      for (int b = 0; b < width; b++) sum += block[width * a + b] * r[width * n + b];
-      z[width * n + a] = mass[n] > 0.0 ? sum : 0.0;
-    }
-  }
+  std::fill_n(z, nreals(), 0.0);
+  each_entry([&](int64_t n, int64_t k) {
+    const double *const row = &blocks[width * k];
+    double sum = 0.0;
+    for (int b = 0; b < width; b++) sum += row[b] * r[width * n + b];
+    z[k] = sum;
+  });
   project(z);
 }
 
@@ -620,28 +663,45 @@ const double *MPMImplicit::part_of(const std::vector<double> &u)
   return partial.data();
 }
 
-bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
+/** Forces that are not in balance after the motion u, in residual and, without what walls bear, in free; size: of all forces. along: the product
+ *  of free with a vector, if one is given. False, on all ranks, where points are inside out or anything is not finite. Collective. */
+bool MPMImplicit::find_residual(const std::vector<double> &u, double &size,
+                                const std::vector<double> *vector, double *along)
 {
-  double carried, all;
+  double carried;
   if (joint) joint->set_pressure();
   if (!find_forces(part_of(u), inner.data(), carried)) return false;
-  for (int64_t k = 0; k < nreals(); k++) {
-    const double m = mass[k / width], pull = inertia * m * (u[k] - from[k]);
-    residual[k] = m > 0.0 ? outer[k] + late * inner[k] - pull : 0.0;
-    if (late < 1.0) residual[k] += early[k];
-    change[k] = m > 0.0 ? pull : 0.0;
-  }
-  free = residual;
+  each_entry([&](int64_t n, int64_t k) {
+    const double pull = inertia * mass[n] * (u[k] - from[k]);
+    residual[k] = outer[k] + late * inner[k] - pull;
+    change[k] = pull;
+  });
+  if (late < 1.0)
+    each_entry([&](int64_t, int64_t k) {
+      residual[k] += early[k];
+    });
+  each_entry([&](int64_t, int64_t k) {
+    free[k] = residual[k];
+  });
   if (rubs) {
     find_friction(u);
-    for (int64_t k = 0; k < nreals(); k++) free[k] = residual[k] + friction[k];
+    each_entry([&](int64_t, int64_t k) {
+      free[k] = residual[k] + friction[k];
+    });
   }
   project_forces(free.data());
   for (auto *contact : contacts) contact->take_forces(of_pushes);
-  now.unbalanced = sum_of_sizes(free, true);
-  MPI_Allreduce(&carried, &all, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
-  if (joint) now.water = joint->find_residual(u, all);
-  size = all + sum_of_sizes(outer) + sum_of_sizes(change);
+  // all of them in one message
+  double mine[5] = {size_of(free, true), size_of(outer), size_of(change), carried, 0.0}, all[5];
+  if (vector)
+    for (std::size_t i = 0; i < heavy_owned; i++)
+      for (int64_t k = width * heavy[i]; k < width * (heavy[i] + 1); k++)
+        mine[4] += (*vector)[k] * free[k];
+  sum_in_order(lmp, 5, mine, of_ranks, all);
+  now.unbalanced = all[0];
+  if (vector) *along = all[4];
+  if (joint) now.water = joint->find_residual(u, all[3]);
+  size = all[3] + all[1] + all[2];
   now.ratio = now.unbalanced == 0.0 ? 0.0 : now.unbalanced / size;
   return std::isfinite(now.unbalanced) && std::isfinite(now.water);
 }
@@ -654,16 +714,19 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size)
 
 bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
 {
-  const std::vector<double> du = change;
+  const auto &du = correction;
+  correction.swap(change);
   const double before = now.unbalanced;
-  double s = 1.0;
+  double s = 1.0, end;
   for (int cut = 0; cut <= MOST_CUTS; cut++, now.cuts++) {
-    for (int64_t k = 0; k < nreals(); k++) trial[k] = u[k] + s * du[k];
+    each_entry([&](int64_t, int64_t k) {
+      trial[k] = u[k] + s * du[k];
+    });
     double factor = 0.25;
-    if (find_residual(trial, size)) {
-      const double end = product(du.data(), free.data());
+    if (find_residual(trial, size, &du, &end)) {
       if (slope <= 0.0 || end >= -ENOUGH * slope || (rubs && now.unbalanced <= MAY_GROW * before)) {
-        u = trial;
+        u.swap(trial);
+        taken = s;
         return true;
       }
       factor = std::max(0.1, std::min(slope / (slope - end), 0.7));
@@ -1198,15 +1261,18 @@ double MPMImplicit::memory_usage() const
 {
   double bytes = memory.memory_usage() + solver.memory_usage() + general.memory_usage() +
       (multigrid ? multigrid->memory_usage() : 0.0) + (joint ? joint->memory_usage() : 0.0);
-  for (const auto *list : {&mass,      &reach,        &friction, &before,  &explicit_velocity,
-                           &outer,     &inner,        &from,     &wall,    &held,
-                           &offset,    &slide,        &mean,     &ending,  &stopped,
-                           &start,     &acceleration, &push,     &closing, &velocity,
-                           &loads,     &more_loads,   &residual, &partial, &of_nodes,
-                           &of_points, &early,        &next,     &free,    &change,
-                           &trial,     &blocks,       &room,     &allowed, &of_heavy})
+  for (const auto *list : {&mass,      &reach,        &friction,    &before,   &explicit_velocity,
+                           &outer,     &inner,        &from,        &wall,     &held,
+                           &offset,    &slide,        &mean,        &ending,   &stopped,
+                           &start,     &acceleration, &push,        &closing,  &velocity,
+                           &loads,     &more_loads,   &residual,    &partial,  &of_nodes,
+                           &of_points, &early,        &next,        &free,     &change,
+                           &trial,     &blocks,       &room,        &allowed,  &correction,
+                           &of_owned,  &of_system,    &turns,       &left,     &moved,
+                           &solved,    &corrected,    &of_everyone, &rotations})
     bytes += list->capacity() * sizeof(double);
   for (const auto &member : members) bytes += member->tangent.memory_usage();
-  bytes += heavy.capacity() * sizeof(int64_t);
+  bytes += heavy.capacity() * sizeof(int64_t) + heavy_records.capacity() * sizeof(double *) +
+      shared.memory_usage();
   return bytes;
 }

@@ -17,6 +17,7 @@
 #include "mpm_tangent.h"
 #include "solve/flexible_gmres.h"
 #include "solve/krylov.h"
+#include "solve/shared_nodes.h"
 #include "solve/spline_multigrid.h"
 
 #include <memory>
@@ -180,10 +181,14 @@ class MPMImplicit : private MPMNodeSystem {
   double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of their way in this step
   std::vector<double> closing;    // what walls bring to them, displacements; empty: nothing
   std::vector<double> friction;
-  int repeats = 1;              // of node actions, until they are a projection
-  std::vector<double> mass;     // [node]
-  bool by_reach = false;        // do nodes count by what they are for points?
-  std::vector<double> reach;    // [node] number of points there, at most 1
+  int repeats = 1;             // of node actions, until they are a projection
+  std::vector<double> mass;    // [node]
+  std::vector<int64_t>
+      heavy;    // nodes with a mass, those that this rank owns first; vectors are zero at all others
+  std::size_t heavy_owned = 0;
+  std::vector<double *> heavy_records;    // those of these nodes
+  bool by_reach = false;                  // do nodes count by what they are for points?
+  std::vector<double> reach;              // [node] number of points there, at most 1
   std::vector<double> before, explicit_velocity, outer, inner, from, wall, held;
   std::vector<double> start, acceleration;    // with walls, for dynamics
   std::vector<double>
@@ -195,7 +200,7 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> push;    // impulses that are not of the forces of the start of the step
   std::vector<double> loads,
       more_loads;    // that follow points: at the start, and what is new at the end
-  std::vector<double> residual, free, change, trial, blocks, room, allowed;
+  std::vector<double> residual, free, change, correction, trial, blocks, room, allowed;
 
   // contact in methods of second order (mpm_implicit_impact.cpp)
 
@@ -219,24 +224,24 @@ class MPMImplicit : private MPMNodeSystem {
   // from step to step (mpm_implicit_quasi.cpp)
 
   MPMImplicitMemory memory;
-  bool large = false;            // too many unknowns for factors: there are levels
-  std::vector<int64_t> heavy;    // nodes with a mass, those that this rank owns first
-  std::size_t heavy_owned = 0;
-  std::vector<double> of_heavy, of_ranks;
+  MPM_NS::SharedNodes shared{ranks};    // those with a mass
+  bool large = false;                   // too many unknowns for factors: there are levels
+  std::vector<double> of_ranks, of_owned, of_system, of_everyone, rotations;
+  std::vector<double> left, moved, solved, corrected;    // of shared nodes
+  double taken =
+      0.0;    // share of the last correction that was made; 0: none that factors have not learnt from
   std::vector<double> turns;    // [heavy][dim][dim] of the body since the factors; empty: none
   bool can_keep() const;
   void recall();
+  bool walls_are_same(const std::vector<double> &walls) const;
+  void gather_heavy(const std::vector<double> &of_all, std::vector<double> &of_shared);
   void foresee(std::vector<double> &u);
   void remember(const std::vector<double> &u);
   bool make_factors(const std::vector<double> &u);
   void turn_from_factors();
-  void turn(bool back, std::vector<double> &of_heavy) const;
+  void share_forces();
   void find_correction();
-  double product_of_heavy(const std::vector<double> &a, const std::vector<double> &b);
-  void take_heavy(const std::vector<double> &of_all, std::vector<double> &of_heavy) const;
-  void put_heavy(const std::vector<double> &of_heavy, std::vector<double> &of_all) const;
-  void learn(const std::vector<double> &u0, const std::vector<double> &u,
-             const std::vector<double> &f0);
+  void learn();
   bool go_on(std::vector<double> &u);
   bool go_on_from_before(std::vector<double> &u);
 
@@ -255,10 +260,12 @@ class MPMImplicit : private MPMNodeSystem {
   int64_t first_of(const MPMField &) const;
   template <class Use> void each_record(const Use &use);
   template <class Use> void each_owned(const Use &use) const;
+  template <class Use> void each_entry(const Use &use) const;
   void change_of_forces(const double *du, double *dforce);
   bool find_forces(const double *u, double *force, double &carried);
   double linearize(const double *u);
   void take_nodes();
+  void find_heavy();
   void find_reach();
   void find_constraints();
   void act(double *velocities);
@@ -276,8 +283,9 @@ class MPMImplicit : private MPMNodeSystem {
   double negligible_forces(const std::vector<double> &u, double stiffness) const;
   bool close(std::vector<double> &u, const std::vector<double> &du, double &size, double &share);
   void project_forces(double *f);
-  double sum_of_sizes(const std::vector<double> &, bool of_corners = false);
-  bool find_residual(const std::vector<double> &u, double &size);
+  double size_of(const std::vector<double> &, bool of_corners = false) const;
+  bool find_residual(const std::vector<double> &u, double &size,
+                     const std::vector<double> *vector = nullptr, double *along = nullptr);
   bool search(std::vector<double> &u, double slope, double &size);
   void find_blocks();
   void prepare_blocks();

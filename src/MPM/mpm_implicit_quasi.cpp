@@ -9,7 +9,7 @@
 /* ----------------------------------------------------------------------
    Steps with inertia are much alike, and tangents cost more than forces: those of a step are kept for the next ones, as factors, and
    corrected by what each iteration tells of them, which is the difference of the forces that its correction of the motion made (H. Matthies,
-   G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613; in the form of J. Nocedal, Math. Comput. 35 (1980) 773). An iteration then costs the
+   G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613; see QuasiNewton). An iteration then costs the
    forces of the points and a solution with factors. What it converges to is what Newton's method does.
 
    What changes most is where the body points to: the stiffness of a beam along its axis is a thousand times that across, and some degrees of
@@ -25,6 +25,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -32,8 +33,6 @@ using namespace MPM_NS;
 static constexpr double SAME = 1.0e-10;         // of what walls leave
 static constexpr double SYMMETRIC = 1.0e-3;     // of tangents
 static constexpr double ROUND_OFF = 2.0e-16;    // of strains: forces are not known better
-static constexpr double CURVED = 1.0e-10;       // s . y over the lengths of both, least
-static constexpr int MOST_PAIRS = 24;
 static constexpr int COST = 20;                 // of factors, in iterations
 static constexpr int MOST_FACTORS = 3;          // in a step
 static constexpr int MOST_WITH_FACTORS = 25;    // iterations in a step
@@ -45,6 +44,26 @@ bool MPMImplicit::can_keep() const
   return multigrid && options.time != MPMImplicitOptions::STATIC && !joint && contacts.empty();
 }
 
+/** Values of nodes that this rank owns, for all ranks. Collective. */
+void MPMImplicit::gather_heavy(const std::vector<double> &of_all, std::vector<double> &of_shared)
+{
+  of_owned.resize(heavy_owned * width);
+  for (std::size_t i = 0; i < heavy_owned; i++)
+    std::copy_n(&of_all[width * heavy[i]], width, &of_owned[width * i]);
+  shared.gather(of_owned, width, of_shared);
+}
+
+/** Do walls leave of the nodes of this rank what they did before? */
+bool MPMImplicit::walls_are_same(const std::vector<double> &walls) const
+{
+  const auto &places = shared.places();
+  for (std::size_t i = 0; i < heavy.size(); i++)
+    for (int d = 0; d < width; d++)
+      if (!(std::fabs(walls[width * heavy[i] + d] - memory.walls[width * places[i] + d]) <= SAME))
+        return false;
+  return true;
+}
+
 /** Is what was kept for these nodes and walls? Else it is forgotten. Collective. */
 void MPMImplicit::recall()
 {
@@ -52,37 +71,51 @@ void MPMImplicit::recall()
   nodes.reserve(3 * grid.blocks.size());
   int64_t n = 0;
   for (const auto &block : grid.blocks) {
-    uint64_t heavy = 0;
+    uint64_t with_mass = 0;
     for (int k = 0; k < NODES_PER_BLOCK; k++, n++)
-      if (mass[n] > 0.0) heavy |= (uint64_t) 1 << k;
-    nodes.insert(nodes.end(), {Grid::block_key(block), block.owned, heavy});
+      if (mass[n] > 0.0) with_mass |= (uint64_t) 1 << k;
+    nodes.insert(nodes.end(), {Grid::block_key(block), block.owned, with_mass});
   }
   // the same on all ranks
-  std::vector<double> walls(nreals());
+  std::vector<double> walls(nreals(), 0.0);
   int index[3];
-  for (n = 0; n < (int64_t) mass.size(); n++) {
-    grid.node_index(n, index);
+  for (const int64_t node : heavy) {
+    grid.node_index(node, index);
     for (int d = 0; d < width; d++)
-      walls[width * n + d] = mass[n] > 0.0
-          ? std::cos(0.7 + 2.9 * index[0] + 4.7 * index[1] + 8.3 * index[2] + 1.9 * d)
-          : 0.0;
+      walls[width * node + d] =
+          std::cos(0.7 + 2.9 * index[0] + 4.7 * index[1] + 8.3 * index[2] + 1.9 * d);
   }
   project(walls.data());
-  heavy.clear();
-  for (const bool owned : {true, false}) {
-    for (n = 0; n < (int64_t) mass.size(); n++)
-      if (mass[n] > 0.0 && grid.owns(n) == owned) heavy.push_back(n);
-    if (owned) heavy_owned = heavy.size();
+
+  enum { NODES, WALLS };
+  int same[2], all[2] = {0, 0};
+  if (memory.known && dt == memory.dt) {
+    same[NODES] = nodes == memory.nodes;
+    same[WALLS] = !same[NODES] || walls_are_same(walls);
+    MPI_Allreduce(same, all, 2, MPI_INT, MPI_MIN, lmp->world);
+    if (all[NODES] && all[WALLS]) return;
   }
-  int same = nodes == memory.nodes && dt == memory.dt, all;
-  for (std::size_t k = 0; same && k < walls.size(); k++)
-    if (!(std::fabs(walls[k] - memory.walls[k]) <= SAME)) same = 0;
-  MPI_Allreduce(&same, &all, 1, MPI_INT, MPI_MIN, lmp->world);
-  if (all) return;
+  std::vector<LatticeIndex> indices;
+  for (const int64_t node : heavy) {
+    grid.node_index(node, index);
+    indices.push_back({0, 0, 0});
+    for (int d = 0; d < width; d++) indices.back()[d] = grid.lattice.wrap(d, index[d]);
+  }
+  // ranks may have come to own other ones of the same nodes
+  if (memory.known && dt == memory.dt && all[WALLS] && shared.renumber(indices, heavy_owned)) {
+    memory.nodes.swap(nodes);
+    memory.structured = memory.levels = false;
+    same[WALLS] = walls_are_same(walls);
+    MPI_Allreduce(same, all, 2, MPI_INT, MPI_MIN, lmp->world);
+    if (all[WALLS]) return;
+  }
   memory.clear();
+  shared.number(indices, heavy_owned);
   memory.nodes.swap(nodes);
-  memory.walls.swap(walls);
+  gather_heavy(walls, memory.walls);
   memory.dt = dt;
+  memory.known = true;
+  memory.pairs.start(memory.walls.size());
 }
 
 /** The motion goes on as in the last two steps. */
@@ -90,7 +123,12 @@ void MPMImplicit::foresee(std::vector<double> &u)
 {
   const auto &last = memory.motions;
   if (last.size() < MOTIONS) return;
-  for (int64_t k = 0; k < nreals(); k++) u[k] = 2.0 * last[0][k] - last[1][k];
+  const auto &places = shared.places();
+  for (std::size_t i = 0; i < heavy.size(); i++)
+    for (int d = 0; d < width; d++) {
+      const std::size_t k = (std::size_t) width * places[i] + d;
+      u[width * heavy[i] + d] = 2.0 * last[0][k] - last[1][k];
+    }
   meet_walls(u, 1.0);
 }
 
@@ -98,12 +136,13 @@ void MPMImplicit::remember(const std::vector<double> &u)
 {
   memory.levels = by_levels && large && now.converged;
   if (!now.converged) return;
+  if (!memory.known) recall();
   std::vector<double> motion;
   if (memory.motions.size() == MOTIONS) {
     motion.swap(memory.motions.back());
     memory.motions.pop_back();
   }
-  motion = u;
+  gather_heavy(u, motion);
   memory.motions.push_front(std::move(motion));
 }
 
@@ -111,29 +150,14 @@ void MPMImplicit::remember(const std::vector<double> &u)
 void MPMImplicit::turn_from_factors()
 {
   const int w = width, square = w * w;
-  std::vector<double> rotations;
   tangent.mean_rotations(heavy, rotations);
   turns.assign(rotations.size(), 0.0);
-  for (std::size_t k = 0; k < rotations.size(); k += square)
+  const auto &places = shared.places();
+  for (std::size_t i = 0; i < heavy.size(); i++) {
+    const double *const R = &rotations[i * square], *const R0 = &memory.turned[places[i] * square];
     for (int a = 0; a < w; a++)
       for (int b = 0; b < w; b++)
-        for (int c = 0; c < w; c++)
-          turns[k + w * a + b] += rotations[k + w * a + c] * memory.turned[k + w * b + c];
-}
-
-/** Vectors of nodes with a mass turn with the body, or back. */
-void MPMImplicit::turn(bool back, std::vector<double> &x) const
-{
-  const int w = width;
-  for (std::size_t k = 0; k < turns.size() / (w * w); k++) {
-    const double *const R = &turns[k * w * w];
-    double *const v = &x[k * w];
-    double from[3];
-    std::copy_n(v, w, from);
-    for (int a = 0; a < w; a++) {
-      v[a] = 0.0;
-      for (int b = 0; b < w; b++) v[a] += (back ? R[w * b + a] : R[w * a + b]) * from[b];
-    }
+        for (int c = 0; c < w; c++) turns[i * square + w * a + b] += R[w * a + c] * R0[w * b + c];
   }
 }
 
@@ -141,6 +165,7 @@ void MPMImplicit::turn(bool back, std::vector<double> &x) const
 bool MPMImplicit::make_factors(const std::vector<double> &u)
 {
   memory.drop_factors();
+  taken = 0.0;
   tangent.keep_deformations(true);
   memory.stiffness = tangent.linearize(part_of(u), part * dt);
   tangent.keep_deformations(false);
@@ -155,95 +180,106 @@ bool MPMImplicit::make_factors(const std::vector<double> &u)
   now.made++;
   large = !multigrid->is_whole();
   turns.clear();
-  if (!large) tangent.mean_rotations(heavy, memory.turned);
+  if (!large) {
+    tangent.mean_rotations(heavy, rotations);
+    rotations.resize(heavy_owned * width * width);
+    shared.gather(rotations, width * width, memory.turned);
+    memory.in_factors.clear();
+    for (const auto &index : shared.indices())
+      memory.in_factors.push_back(multigrid->place_in_whole(index));
+  }
   return memory.factorized = multigrid->usable() && !large;
 }
 
-/** The product of two vectors of nodes with a mass, in the order of ranks. Collective. */
-double MPMImplicit::product_of_heavy(const std::vector<double> &a, const std::vector<double> &b)
+/** to = R from, or R^T from. */
+template <int W> static void turn(const double *R, bool back, const double *from, double *to)
 {
-  // several sums at a time, as one waits for its last addition
-  double part[4] = {0.0, 0.0, 0.0, 0.0}, mine = 0.0, value;
-  const std::size_t n = heavy_owned * width, whole = n - n % 4;
-  for (std::size_t k = 0; k < whole; k += 4)
-    for (int i = 0; i < 4; i++) part[i] += a[k + i] * b[k + i];
-  for (std::size_t k = whole; k < n; k++) mine += a[k] * b[k];
-  mine += (part[0] + part[1]) + (part[2] + part[3]);
-  sum_in_order(lmp, 1, &mine, of_ranks, &value);
-  return value;
+  for (int a = 0; a < W; a++) {
+    to[a] = 0.0;
+    for (int b = 0; b < W; b++) to[a] += (back ? R[W * b + a] : R[W * a + b]) * from[b];
+  }
 }
 
-void MPMImplicit::take_heavy(const std::vector<double> &of_all, std::vector<double> &of_heavy) const
+/** The forces that are left, turned back to where factors are, what these make of them, and the last correction, of all nodes. Collective. */
+void MPMImplicit::share_forces()
 {
-  of_heavy.resize(heavy.size() * width);
-  double *to = of_heavy.data();
-  for (const int64_t node : heavy)
-    for (int d = 0; d < width; d++) *to++ = of_all[node * width + d];
-}
-
-void MPMImplicit::put_heavy(const std::vector<double> &of_heavy, std::vector<double> &of_all) const
-{
-  const double *from = of_heavy.data();
-  for (const int64_t node : heavy)
-    for (int d = 0; d < width; d++) of_all[node * width + d] = *from++;
+  const int w = width, each = taken != 0.0 ? 2 * w : w;
+  of_owned.resize(heavy_owned * each);
+  const auto take = [&](auto dim) {
+    constexpr int W = decltype(dim)::value;
+    for (std::size_t i = 0; i < heavy_owned; i++) {
+      double *const to = &of_owned[i * each];
+      const double *const f = &free[W * heavy[i]], *const du = &correction[W * heavy[i]];
+      double motion[W];
+      for (int d = 0; d < W; d++) motion[d] = taken * du[d];
+      if (turns.empty()) {
+        std::copy_n(f, W, to);
+        if (each > W) std::copy_n(motion, W, to + W);
+      } else {
+        turn<W>(&turns[i * W * W], true, f, to);
+        if (each > W) turn<W>(&turns[i * W * W], true, motion, to + W);
+      }
+    }
+  };
+  if (w == 2)
+    take(std::integral_constant<int, 2>());
+  else
+    take(std::integral_constant<int, 3>());
+  shared.gather(of_owned, each, of_everyone);
+  const std::size_t n = shared.size();
+  left.resize(n * w);
+  solved.assign(n * w, 0.0);
+  of_system.assign(multigrid->nodes_of_whole() * w, 0.0);
+  for (std::size_t k = 0; k < n; k++) {
+    const int to = memory.in_factors[k];
+    for (int d = 0; d < w; d++) {
+      left[w * k + d] = of_everyone[each * k + d];
+      if (to >= 0) of_system[w * to + d] = left[w * k + d];
+    }
+  }
+  multigrid->solve_whole(of_system.data());
+  for (std::size_t k = 0; k < n; k++)
+    if (const int from = memory.in_factors[k]; from >= 0)
+      std::copy_n(&of_system[w * from], w, &solved[w * k]);
+  if (taken != 0.0) {
+    moved.resize(n * w);
+    for (std::size_t k = 0; k < n; k++) std::copy_n(&of_everyone[each * k + w], w, &moved[w * k]);
+    memory.pairs.moved(moved.data());
+  }
+  taken = 0.0;
 }
 
 /** The correction of the motion by the forces that are left, in change: factors of a tangent, and what pairs tell of it. */
 void MPMImplicit::find_correction()
 {
-  const int n = (int) memory.pairs.size();
-  std::vector<double> along(n);
-  const auto add = [](double share, const std::vector<double> &of, std::vector<double> &to) {
-    for (std::size_t k = 0; k < to.size(); k++) to[k] += share * of[k];
+  share_forces();
+  corrected.resize(solved.size());
+  memory.pairs.correct(left.data(), solved.data(), corrected.data());
+  const auto &places = shared.places();
+  const auto give = [&](auto dim) {
+    constexpr int W = decltype(dim)::value;
+    for (std::size_t i = 0; i < heavy.size(); i++) {
+      const double *const from = &corrected[W * places[i]];
+      double *const to = &change[W * heavy[i]];
+      if (turns.empty())
+        std::copy_n(from, W, to);
+      else
+        turn<W>(&turns[i * W * W], false, from, to);
+    }
   };
-  take_heavy(free, of_heavy);
-  turn(true, of_heavy);
-  for (int k = n - 1; k >= 0; k--) {
-    const auto &pair = memory.pairs[k];
-    along[k] = product_of_heavy(pair.s, of_heavy) / pair.sy;
-    add(-along[k], pair.y, of_heavy);
-  }
-  trial = free;
-  put_heavy(of_heavy, trial);
-  multigrid->precondition(trial.data(), change.data());
-  take_heavy(change, of_heavy);
-  for (int k = 0; k < n; k++) {
-    const auto &pair = memory.pairs[k];
-    add(along[k] - product_of_heavy(pair.y, of_heavy) / pair.sy, pair.s, of_heavy);
-  }
-  turn(false, of_heavy);
-  put_heavy(of_heavy, change);
+  if (width == 2)
+    give(std::integral_constant<int, 2>());
+  else
+    give(std::integral_constant<int, 3>());
   project(change.data());
 }
 
-/** What the correction from u0 to u told, with forces f0 that were left before and those that are now: u0 and f0 of nodes with a mass. */
-void MPMImplicit::learn(const std::vector<double> &u0, const std::vector<double> &u,
-                        const std::vector<double> &f0)
+/** What the last correction has told, before the body turns on. */
+void MPMImplicit::learn()
 {
-  MPMImplicitMemory::Pair pair;
-  if ((int) memory.pairs.size() >= MOST_PAIRS) {
-    pair = std::move(memory.pairs.front());
-    memory.pairs.pop_front();
-  }
-  take_heavy(u, pair.s);
-  take_heavy(free, pair.y);
-  double mine[3] = {0.0, 0.0, 0.0}, sums[3];
-  for (std::size_t k = 0; k < pair.s.size(); k++) {
-    pair.s[k] -= u0[k];
-    pair.y[k] = f0[k] - pair.y[k];
-  }
-  turn(true, pair.s);
-  turn(true, pair.y);
-  for (std::size_t k = 0; k < pair.s.size(); k++) {
-    const double s = pair.s[k], y = pair.y[k];
-    if (k >= heavy_owned * width) continue;
-    mine[0] += s * y;
-    mine[1] += s * s;
-    mine[2] += y * y;
-  }
-  sum_in_order(lmp, 3, mine, of_ranks, sums);
-  pair.sy = sums[0];
-  if (sums[0] > CURVED * std::sqrt(sums[1] * sums[2])) memory.pairs.push_back(std::move(pair));
+  if (taken == 0.0) return;
+  share_forces();
+  memory.pairs.settle(left.data(), solved.data());
 }
 
 /** The end of the step with kept factors: false if it was not found, and Newton's method shall go from the start of the step. */
@@ -251,13 +287,13 @@ bool MPMImplicit::go_on(std::vector<double> &u)
 {
   double size;
   int made = 0, with_these = 0;
-  std::vector<double> u0, f0;
   now.residuals.clear();
   // on the whole, a step costs least when factors are made again as soon as one costs more than the mean of those before
   if (memory.factorized && memory.steps > 0 &&
       memory.last * memory.steps > memory.iterations + COST)
     memory.drop_factors();
   turns.clear();
+  taken = 0.0;
   tangent.keep_deformations(memory.factorized);
   const bool begun = find_residual(u, size);
   tangent.keep_deformations(false);
@@ -273,8 +309,6 @@ bool MPMImplicit::go_on(std::vector<double> &u)
       made++;
       with_these = 0;
     }
-    take_heavy(u, u0);
-    take_heavy(free, f0);
     find_correction();
     now.iterations++;
     now.linear++;
@@ -285,11 +319,12 @@ bool MPMImplicit::go_on(std::vector<double> &u)
       now.failure.clear();
       if (with_these == 1 && made) return false;
       memory.drop_factors();
+      taken = 0.0;
       if (!find_residual(u, size)) return false;
       continue;
     }
-    learn(u0, u, f0);
   }
+  learn();
   now.asymmetry = memory.asymmetry;
   memory.steps++;
   memory.last = with_these;

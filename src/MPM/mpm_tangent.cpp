@@ -97,26 +97,41 @@ void MPMTangent::scatter(const double *forces_of_points, double *force)
     with.p2g_force(rows, step, run.first, run.last, base, field.map->tile, box);
   });
   field.nodes.sum(nodes.data(), with.nreal, 4, 4);
-  for (int64_t n = 0; n < field.grid.nnodes(); n++)
-    for (int d = 0; d < dim; d++) force[dim * n + d] = nodes[with.nreal * n + 4 + d];
+  const auto take = [&](auto constant) {
+    constexpr int D = decltype(constant)::value;
+    const double *record = nodes.data() + 4;
+    const int64_t end = D * field.grid.nnodes();
+    for (int64_t k = 0; k < end; k += D, record += with.nreal) std::copy_n(record, D, force + k);
+  };
+  if (dim == 2)
+    take(std::integral_constant<int, 2>());
+  else
+    take(std::integral_constant<int, 3>());
 }
 
 /** use(run, first, n, H): H [n][nH] of up to BATCH points. */
 template <class Use> void MPMTangent::gather(const double *u, const Use &use)
 {
-  nodes.resize(field.grid.nnodes() * with.nreal);
-  double *record = nodes.data();
-  for (int64_t n = 0; n < field.grid.nnodes(); n++, record += with.nreal) {
-    std::fill_n(record, with.nreal, 0.0);
-    for (int d = 0; d < dim; d++) record[d] = u[dim * n + d];
-  }
-  field.nodes.complete(nodes.data(), with.nreal, 3);
+  // all but the motion stays zero
+  const std::size_t nreals = field.grid.nnodes() * with.nreal;
+  if (motion_nodes.size() != nreals) motion_nodes.assign(nreals, 0.0);
+  const auto give = [&](auto constant) {
+    constexpr int D = decltype(constant)::value;
+    double *record = motion_nodes.data();
+    const int64_t end = D * field.grid.nnodes();
+    for (int64_t k = 0; k < end; k += D, record += with.nreal) std::copy_n(u + k, D, record);
+  };
+  if (dim == 2)
+    give(std::integral_constant<int, 2>());
+  else
+    give(std::integral_constant<int, 3>());
+  field.nodes.complete(motion_nodes.data(), with.nreal, 3);
   PointRows rows = field.rows();
   rows.P = P.data();
   rows.F = nullptr;
   const TransferStep step = field.step_data();
   double L[9 * BATCH], H[10 * BATCH], motion[3 * BATCH];
-  points_from(nodes, field, with, [&](const MPMPointMap::Run &run, const int *base) {
+  points_from(motion_nodes, field, with, [&](const MPMPointMap::Run &run, const int *base) {
     for (int i = run.first; i < run.last; i += BATCH) {
       const int n = std::min(BATCH, run.last - i);
       PointRows b = rows_from(field, rows, i);
@@ -323,23 +338,35 @@ bool MPMTangent::stress(const MPMPointMap::Run &run, int first, int n, const dou
   return good;
 }
 
+/** sum of V |s| of n points with stresses s [n][N] */
+template <int N> static double sum_of_sizes(int n, const double *s, const double *V)
+{
+  double sum = 0.0;
+  for (int p = 0; p < n; p++, s += N) {
+    double square = 0.0;
+    for (int k = 0; k < N; k++) square += s[k] * s[k];
+    sum += V[p] * std::sqrt(square);
+  }
+  return sum;
+}
+
 /* ---------------------------------------------------------------------- */
 
 void MPMTangent::external_forces(double *force)
 {
-  const std::size_t nmax = atom->nmax;
-  P.assign(nmax * nL, 0.0);
-  no_force.assign(3 * nmax, 0.0);
-  if (nH > nL) hoop_stress.assign(nmax, 0.0);
+  const std::size_t nlocal = atom->nlocal;
+  P.assign(nlocal * nL, 0.0);
+  no_force.resize(3 * nlocal, 0.0);
+  if (nH > nL) hoop_stress.assign(nlocal, 0.0);
   find_loads();
   if (averages) {
-    mean_stress.assign(nmax, 0.0);
-    volumes.resize(nmax);
+    mean_stress.assign(nlocal, 0.0);
+    volumes.resize(nlocal);
     for (const auto &run : field.map->runs)
       for (bigint i = run.first; i < run.last; i++)
         volumes[i] = atom->vfrac[i] * field.points->jacobian((int) i);
   }
-  if (adds()) added.assign(nmax, 0.0);
+  if (adds()) added.assign(nlocal, 0.0);
   const double *const f = field.rows().f;
   scatter(f, force);
 }
@@ -371,22 +398,19 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
   gather(u, [&](const MPMPointMap::Run &run, int first, int n, const double *H) {
     if (!stress(run, first, n, H, dt, stresses)) bad = 1;
     if (keeps_deformations) keep_deformations(first, n, H);
-    for (int p = 0; p < n; p++) {
-      const double *const s = stresses + nH * p;
-      double square = 0.0;
-      for (int k = 0; k < nH; k++) square += s[k] * s[k];
-      sum += atom->vfrac[first + p] * std::sqrt(square);
-      if (pressure) sum += atom->vfrac[first + p] * std::fabs(pressure[first + p]);
-    }
+    const auto sizes = nH == 4 ? sum_of_sizes<4> : nH == 5 ? sum_of_sizes<5> : sum_of_sizes<9>;
+    sum += sizes(n, stresses, atom->vfrac + first);
+    for (int p = 0; p < n && pressure; p++)
+      sum += atom->vfrac[first + p] * std::fabs(pressure[first + p]);
     if (follows(first, n)) {
       double more[10 * BATCH + 8];
       load_points(first, n, H, more);
       for (int k = 0; k < nH * n; k++) stresses[k] += more[k];
     }
-    for (int p = 0; p < n; p++) {
-      const double *const s = stresses + nH * p;
-      std::copy_n(s, nL, &P[(bigint) nL * (first + p)]);
-      if (nH > nL) hoop_stress[first + p] = s[nL];
+    if (nH == nL) std::copy_n(stresses, nL * n, &P[(bigint) nL * first]);
+    for (int p = 0; p < n && nH > nL; p++) {
+      std::copy_n(stresses + nH * p, nL, &P[(bigint) nL * (first + p)]);
+      hoop_stress[first + p] = stresses[nH * p + nL];
     }
   });
   carried = sum * field.step_data().stress_scale / field.lattice.h;
@@ -754,7 +778,7 @@ void MPMTangent::keep_deformations(int first, int n, const double *H)
 {
   double F[9 * BATCH];
   lattice_F(first, n, H, F);
-  const std::size_t nmax = atom->nmax;
+  const std::size_t nlocal = atom->nlocal;
   for (int p = 0; p < n; p++) {
     const std::size_t i = first + p;
     const double V = atom->vfrac[i], *const f = F + 9 * p;
@@ -764,14 +788,14 @@ void MPMTangent::keep_deformations(int first, int n, const double *H)
       continue;
     }
     for (int r = 0; r < 3; r++)
-      for (int c = 0; c < 3; c++) deformations[3 * (nmax * r + i) + c] = V * f[3 * r + c];
+      for (int c = 0; c < 3; c++) deformations[3 * (nlocal * r + i) + c] = V * f[3 * r + c];
   }
 }
 
 void MPMTangent::keep_deformations(bool keeps)
 {
   keeps_deformations = keeps;
-  if (keeps) deformations.assign(3 * (std::size_t) atom->nmax * (dim == 2 ? 1 : 3), 0.0);
+  if (keeps) deformations.assign(3 * (std::size_t) atom->nlocal * (dim == 2 ? 1 : 3), 0.0);
 }
 
 void MPMTangent::mean_rotations(const std::vector<int64_t> &of, std::vector<double> &rotations)
@@ -781,7 +805,7 @@ void MPMTangent::mean_rotations(const std::vector<int64_t> &of, std::vector<doub
   rotations.resize(of.size() * nL);
   std::vector<double> row(field.grid.nnodes() * dim);
   for (int r = 0; r < (dim == 2 ? 1 : 3); r++) {
-    scatter(&deformations[3 * (std::size_t) atom->nmax * r], row.data());
+    scatter(deformations.data() + 3 * (std::size_t) atom->nlocal * r, row.data());
     for (std::size_t k = 0; k < of.size(); k++)
       std::copy_n(&row[of[k] * dim], dim, &rotations[k * nL + dim * r]);
   }
@@ -937,10 +961,26 @@ double MPMTangent::asymmetry() const
 double MPMTangent::memory_usage() const
 {
   double bytes = sizeof(Batch) + means.memory_usage();
-  for (const auto *list :
-       {&nodes, &history, &P, &hoop_stress, &tangents, &no_force, &forces_on_points, &load_forces,
-        &load_tangents, &stress_tangents, &deformations, &mean_stress, &mean_tangents, &added,
-        &volumes, &volume_gradients, &point_motion, &point_forces, &sum_forces})
+  for (const auto *list : {&nodes,
+                           &motion_nodes,
+                           &history,
+                           &P,
+                           &hoop_stress,
+                           &tangents,
+                           &no_force,
+                           &forces_on_points,
+                           &load_forces,
+                           &load_tangents,
+                           &stress_tangents,
+                           &deformations,
+                           &mean_stress,
+                           &mean_tangents,
+                           &added,
+                           &volumes,
+                           &volume_gradients,
+                           &point_motion,
+                           &point_forces,
+                           &sum_forces})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -111,8 +111,8 @@ class MPMTangent : protected Pointers {
   const int dim, nL;                           // nL: entries of a gradient in the plane or in space
   int nH;                                      // those of H
   bool mls = false;                            // gradients are those of moving least squares
-  std::vector<double> nodes, history, P, hoop_stress, tangents, no_force, forces_on_points,
-      deformations;
+  std::vector<double> nodes, motion_nodes, history, P, hoop_stress, tangents, no_force,
+      forces_on_points, deformations;
   std::vector<Part> parts;
   void take_parts();
   bool loaded = false;    // some points have loads that follow them

@@ -10,6 +10,7 @@
 
 #include "solve/envelope_factors.h"
 #include "solve/rim_factors.h"
+#include "solve/shared_nodes.h"
 
 #include "gtest/gtest.h"
 
@@ -18,10 +19,13 @@
 #include <array>
 #include <condition_variable>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 
 using namespace MPM_NS;
 
@@ -437,6 +441,67 @@ TEST(EnvelopeFactors, HalvesOnRanks)
       }
     }
   }
+}
+
+// Nodes come to other ranks, which also know some of others, and keep their places; not if one is missing, new, or another one.
+TEST(SharedNodes, KeepTheirOrder)
+{
+  constexpr int NRANKS = 3, N = 20, NONE = -1;
+  // the rank that owns node i, before and after
+  const auto before = [](int i) {
+    return i * NRANKS / N;
+  };
+  const auto after = [](int i) {
+    return (i * i + 1) % NRANKS;
+  };
+  const auto lost = [&](int i) {
+    return i == 7 ? NONE : after(i);
+  };
+  Threads team(NRANKS);
+  std::vector<std::string> wrong(NRANKS);
+  std::vector<std::thread> threads;
+  for (int me = 0; me < NRANKS; me++)
+    threads.emplace_back([&, me] {
+      ThreadRank rank(team, me);
+      SharedNodes shared(rank);
+      std::vector<double> values, first, all;
+      const auto list = [&](const auto &owner, int shift) {
+        std::vector<LatticeIndex> mine, others;
+        values.clear();
+        for (int i = 0; i < N; i++) {
+          const LatticeIndex index{i % 5, i / 5, i == 3 ? shift : 0};
+          if (owner(i) == me) {
+            mine.push_back(index);
+            values.insert(values.end(), {10.0 * i, 10.0 * i + 1.0});
+          } else if (owner(i) != NONE && i % 2)
+            others.push_back(index);
+        }
+        const std::size_t owned = mine.size();
+        mine.insert(mine.end(), others.begin(), others.end());
+        return std::make_pair(mine, owned);
+      };
+      const auto expect = [&](bool good, const char *what) {
+        if (!good) wrong[me] += what;
+      };
+      const auto begin = list(before, 0);
+      shared.number(begin.first, begin.second);
+      expect(shared.size() == N, "size ");
+      shared.gather(values, 2, first);
+      for (const auto &[owner, shift, same] :
+           {std::make_tuple(std::function<int(int)>(after), 0, true),
+            {lost, 0, false},
+            {after, 1, false}}) {
+        const auto now = list(owner, shift);
+        expect(shared.renumber(now.first, now.second) == same, "renumber ");
+        if (!same) continue;
+        shared.gather(values, 2, all);
+        expect(all == first, "gather ");
+        for (std::size_t k = 0; k < now.first.size(); k++)
+          expect(shared.indices()[shared.places()[k]] == now.first[k], "places ");
+      }
+    });
+  for (auto &thread : threads) thread.join();
+  for (int me = 0; me < NRANKS; me++) EXPECT_EQ(wrong[me], "") << me;
 }
 
 // Matrices that are not positive definite have factors with a shift, if they are not far from it.

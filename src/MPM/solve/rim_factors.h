@@ -10,34 +10,15 @@
 #define MPM_SOLVE_RIM_FACTORS_H
 
 #include "solve/envelope_factors.h"
-#include "solve/lattice_key.h"
+#include "solve/lattice_nodes.h"
 
 #include <Eigen/SparseCore>
 
 #include <cstdint>
-#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 namespace MPM_NS {
-
-/** Nodes by their index, in the order in which they came. */
-struct LatticeNodes {
-  std::vector<LatticeIndex> index;
-  std::unordered_map<uint64_t, int> number;
-
-  int add(const LatticeIndex &at)
-  {
-    const auto inserted = number.emplace(lattice_key(at), (int) index.size());
-    if (inserted.second) index.push_back(at);
-    return inserted.first->second;
-  }
-  int find(const LatticeIndex &at) const
-  {
-    const auto found = number.find(lattice_key(at));
-    return found == number.end() ? -1 : found->second;
-  }
-};
 
 /** Keys of the nodes at the surface of a body: of those around them, up to reach along each axis, some do not exist.
  *  period: in nodes, 0: none. */

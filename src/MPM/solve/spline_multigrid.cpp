@@ -203,6 +203,12 @@ struct SplineMultigrid::Levels {
   Blocks blocks;
 
   // of a system that is factorized as a whole, once it has been
+  LatticeNodes of_whole;    // all of its nodes
+  struct Held {
+    int node;
+    double P[9];
+  };
+  std::vector<Held> held_nodes;      // those that are not free
   bool again = false;                // its structure is known
   std::vector<Block> held_blocks;    // what stands for what is held
   std::vector<Block> sent, of_all_blocks;
@@ -548,6 +554,17 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
       list.push_back(found->second);
     }
   of_ranks = ranks.gather(list);
+  if (whole) {
+    std::vector<Held> mine_held;
+    for (int64_t node = 0; node < grid.nnodes(); node++) {
+      const int at = number[parts[first[node]].node];
+      if (!grid.owns(node) || at < 0 || plain[node]) continue;
+      mine_held.push_back({at, {}});
+      std::copy_n(projection_of(node), w * w, mine_held.back().P);
+    }
+    ranks.gather(mine_held, held_nodes);
+    of_whole = all;
+  }
 
   coarse.emplace_back();
   send_blocks();
@@ -967,6 +984,37 @@ void SplineMultigrid::precondition(const double *r, double *z)
   if (!o.whole) o.smooth(r, z, false);
 }
 
+int SplineMultigrid::nodes_of_whole() const
+{
+  return (int) on->of_whole.index.size();
+}
+
+int SplineMultigrid::place_in_whole(const LatticeIndex &index) const
+{
+  return on->of_whole.find(index);
+}
+
+void SplineMultigrid::solve_whole(double *b)
+{
+  auto &o = *on;
+  const int w = o.width;
+  const auto project = [&](bool transposed) {
+    for (const auto &held : o.held_nodes) {
+      double from[3];
+      double *const of = b + (std::size_t) held.node * w;
+      std::copy_n(of, w, from);
+      for (int i = 0; i < w; i++) {
+        of[i] = 0.0;
+        for (int j = 0; j < w; j++)
+          of[i] += (transposed ? held.P[j * w + i] : held.P[i * w + j]) * from[j];
+      }
+    }
+  };
+  project(true);
+  o.factors.solve(b, b);
+  project(false);
+}
+
 bool SplineMultigrid::usable() const
 {
   return on->usable;
@@ -998,7 +1046,8 @@ double SplineMultigrid::memory_usage() const
       (o.held_blocks.capacity() + o.sent.capacity() + o.of_all_blocks.capacity()) * sizeof(Block) +
       o.slots.capacity() * sizeof(int) +
       (o.rim_owned.capacity() + o.nodes.capacity()) * sizeof(int64_t);
-  for (const auto *list : {&o.rim, &o.mine})
+  bytes += o.held_nodes.capacity() * sizeof(Levels::Held);
+  for (const auto *list : {&o.rim, &o.mine, &o.of_whole})
     bytes += list->index.capacity() * sizeof(LatticeIndex) + list->number.size() * HASHED;
   for (const auto *list : {&o.rim_number, &o.rim_of_ranks, &o.rim_local, &o.first, &o.number,
                            &o.of_ranks, &o.local, &o.place})

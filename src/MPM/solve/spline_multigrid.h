@@ -9,6 +9,7 @@
 #ifndef MPM_SOLVE_SPLINE_MULTIGRID_H
 #define MPM_SOLVE_SPLINE_MULTIGRID_H
 
+#include "solve/lattice_key.h"
 #include "solve/lattice_ranks.h"
 #include "solve/linear_system.h"
 
@@ -61,6 +62,12 @@ class SplineMultigrid {
   bool usable() const;
   /** Is all factorized as a whole? The cycle then is the inverse of the operator that it was made of, and needs no product. */
   bool is_whole() const;
+  /** Of a system that is factorized as a whole: its nodes, the place of one of them in the system, -1: it is not there, and x = A^-1 b in the
+   *  place of b [nodes][width], with the same on all ranks.  Valid until the next operator begins, also where ranks have come to own other ones
+   *  of the nodes.  Collective. */
+  int nodes_of_whole() const;
+  int place_in_whole(const LatticeIndex &) const;
+  void solve_whole(double *b);
   int levels() const;
   double largest_eigenvalue() const;    ///< of A relative to the blocks
   double memory_usage() const;
