@@ -269,10 +269,38 @@ void FixMPMDashpot::define()
   fresh = most_of_all > 0.0;
   supports = fresh || free_field;
   defined = true;
+  warn_about_others();
   for (auto &body : bodies) body.field->map->valid = false;    // marks may need other blocks
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix mpm/dashpot {}: area {:.8g} of {:.0f} points\n", id, all[0] * scale,
                    all[1]);
+}
+
+/* ----------------------------------------------------------------------
+   the same face of a point under two of these would have twice the resistance, which sends waves back: (1 - 2)/(1 + 2) of them
+------------------------------------------------------------------------- */
+
+void FixMPMDashpot::warn_about_others() const
+{
+  constexpr double SAME_SIDE = 0.9, MUCH = 0.05;    // cosine of normals; of the area
+  for (auto *ifix : modify->get_fix_by_style("^mpm/dashpot$")) {
+    const auto *const other = dynamic_cast<FixMPMDashpot *>(ifix);
+    if (other == this || !other->defined) continue;
+    double mine[2] = {0.0, 0.0}, all[2];    // area, and what of it the other one has, too
+    for (int i = 0; i < atom->nlocal; i++) {
+      const double *const a = rows[i], *const b = other->rows[i];
+      mine[0] += a[AREA];
+      if (a[AREA] > 0.0 && b[AREA] > 0.0 && dot(a + NORMAL, b + NORMAL) > SAME_SIDE)
+        mine[1] += std::min(a[AREA], b[AREA]);
+    }
+    MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+    if (comm->me == 0 && all[1] > MUCH * all[0])
+      error->warning(FLERR,
+                     "Fix mpm/dashpot {}: {:.0f} % of its area has the dashpots of fix {}, too, "
+                     "which add up there, so that waves are reflected: give the two different "
+                     "regions or groups",
+                     id, 100.0 * all[1] / all[0], other->id);
+  }
 }
 
 /* ----------------------------------------------------------------------

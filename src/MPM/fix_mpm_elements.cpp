@@ -98,8 +98,9 @@ Options MPMElementsOptions::declare(int dim)
   thin.declare(o, dim);
   o.add("compression", {word(compression, {{"yes", true}, {"no", false}})},
         "do surfaces and lines resist compression, or wrinkle and sag?");
-  o.add("bending", {word(bending, {{"no", false}, {"yes", true}})},
-        "do surfaces of triangles, and lines, resist bending, as elastic plates and rods?");
+  o.add("bending", {word(bending, {{"no", NONE}, {"yes", CONSTANT}, {"linear", LINEAR}})},
+        "do surfaces of triangles, and lines, resist bending, as elastic plates and rods? linear: "
+        "with a curvature that changes within triangles");
   o.add("axes",
         {numbers(axes, 6, "a1x a1y a1z a2x a2y a2z", ANY_NUMBER, "",
                  "axis 1 of the material, and a vector on the side of axis 2, as they lie on a "
@@ -119,6 +120,8 @@ Options MPMElementsOptions::declare(int dim)
     rules.push_back({wrong != nullptr, "axes", "needs two vectors that are not parallel"});
     rules.push_back(
         {bending && !thin, "bending", "is for surfaces and lines: use thickness or section"});
+    rules.push_back({bending == LINEAR && thin.dimension(dim) != 2, "bending",
+                     "linear is for surfaces in 3d: use bending yes"});
     rules.push_back(
         {bending && !compression, "bending",
          "and compression no exclude each other: what wrinkles does not resist bending"});
@@ -180,7 +183,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   nhistory = material->nhistory;
   stride = 2 + maxnode +
       std::max(maxnode * dim + maxpoint * point_size(),
-               bending && along == 2 ? 1 + (int) (sizeof(BentTriangle) / sizeof(double)) : 0);
+               bending && along == 2 ? 1 + BentTriangle::size(bending == LINEAR) : 0);
   width = 18 + nhistory;
   comm_reverse = width;
   work->history.resize((std::size_t) std::max(1, nhistory) * BATCH);
@@ -1026,6 +1029,20 @@ template <class Visit> void FixMPMElements::for_faces(Visit visit) const
   }
 }
 
+std::vector<FixMPMElements::Face> FixMPMElements::faces() const
+{
+  std::vector<Face> all;
+  for (std::size_t e = 0; e < nodes.size() && along == dim - 1; e++) {
+    if (bends(row(e))) continue;
+    const int nnode = rule_of(row(e)).nnode;
+    for (int part = 0; part < (nnode == 4 ? 2 : 1); part++) {
+      all.push_back({(bigint) row(e)[0], part, {}});
+      for (int m = 0; m < std::min(3, nnode); m++) all.back().node[m] = nodes[e][SPLIT[part][m]];
+    }
+  }
+  return all;
+}
+
 double FixMPMElements::widest_gap() const
 {
   double widest = 0.0, all;
@@ -1085,17 +1102,19 @@ void FixMPMElements::define_bending(double *r, const double (*X)[3], bool inside
   int slots[PATCH_NODES];
   std::iota(slots, slots + PATCH_NODES, 0);
   if (type_of(r) == ElementType::EDGE) {
-    static_assert(sizeof(SharedStrain) <= sizeof(BentTriangle), "does not fit into a row");
+    static_assert(sizeof(SharedStrain) <= sizeof(double) * BentTriangle::size(false),
+                  "does not fit into a row");
     SharedStrain edge;
     edge.define(X);
     memcpy(to, &edge, sizeof(edge));
   } else if (type_of(r) == ElementType::PATCH) {
-    static_assert(sizeof(BentTriangle) % sizeof(double) == 0, "does not fit into a row");
+    static_assert(sizeof(BentTriangle) == sizeof(double) * BentTriangle::size(true),
+                  "does not fit into a row");
     BentTriangle bent;
     bool has[PATCH_NODES - 3];
     for (int k = 0; k < PATCH_NODES - 3; k++) has[k] = r[2 + 3 + k] != r[2];
-    rough += bent.define(X, has, inside, slots) > ROUGH;
-    memcpy(to, &bent, sizeof(bent));
+    rough += bent.define(X, has, inside, bending == LINEAR, slots) > ROUGH;
+    memcpy(to, &bent, sizeof(double) * BentTriangle::size(bending == LINEAR));
     std::copy_n(r + 2, PATCH_NODES, nodes_of_all);
     for (int m = 0; m < bent.n; m++) r[2 + m] = nodes_of_all[slots[m]];
   } else {
@@ -1119,15 +1138,18 @@ void FixMPMElements::define_bending(double *r, const double (*X)[3], bool inside
   extent_of(r) = square;
 }
 
+BentTriangle FixMPMElements::bent_triangle(const double *r) const
+{
+  BentTriangle bent;
+  memcpy(&bent, bent_of(r), sizeof(double) * BentTriangle::size(bending == LINEAR));
+  return bent;
+}
+
 /** Energy of a row, and forces. */
 double FixMPMElements::bend(const double *r, const double (*x)[3], double (*f)[3]) const
 {
   const double *const from = bent_of(r);
-  if (type_of(r) == ElementType::PATCH) {
-    BentTriangle bent;
-    memcpy(&bent, from, sizeof(bent));
-    return bent.bend(stiffness, nu, x, f);
-  }
+  if (type_of(r) == ElementType::PATCH) { return bent_triangle(r).bend(stiffness, nu, x, f); }
   if (type_of(r) == ElementType::EDGE) {
     SharedStrain edge;
     memcpy(&edge, from, sizeof(edge));
@@ -1170,9 +1192,7 @@ double FixMPMElements::largest_bending_frequency() const
     double *const r = row(e), mine[PATCH_NODES];
     if (!bends(r) || type_of(r) == ElementType::EDGE) continue;    // which makes nothing stiffer
     if (type_of(r) == ElementType::PATCH) {
-      BentTriangle bent;
-      memcpy(&bent, bent_of(r), sizeof(bent));
-      bent.stiffness_sums(nu, mine);
+      bent_triangle(r).stiffness_sums(nu, mine);
     } else {
       BentLine bent;
       memcpy(&bent, bent_of(r), sizeof(bent));

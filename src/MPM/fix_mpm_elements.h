@@ -41,9 +41,11 @@ struct MPMElementsOptions {
   bool fbar = false;          ///< average the volume over an element
   MPMThinBody thin;           ///< surfaces or lines
   bool compression = true;    ///< do these resist it, or wrinkle?
-  bool bending = false;       ///< do these resist it?
-  bool has_axes = false;      ///< of the material
-  double axes[6] = {};        ///< in surfaces: axis 1, and the side of axis 2
+  enum Bending { NONE, CONSTANT, LINEAR };
+  Bending bending =
+      NONE;    ///< do these resist it, with constant or linear curvatures in triangles?
+  bool has_axes = false;    ///< of the material
+  double axes[6] = {};      ///< in surfaces: axis 1, and the side of axis 2
 
   MPM_NS::Options declare(int dim);
 };
@@ -157,6 +159,17 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
    *  something can pass that keeps less than this distance from nodes. */
   double widest_gap() const;
 
+  /** The largest distance of two nodes of an element, with room for more deformation, on all ranks together. */
+  double largest_extent() const;
+
+  /** Faces of a surface (in 2d: lines) that are elements of this rank, or halves of them; without those there is none. */
+  struct Face {
+    bigint element;    ///< its label
+    int part;          ///< 0 or 1: which half of a quadrangle
+    int node[3];       ///< local indices, in the order of the element
+  };
+  std::vector<Face> faces() const;
+
  private:
   struct Work;
   struct IDs {    // of the nodes: their number and range
@@ -220,7 +233,6 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void check_fields() const;
   void make_elements(const MPM_NS::Mesh &);
   IDs count_nodes() const;
-  double largest_extent() const;
   void find_nodes();
   void compute(bool starting);
   void load(Work &, std::size_t e, bool moved) const;
@@ -253,6 +265,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   template <class Visit> void for_bending(Visit) const;
   double bend(const double *row, const double (*x)[3], double (*f)[3]) const;
   void add_bending();
+  MPM_NS::BentTriangle bent_triangle(const double *row) const;
   double largest_bending_frequency() const;
 };
 

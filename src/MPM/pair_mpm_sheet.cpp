@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "fix_mpm_elements.h"
 #include "force.h"
@@ -135,6 +136,7 @@ void PairMPMSheet::find_pairs()
   warn_about_step();
   if (starting) warn_about_start();
   if (!warned_gap) warn_about_gaps();
+  if (!warned_through) warn_about_passages();
 }
 
 int PairMPMSheet::body_of(int i) const
@@ -226,6 +228,102 @@ void PairMPMSheet::warn_about_gaps()
 }
 
 /* ----------------------------------------------------------------------
+   Nodes repel each other, and one may still be pushed through the middle of a face. Each time that neighbor lists are made, which is before a
+   node has moved by half of the skin, the side of a face on which nodes are next to it is compared with that of the time before
+------------------------------------------------------------------------- */
+
+void PairMPMSheet::warn_about_passages()
+{
+  auto now = look_at_faces();
+  if (comm->nprocs > 1) {    // faces may have gone to other ranks since
+    auto &known = passages.known;
+    const int size = (int) (known.size() * sizeof(Passages::Sight));
+    std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
+    MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+    for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
+    std::vector<Passages::Sight> all((starts.back() + sizes.back()) / sizeof(Passages::Sight));
+    MPI_Allgatherv(known.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
+                   world);
+    known.swap(all);
+  }
+  const auto *const found = passages.look(std::move(now));
+  int mine = found ? comm->me : comm->nprocs, first;
+  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, world);
+  if (first == comm->nprocs) return;
+  warned_through = true;
+  if (comm->me == first)
+    error->warning(FLERR,
+                   "Pair style mpm/sheet: node {} has gone through element {} of fix mpm/elements "
+                   "{}, seen at step {}, and may be held on the wrong side from now on: use a "
+                   "larger stiffness or distance, or a finer mesh",
+                   found->node, found->face / 2, bodies[found->body].elements->id,
+                   update->ntimestep);
+}
+
+/** Nodes that are next to faces of this rank, but not near these along the surface. */
+std::vector<Passages::Sight> PairMPMSheet::look_at_faces()
+{
+  // nodes that come to a face from next to it: nodes at edges and rims keep those that go around them farther away
+  constexpr double MARGIN = 0.1;
+  std::vector<Passages::Sight> sights;
+  double **const x = atom->x;
+  const int nall = atom->nlocal + atom->nghost, dim = domain->dimension;
+  const double range = distance + neighbor->skin;
+
+  // atoms in cells of this size
+
+  const auto cell_of = [&](double at) {
+    return (int64_t) std::floor(at / range);
+  };
+  const auto key_of = [](int64_t i, int64_t j, int64_t k) {
+    return (i * 2097152 + j) * 2097152 + k;
+  };
+  std::vector<std::pair<int64_t, int>> cells(nall);
+  for (int i = 0; i < nall; i++)
+    cells[i] = {key_of(cell_of(x[i][0]), cell_of(x[i][1]), cell_of(x[i][2])), i};
+  std::sort(cells.begin(), cells.end());
+
+  for (std::size_t b = 0; b < bodies.size(); b++) {
+    const auto &body = bodies[b];
+    for (const auto &face : body.elements->faces()) {
+      const double *at[3];
+      int64_t low[3], high[3];
+      for (int m = 0; m < dim; m++) at[m] = x[face.node[m]];
+      for (int d = 0; d < 3; d++) {
+        double least = at[0][d], most = at[0][d];
+        for (int m = 1; m < dim; m++) {
+          least = std::min(least, at[m][d]);
+          most = std::max(most, at[m][d]);
+        }
+        low[d] = cell_of(least - range);
+        high[d] = cell_of(most + range);
+      }
+      const int type = atom->type[face.node[0]];
+      const auto visit = [&](int i) {
+        if (coeff_of(atom->type[i], type).stiffness == 0.0) return;
+        bool within;
+        const int side = side_of_face(dim, at, x[i], range, MARGIN, within);
+        if (side == 0) return;
+        const bool same = atom->mask[i] & body.elements->groupbit;
+        for (int m = 0; m < dim; m++)
+          if (same && body.nodes->near(atom->tag[i] - body.low, atom->tag[face.node[m]] - body.low))
+            return;
+        sights.push_back(
+            {atom->tag[i], (int64_t) b, 2 * (int64_t) face.element + face.part, side, within});
+      };
+      for (int64_t i = low[0]; i <= high[0]; i++)
+        for (int64_t j = low[1]; j <= high[1]; j++) {
+          const auto first = std::lower_bound(cells.begin(), cells.end(),
+                                              std::make_pair(key_of(i, j, low[2]), -1));
+          for (auto c = first; c != cells.end() && c->first <= key_of(i, j, high[2]); ++c)
+            visit(c->second);
+        }
+    }
+  }
+  return sights;
+}
+
+/* ----------------------------------------------------------------------
    pair_style mpm/sheet D
 ------------------------------------------------------------------------- */
 
@@ -308,7 +406,7 @@ void PairMPMSheet::init_style()
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/sheet with damping needs the velocities of ghost atoms: use "
                "comm_modify vel yes");
-  warned_deep = warned_dt = warned_gap = false;
+  warned_deep = warned_dt = warned_gap = warned_through = false;
   if (modify->nfix_restart_peratom) starting = false;
   neighbor->add_request(this);
 }
@@ -319,6 +417,7 @@ void PairMPMSheet::init_style()
 
 void PairMPMSheet::find_bodies()
 {
+  const auto bodies_before = std::move(bodies);
   bodies.clear();
   for (auto *ifix : modify->get_fix_by_style("^mpm/elements$")) {
     auto *const elements = dynamic_cast<FixMPMElements *>(ifix);
@@ -336,6 +435,11 @@ void PairMPMSheet::find_bodies()
   if (bodies.empty())
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/sheet needs a fix mpm/elements with thickness or section");
+  if (!std::equal(bodies.begin(), bodies.end(), bodies_before.begin(), bodies_before.end(),
+                  [](const Body &a, const Body &b) {
+                    return a.elements == b.elements;
+                  }))
+    passages.known.clear();    // which has their numbers
 }
 
 double PairMPMSheet::init_one(int i, int j)
@@ -384,6 +488,7 @@ void PairMPMSheet::read_restart_settings(FILE *fp)
 double PairMPMSheet::memory_usage()
 {
   double bytes = Pair::memory_usage() + (double) pairs.capacity() * sizeof(pairs[0]);
+  bytes += passages.memory();
   for (const auto &body : bodies) bytes += body.nodes->memory();
   return bytes;
 }

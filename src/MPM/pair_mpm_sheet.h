@@ -17,6 +17,7 @@ PairStyle(mpm/sheet,PairMPMSheet);
 
 #include "declare/option.h"
 #include "mesh/near_nodes.h"
+#include "mesh/passages.h"
 #include "pair.h"
 
 #include <cstdint>
@@ -74,7 +75,8 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
   std::vector<Body> bodies;
   std::vector<std::pair<int, int>> pairs;    // that can touch, of the present neighbor list
   bool starting = true;    // before the first step of bodies that are not from a restart file
-  bool warned_deep = false, warned_dt = false, warned_gap = false;
+  bool warned_deep = false, warned_dt = false, warned_gap = false, warned_through = false;
+  MPM_NS::Passages passages;
 
   void allocate();
   void find_bodies();
@@ -82,6 +84,8 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
   void warn_about_step();
   void warn_about_start();
   void warn_about_gaps();
+  void warn_about_passages();
+  std::vector<MPM_NS::Passages::Sight> look_at_faces();
   int body_of(int i) const;
   Coeff &coeff_of(int i, int j);
 };

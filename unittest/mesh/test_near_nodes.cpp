@@ -3,9 +3,10 @@
 
 // labels: unit
 
-// Nodes that are near each other along a surface, and what fits between them.
+// Nodes that are near each other along a surface, what fits between them, and what goes through.
 
 #include "mesh/near_nodes.h"
+#include "mesh/passages.h"
 #include "mesh/triangle_gap.h"
 
 #include "gtest/gtest.h"
@@ -75,4 +76,43 @@ TEST(TriangleGap, FarthestFromCorners)
     EXPECT_NEAR(triangle_gap(a, b, c), farthest, 0.005);
     EXPECT_EQ(triangle_gap(a, b, c), triangle_gap(b, c, a));
   }
+}
+
+// above, below, beyond an edge, within the margin, and too far away
+TEST(Passages, SideOfAFace)
+{
+  const double p[3][3] = {{1, 1, 2}, {3, 1, 2}, {1, 3, 2}}, *const at[3] = {p[0], p[1], p[2]};
+  const struct {
+    double x[3];
+    int side;
+    bool within;
+  } cases[] = {{{1.5, 1.5, 2.1}, 1, true},  {{1.5, 1.5, 1.9}, -1, true},
+               {{1.5, 1.5, 2.3}, 0, true},  {{1.5, 0.9, 2.1}, 1, false},
+               {{1.5, 0.7, 2.1}, 0, false}, {{2.05, 2.05, 1.9}, -1, false},
+               {{2.4, 2.4, 1.9}, 0, false}, {{0.9, 2.0, 2.0}, 1, false}};
+  for (const auto &c : cases) {
+    bool within;
+    EXPECT_EQ(side_of_face(3, at, c.x, 0.2, 0.1, within), c.side) << c.x[0] << " " << c.x[1];
+    if (c.side) EXPECT_EQ(within, c.within) << c.x[0] << " " << c.x[1];
+  }
+  const double left[3] = {2, 1.1, 0}, right[3] = {2.9, 0.9, 0}, off[3] = {3.1, 1.1, 0};
+  bool within;
+  EXPECT_EQ(side_of_face(2, at, left, 0.2, 0.1, within), 1);
+  EXPECT_EQ(side_of_face(2, at, right, 0.2, 0.1, within), -1);
+  EXPECT_EQ(side_of_face(2, at, off, 0.2, 0.1, within), 1);
+  EXPECT_FALSE(within);
+}
+
+// a side that changes tells a passage, but not where a node was or is not seen, nor where it stays beyond an edge
+TEST(Passages, Looks)
+{
+  using Sight = Passages::Sight;
+  Passages passages;
+  EXPECT_EQ(passages.look({{5, 0, 2, 1, 1}, {4, 0, 2, 1, 0}, {5, 0, 3, 1, 0}}), nullptr);
+  EXPECT_EQ(passages.look({{5, 0, 2, 1, 1}, {4, 0, 2, -1, 0}, {5, 1, 2, -1, 1}}), nullptr);
+  EXPECT_EQ(passages.look({{6, 0, 2, -1, 1}}), nullptr);
+  EXPECT_EQ(passages.look({{7, 0, 1, 1, 1}, {5, 0, 2, -1, 1}, {9, 0, 2, 1, 1}}), nullptr);
+  const Sight *const found = passages.look({{9, 0, 2, -1, 0}, {5, 0, 2, -1, 1}});
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->node, 9);
 }

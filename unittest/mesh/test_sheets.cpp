@@ -274,6 +274,36 @@ TEST(Sheets, WarnsOfMeshesThatAreTooCoarse)
   }
 }
 
+// a sheet whose nodes are over the middles of triangles of another one, which is held, and that is moved through it: told once, with the node, the element, and its fix. Not told: away from it, and
+// around its rim to the other side
+TEST(Sheets, WarnsOfNodesThatGoThrough)
+{
+  const double a = 0.05, h = 0.058;
+  const auto warnings = [&](const std::vector<Node> &velocities, double k) {
+    ScratchFile file("strip.msh", folded(1, 6, 3, a, 0.0));
+    const std::string mesh = "create_points 1 mesh " + file.name + " thickness 0.001";
+    std::string commands = MPM_TEST::box(3, "si", "f f f", "-0.4 0.9 -0.4 0.9 -0.4 0.4", 1, 0.02) +
+        mesh + "\n" + mesh + strprintf(" move %.17g %.17g %g\n", a / 3.0, a / 3.0, h) +
+        "group low id <= 28\ngroup up id > 28\n"
+        "fix m all mpm/material density 1000 neohookean 1e5 0.3\n"
+        "fix a low mpm/elements " +
+        file.name + " thickness 0.001\nfix b up mpm/elements " + file.name +
+        " thickness 0.001\npair_style mpm/sheet 0.045\n" +
+        strprintf("pair_coeff * * %g\ntimestep 1e-3\n", k);
+    for (const Node &v : velocities)
+      commands += strprintf("fix go up move linear %g %g %g\nrun 200\nrun 200\nunfix go\n", v[0],
+                            v[1], v[2]);
+    return lines_that_say(commands, "has gone through element");
+  };
+  const double down = -2.0 * h / 0.4, away = 0.5 / 0.4;
+  const auto through = warnings({{0.0, 0.0, down}, {0.0, 0.0, -down}}, 1.0);
+  ASSERT_EQ(through.size(), 2u);    // in one of the two runs of each way
+  EXPECT_THAT(through[0], HasSubstr("of fix mpm/elements"));
+  EXPECT_EQ(warnings({{0.0, 0.0, down}}, 0.0).size(), 0u);
+  EXPECT_EQ(warnings({{0.0, 0.0, -down}}, 1.0).size(), 0u);
+  EXPECT_EQ(warnings({{away, 0.0, 0.0}, {0.0, 0.0, down}, {-away, 0.0, 0.0}}, 1.0).size(), 0u);
+}
+
 SERIAL_TEST(Sheets, BadInput)
 {
   ScratchFile file("strip.msh", folded(3, 6, 3, 0.05, 0.045));

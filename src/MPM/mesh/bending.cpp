@@ -85,10 +85,12 @@ double BentTriangle::bend(double D, double nu, const double (*x)[3], double (*f)
     for (int k = 0; k < n; k++) change[c] += h[c * n + k] * up[k];
   }
   if (nfree) relax(nu, change);
-  moment[0] = change[0] + nu * change[1];
-  moment[1] = change[1] + nu * change[0];
-  moment[2] = 2.0 * (1.0 - nu) * change[2];
-  for (int c = 3; c < nrow; c++) moment[c] = change[c];
+  for (int c = 0; c < ncurvature; c += 3) {
+    moment[c] = change[c] + nu * change[c + 1];
+    moment[c + 1] = change[c + 1] + nu * change[c];
+    moment[c + 2] = 2.0 * (1.0 - nu) * change[c + 2];
+  }
+  for (int c = ncurvature; c < nrow; c++) moment[c] = change[c];
   for (int c = 0; c < nrow; c++) {
     moment[c] *= area * D;
     energy += 0.5 * moment[c] * change[c];
@@ -108,18 +110,23 @@ double BentTriangle::bend(double D, double nu, const double (*x)[3], double (*f)
 
 void BentTriangle::stiffness_sums(double nu, double *sum) const
 {
-  double size[PATCH_NODES], wave[PATCH_NODES], all = 0.0, waves = 0.0;
+  double size[MOST / 3][PATCH_NODES], wave[PATCH_NODES], all[MOST / 3] = {0.0}, waves = 0.0;
   for (int k = 0; k < n; k++) {
     double square = 0.0;
-    for (int c = 3; c < nrow; c++) square += h[c * n + k] * h[c * n + k];
-    const double xx = h[k], yy = h[n + k], xy = h[2 * n + k];
-    size[k] = std::sqrt(xx * xx + yy * yy + 2.0 * xy * xy);
+    for (int c = ncurvature; c < nrow; c++) square += h[c * n + k] * h[c * n + k];
+    for (int t = 0; t < ncurvature / 3; t++) {
+      const double *const of = h + 3 * t * n + k;
+      size[t][k] = std::sqrt(of[0] * of[0] + of[n] * of[n] + 2.0 * of[2 * n] * of[2 * n]);
+      all[t] += size[t][k];
+    }
     wave[k] = std::sqrt(square);
-    all += size[k];
     waves += wave[k];
   }
-  for (int k = 0; k < n; k++)
-    sum[k] = area * ((1.0 + std::fabs(nu)) * size[k] * all + wave[k] * waves);
+  for (int k = 0; k < n; k++) {
+    double curvatures = 0.0;
+    for (int t = 0; t < ncurvature / 3; t++) curvatures += size[t][k] * all[t];
+    sum[k] = area * ((1.0 + std::fabs(nu)) * curvatures + wave[k] * waves);
+  }
 }
 
 /* ---------------------------------------------------------------------- */

@@ -30,6 +30,16 @@ constexpr int PATCH_NODES = 12;
  *  in waves there, which is of second order. q, four times the area over the square of the longest edge, is 1 at most, and less for triangles that are narrower than half a square: along these curvatures are smaller
  *  than w/area. */
 constexpr double ABOVE_THIRD = 2.7, ABOVE_SECOND = 0.6;
+constexpr int FEW_NODES = 10;    ///< of a patch, up to which it is second order
+
+/** Instead of what is above third order, the curvature can change linearly in a triangle, as in a discrete Kirchhoff triangle (J.L. Batoz, K.J. Bathe, L.W. Ho,
+ *  Int. J. Numer. Methods Eng. 15 (1980) 1771), with slopes at corners from the nodes of the patch. Those slopes are exact for
+ *  surfaces of second order only and exaggerate the change. This is the part of its energy that resists: with it, waves of twelve edges have 1.00 to 1.02 of the stiffness of a plate, and those of six 0.98 to 1.07. */
+constexpr double LINEAR_PART = 0.5;
+
+/** For n nodes, the first three of which are the corners, the sums over values at nodes of the deviations from the mean curvature, xx yy xy and xx yy xy, along two
+ *  linear functions whose mean square is one, times the square root of LINEAR_PART. They vanish for surfaces of second order. False: the nodes do not tell slopes at the corners. */
+bool linear_curvatures(const double (*at)[2], int n, double (*rows)[6]);
 
 /** Vectors s[.][k] above all polynomials of an order, 2 or 3, for n nodes, and never more than most; returns how many there are. */
 int above_polynomials(int order, const double (*at)[2], int n, int most, double (*s)[4]);
@@ -42,19 +52,24 @@ int above_polynomials(int order, const double (*at)[2], int n, int most, double 
  *  is exact at a rim, there is no moment across it. With coefficients h_k the curvature is b = n . sum_k h_k x_k, where n is the present normal, which is zero for a
  *  plane, and does not change by rotations. The same holds for short waves, see above. */
 struct BentTriangle {
-  static constexpr int MOST = 7;    // rows of 10 nodes, and 5 of 12
-  int n;                            ///< nodes with a part
-  int nfree;                        ///< rims without moment
-  int nrow;                         ///< 3, and the number of short waves that resist
-  // coefficients [nrow][n] of curvatures xx, yy, xy along axes in the plane of the triangle, and of short waves [1/length^2]
-  double h[70];
+  static constexpr int MOST =
+      9;        // rows: with constant curvatures 7 of 10 nodes or 5 of 12, with linear ones 9 of 12
+  int n;        ///< nodes with a part
+  int nfree;    ///< rims without moment
+  int nrow;     ///< 3, and the number of short waves, or changes of curvatures, that resist
+  int ncurvature;       ///< 3, or 9 with changes of curvatures
   double m[2][2];       ///< normals of those rims
   double rest[MOST];    ///< curvatures, and short waves, without moment
   double area;
+  // coefficients [nrow][n] of curvatures xx, yy, xy along axes in the plane of the triangle, and of short waves [1/length^2]
+  double h[MOST * PATCH_NODES];
 
-  /** From the positions X[PATCH_NODES] without moment; has: is there a node 3, 4 ... 11? inside: is no node on a rim, next to which triangles are stiff enough? slots: which nodes have a part, the first three of them those of
+  /** How many doubles of this are in use, h being the last. */
+  static constexpr int size(bool linear) { return START + (linear ? MOST * PATCH_NODES : 70); }
+
+  /** From the positions X[PATCH_NODES] without moment; has: is there a node 3, 4 ... 11? inside: is no node on a rim, next to which triangles are stiff enough? linear: does the curvature change in it? slots: which nodes have a part, the first three of them those of
    *  the triangle; these are the nodes of what follows. Returns the largest error of a slope inside, in parts of what the curvature makes of it over the size of the patch. */
-  double define(const double (*X)[3], const bool *has, bool inside, int *slots);
+  double define(const double (*X)[3], const bool *has, bool inside, bool linear, int *slots);
 
   /** Energy of bending of a plate with stiffness D and Poisson's ratio nu; adds forces on the nodes to f[n]. */
   double bend(double D, double nu, const double (*x)[3], double (*f)[3]) const;
@@ -63,6 +78,8 @@ struct BentTriangle {
   void stiffness_sums(double nu, double *sum) const;
 
  private:
+  static constexpr int START =
+      2 + 4 + MOST + 1;    // doubles before h: four integers, m, rest, area
   void relax(double nu, double *change) const;
 };
 

@@ -187,11 +187,12 @@ double correct(const Place *at, const int *node, int n, double *c)
   return left < EXACT ? 0.0 : left;
 }
 
-/** Append short waves to the coefficients of a patch without creases that is not at a rim; returns their number. Of a node that is there twice, only the first one is known. */
-int add_short_waves(const Unfolded &all, const bool *again, double area,
-                    double (*coefficients)[BentTriangle::MOST])
+/** Append what resists short waves, or linear curvatures, to the coefficients of a patch without creases that is not at a rim; returns the number of rows. Of a node that is there
+ *  twice, only the first one is known. */
+int add_above(const Unfolded &all, const bool *again, double area, bool linear,
+              double (*coefficients)[BentTriangle::MOST])
 {
-  double at[PATCH_NODES][2], s[PATCH_NODES][4];
+  double at[PATCH_NODES][2], s[PATCH_NODES][4], changes[PATCH_NODES][6];
   int node[PATCH_NODES], n = 0;
   for (int a = 0; a < PATCH_NODES; a++) {
     if (!all.has[a] || !all.smooth[a]) return 0;
@@ -200,7 +201,12 @@ int add_short_waves(const Unfolded &all, const bool *again, double area,
     at[n][1] = all.p[a].y;
     node[n++] = a;
   }
-  const bool few = n <= 10;
+  const bool few = n <= FEW_NODES;
+  if (linear && !few) {
+    if (!linear_curvatures(at, n, changes)) return 0;
+    for (int k = 0; k < n; k++) std::copy_n(changes[k], 6, coefficients[node[k]] + 3);
+    return 6;
+  }
   const int found = above_polynomials(few ? 2 : 3, at, n, few ? 4 : 2, s);
   const double l = std::max({length(all.p[0], all.p[1]), length(all.p[1], all.p[2]),
                              length(all.p[2], all.p[0])}),
@@ -215,7 +221,8 @@ int add_short_waves(const Unfolded &all, const bool *again, double area,
 
 /* ---------------------------------------------------------------------- */
 
-double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool away, int *slots)
+double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool away, bool linear,
+                            int *slots)
 {
   const Unfolded all(X, neighbors);
   const Place *const p = all.p;
@@ -284,7 +291,8 @@ double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool aw
       }
     }
   nrow = 3;
-  if (away && nfree == 0) nrow += add_short_waves(all, again, area, coefficients);
+  if (away && nfree == 0) nrow += add_above(all, again, area, linear, coefficients);
+  ncurvature = nrow == MOST ? MOST : 3;
   n = 0;
   for (int a = 0; a < PATCH_NODES; a++) {
     const double *const from = coefficients[a];

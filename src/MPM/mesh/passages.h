@@ -1,0 +1,49 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MESH_PASSAGES_H
+#define MPM_MESH_PASSAGES_H
+
+#include <cstdint>
+#include <vector>
+
+namespace MPM_NS {
+
+/** On which side of a triangle (in 2d: of a line) a place is: 1 where its nodes go around counterclockwise (in 2d: on the left), -1 on the other one, 0: its
+ *  projection is outside by more than margin, in parts of the height of the triangle, or it is farther away than range. within: is the projection
+ *  within the face? */
+int side_of_face(int dim, const double *const at[3], const double *x, double range, double margin,
+                 bool &within);
+
+/** Which nodes have gone through faces of a surface between two looks. Nothing here knows about LAMMPS. */
+class Passages {
+ public:
+  /** A node that is close to a face, and the side on which it is. */
+  struct Sight {
+    int64_t node, body, face;
+    int32_t side;
+    int32_t within;    ///< is its projection within the face, and not in the margin?
+
+    bool operator<(const Sight &other) const
+    {
+      if (node != other.node) return node < other.node;
+      return body != other.body ? body < other.body : face < other.face;
+    }
+  };
+
+  /** Of those that are seen now, one that has come through a face since the last look, null: there is none. */
+  const Sight *look(std::vector<Sight> now);
+
+  /** What is known of the last look, for ranks that see these pairs in the next one. */
+  std::vector<Sight> known;
+
+  double memory() const { return (double) known.capacity() * sizeof(Sight); }
+};
+
+}    // namespace MPM_NS
+#endif
