@@ -397,6 +397,73 @@ TEST(Work, LedgerAndRestart)
   }
 }
 
+// A wall that is faster in each step works with the mean of its velocities before and after: that is what a body that moves along as a whole gets as
+// kinetic energy, however long the steps are. With the velocity after it, half of m dv^2 would be too much in each step
+TEST(Work, OfTheMeanVelocity)
+{
+  const char *motions[] = {"stick displacement v_u NULL v_w", "stick velocity v_u v_w NULL",
+                           "stick displacement v_u 0 0 rotate 5 5 5 0 0 1 v_rate",
+                           "stick rotate 5 5 5 0 0 1 v_rate"};
+  for (const std::string motion : motions)
+    for (const std::string frame : {"updated", "total"}) {
+      if (frame == "updated" && motion.find("rotate") < motion.npos) continue;
+      Scene run(space("lj", "f f f", "0 10 0 10 0 10", 1, 0.5) +
+                body("block 4 6 4 6 4 6", "density 1.0 neohookean 10.0 0.3",
+                     "1.0 transfer apic frame " + frame) +
+                "region all block INF INF INF INF INF INF\n"
+                "variable u equal 0.5*sin(2*time)\nvariable w equal -0.2*time^2\n"
+                "variable rate equal 0.5+sin(time)\n"
+                "fix w all mpm/boundary region all " +
+                motion +
+                "\ncompute e all mpm/energy\nthermo_style custom step c_e\n"
+                "timestep 0.05\nrun 1\n");
+      const auto kinetic = [&]() {
+        double sum = 0.0;
+        run.each_node([&](const Scene::Node &node) {
+          for (int d = 0; d < 3 && node.owned; d++) sum += 0.5 * node.mass * node.v[d] * node.v[d];
+        });
+        return over_ranks(sum);
+      };
+      const double work = run.fix("w")->compute_scalar(), start = kinetic();
+      // it goes on after a restart
+      run.commands("run 20\n");
+      const ScratchFile file("restart");
+      run.commands("write_restart " + file.name + "\nclear\nread_restart " + file.name + "\n");
+      run.commands("fix grid all mpm 1.0 transfer apic frame " + frame +
+                   "\nfix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                   "region all block INF INF INF INF INF INF\n"
+                   "variable u equal 0.5*sin(2*time)\nvariable w equal -0.2*time^2\n"
+                   "variable rate equal 0.5+sin(time)\n"
+                   "fix w all mpm/boundary region all " +
+                   motion +
+                   "\ncompute e all mpm/energy\nthermo_style custom step c_e\n"
+                   "timestep 0.05\nrun 17\n");
+      const double gained = kinetic() - start;
+      EXPECT_GT(std::fabs(gained), 0.01) << motion;
+      EXPECT_NEAR(run.fix("w")->compute_scalar() - work, gained, 1e-11) << motion << " " << frame;
+    }
+}
+
+// Ground shaken from below, away from its resonance: what the base has worked is what the ground has, with what is lost on the way
+TEST(Work, OfAShakenBase)
+{
+  for (const double dt : {0.1, 0.4}) {
+    Scene run("units lj\ndimension 2\nboundary p f p\natom_style mpm\n"
+              "region box block 0 4 0 13 -0.5 0.5\ncreate_box 1 box\nneighbor 0.3 bin\n"
+              "fix grid all mpm 1.0 transfer aflip 1.0\nregion soil block INF INF 0 10 INF INF\n"
+              "create_points 1 region soil ppc 2\n"
+              "fix m all mpm/material density 1.0 linear 2.5 0.25\n"
+              "variable v equal 0.001*sin(0.25*time)\n"
+              "fix base all mpm/boundary ylo stick velocity v_v 0 0\n" +
+              strprintf("fix dt all mpm/dt %g until 400\n", dt) +
+              "compute e all mpm/energy\nthermo_style custom step c_e\nrun 100000\n");
+    const double *const e = run.compute_vector(), energy = e[0] + e[1];
+    EXPECT_GT(energy, 0.0);
+    EXPECT_NEAR(measured("work of the base over the energy", e[6] / energy), 1.0, 0.15) << dt;
+    EXPECT_LT(e[8], 0.0) << dt;    // transfers lose
+  }
+}
+
 /* ------------------------------------------- friction: benchmark F2, block on an inclined plane */
 
 static std::string incline(double mu)

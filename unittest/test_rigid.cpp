@@ -403,6 +403,34 @@ SERIAL_TEST(RigidBody, IsNotTooFastForTheBlock)
   EXPECT_LT(run.sums().p[2], -10.0);
 }
 
+// A body that swings on elastic material gives this the kinetic energy that it loses, with any time step: to round-off, and where it turns up to
+// what its inertia has turned by in a step
+TEST(RigidBody, GivesWhatItLoses)
+{
+  const ScratchFile file("box.stl", text_of(box({-1.0, -1.0, 5.0}, {5.0, 5.0, 9.0})));
+  for (const std::string motion : {"velocity 0 0 -0.3 hold x y rx ry rz", "omega 0 0 0.05"})
+    for (const double dt : {0.1, 0.4}) {
+      Scene run("units lj\natom_style mpm\nregion box block -2 6 -2 6 -1 12\n"
+                "create_box 1 box\nneighbor 0.3 bin\nfix grid all mpm 1.0 transfer apic\n"
+                "region b block 0 4 0 4 0 6\ncreate_points 1 region b ppc 2\n"
+                "fix m all mpm/material density 1 linear 100 0.2\n"
+                "region low block INF INF INF INF INF 0.4\n"
+                "fix w all mpm/boundary region low stick\nregion tool mpm/mesh " +
+                file.name + " 1 0 0 0\nfix body all mpm/rigid tool mass 400 stick " + motion +
+                strprintf("\nfix dt all mpm/dt %g until 40\n", dt) +
+                "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
+      const double start = run.fix("body")->compute_scalar();
+      run.commands("run 100000\n");
+      const double lost = start - run.fix("body")->compute_scalar();
+      const double *const e = run.compute_vector();
+      EXPECT_GT(lost, 0.1 * start) << motion;
+      EXPECT_NEAR(measured("contact over lost", e[7] / lost), 1.0, motion[0] == 'v' ? 1e-10 : 1e-5)
+          << motion << dt;
+      EXPECT_LT(e[8], 0.0) << motion << dt;    // transfers lose
+      EXPECT_LT(std::fabs(e[10]), 1e-12 * start);
+    }
+}
+
 TEST(RigidBody, RefusesMistakes)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));

@@ -1094,6 +1094,25 @@ void FixMPMBoundary::Wall::velocity(const double *x, double *v) const
 }
 
 /* ----------------------------------------------------------------------
+   half of what the velocity of the wall, where the node is, has changed by since the last step. An impulse R dt of the wall
+   takes its node from the velocity u to v, with which points then go from x to x'. What it adds to kinetic and stored
+   energy is R dt (u + v)/2, up to terms that the next step cancels, as forces of x do work on half of the way to x and half of that
+   to x'. R dt v would differ from it by R (v - u) dt/2 in each step, which adds up where a mass is shaken.
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::Wall::half_change(const MPMField &field, int64_t node, double *v) const
+{
+  double x[3];
+  for (int d = 0; d < 3; d++) v[d] = 0.5 * (shift[d] - before[d]);
+  if (uniform) return;
+  field.grid.node_position(node, x);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      v[i] += 0.5 *
+          (gradient[i][j] * (x[j] - origin[j]) - gradient_before[i][j] * (x[j] - origin_before[j]));
+}
+
+/* ----------------------------------------------------------------------
    A region acts on nodes that are inside of it at the start of a step: one that crosses more than a
    cell in a step can pass through a body without touching it. Not all regions tell how far they
    reach, so that this looks at displacements alone, not at rotations.
@@ -1137,6 +1156,8 @@ void FixMPMBoundary::update_motion(double dt)
   wall = {};
   wall.uniform = true;
   MathExtra::copy3(past.shift, wall.before);
+  std::copy_n(past.gradient[0], 9, wall.gradient_before[0]);
+  MathExtra::copy3(past.origin, wall.origin_before);
   const bool variables = region_moves() || !velocity[0].variable.empty() ||
       !velocity[1].variable.empty() || !velocity[2].variable.empty() || !rate.variable.empty();
   double *const old = past.region;
@@ -1196,7 +1217,13 @@ void FixMPMBoundary::update_motion(double dt)
       for (auto &list : nodes) take_off_lines(list);
   }
   if (!past.acted) MathExtra::copy3(wall.shift, wall.before);
-  MathExtra::copy3(wall.shift, past.shift);
+  // solvers look at forces and motion of the same time, and nodes of the total frame are the material
+  wall.changes = past.acted && !in_implicit_steps;
+  const bool follow = !wall.uniform && !nodes[0].field->options.total;
+  const Wall end = follow ? wall.at_end_of_step(dt) : wall;
+  MathExtra::copy3(end.shift, past.shift);
+  std::copy_n(end.gradient[0], 9, past.gradient[0]);
+  MathExtra::copy3(end.origin, past.origin);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -1374,7 +1401,7 @@ void FixMPMBoundary::push_by_water(Grid &grid, int64_t node, const double *norma
 /* ----------------------------------------------------------------------
    velocity of a node, also the old one unless null, next to a wall with the velocity V, and what this
    does. Work is impulse times the
-   velocity with which points are then moved, so that a wall at rest works only by friction. The
+   velocity with which points are then moved, less half of what the wall's has changed by, so that a wall at rest works only by friction. The
    kinetic energy of the nodes changes by the change of velocity times the mean of old and new one;
    what is not work is lost, most of it energy that forces had given to nodes that cannot move. A node
    that goes part of the way only is worked on with the velocity of all of it (whole): it slips.
@@ -1390,13 +1417,15 @@ void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *V, con
   if (now.normal) more = slip_work(grid, node, V, change, v, whole ? whole : v);
   if (now.counting && grid.owns(node)) {
     double moved = more, driven = 0.0, gained = 0.0, change_old[3] = {0.0}, push[3] = {0.0};
+    double faster[3] = {0.0};
+    if (wall.changes) wall.half_change(*nodes[now.place].field, node, faster);
     for (int d = 0; d < dim; d++) {
       if (old) change_old[d] = old[d] - record[4 + d];
       const double given = change[d] - now.old_share * change_old[d];
       push[d] = record[3] * given;
       impulse[d] += push[d];
-      moved += given * (whole ? whole : v)[d];
-      driven += given * V[d];
+      moved += given * ((whole ? whole : v)[d] - faster[d]);
+      driven += given * (V[d] - faster[d]);
       if (now.ledger)
         gained += 0.5 * (change[d] - change_old[d]) * (v[d] + (old ? old[d] : record[4 + d]));
     }

@@ -260,8 +260,10 @@ class FixMPMBoundary :
   };
   struct Wall {    // its motion in a step: velocity shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];
-    double before[3];    // velocity in the last step
+    double before[3];                                  // velocity in the last step
+    double gradient_before[3][3], origin_before[3];    // at its end, see at_end_of_step()
     bool uniform;
+    bool changes;                     // is its velocity another one than in the last step?
     double turned[3][3], moved[3];    // nodes of the total frame at X are at X + turned X + moved
 
     void rotate(double angle, const double *axis, const double *center, double dt);
@@ -269,6 +271,7 @@ class FixMPMBoundary :
     Wall at_end_of_step(double dt) const;
     void velocity(const MPMField &, int64_t node, double *v) const;
     void velocity(const double *x, double *v) const;
+    void half_change(const MPMField &, int64_t node, double *v) const;
     double old_relative(const double *record, int d, double limit) const;
   };
   struct Prescribed {    // velocity that a wall gives to nodes
@@ -277,11 +280,12 @@ class FixMPMBoundary :
     double limit[3];    // of old velocities relative to the wall, where these are constrained, too
     bool hold[3];       // are these?
   };
-  struct Past {             // of the steps before, as restart files keep it, without padding
-    double work;            // on the body, this rank's share; in files that of all, as energy
-    double shift[3];        // velocity of the wall in the last step, when it does not turn
-    double region[4];       // shift and angle of the region at the end of the last step
-    double displaced[3];    // what the displacement was by then
+  struct Past {     // of the steps before, as restart files keep it, without padding
+    double work;    // on the body, this rank's share; in files that of all, as energy
+    double shift[3], gradient[3][3],
+        origin[3];                    // velocity of the wall in the last step, at its end
+    double region[4];                 // shift and angle of the region at the end of the last step
+    double displaced[3];              // what the displacement was by then
     double turned[3][3], moved[3];    // as in Wall, by then
     int64_t acted;                    // there was a last step
   };

@@ -14,12 +14,14 @@
 #include "fix_mpm_contact.h"
 #include "fix_mpm_dashpot.h"
 #include "fix_mpm_heat.h"
+#include "fix_mpm_material.h"
 #include "fix_mpm_relax.h"
 #include "fix_mpm_rigid.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_options.h"
 #include "mpm_point_map.h"
+#include "mpm_stencil.h"
 #include "mpm_two_scale.h"
 
 #include <algorithm>
@@ -141,6 +143,16 @@ void FixMPMRefine::check(MPMField &coarse, MPMField &fine) const
   }
 }
 
+/** What to do in place of a physics that nodes at the rim do not have. */
+static std::string in_place_of(const std::string &style)
+{
+  if (style == "mpm/implicit")
+    return "use explicit steps, with fix mpm/relax for a body at rest, or one fix mpm for all of "
+           "the body";
+  if (style == "mpm/pml") return "use fix mpm/dashpot, or one fix mpm for all of the body";
+  return "use one fix mpm for all of the body, with the node spacing that its finest part needs";
+}
+
 /* ----------------------------------------------------------------------
    what acts on nodes acts on those of all fields, and tied ones follow; what exchanges something between places would miss
    those
@@ -157,8 +169,8 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
         !dynamic_cast<FixMPMDashpot *>(action))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/refine {} does not go with fix {} {}, which would miss what nodes at the "
-                 "rim of a lattice have: remove one of them",
-                 id, ifix->style, ifix->id);
+                 "rim of a lattice have: {}",
+                 id, ifix->style, ifix->id, in_place_of(ifix->style));
   }
   for (auto *physics : plan.physics) {
     auto *ifix = dynamic_cast<Fix *>(physics);
@@ -167,8 +179,8 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
         !dynamic_cast<FixMPMHeat *>(physics))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/refine {} does not go with fix {} {}, whose values at nodes would not be "
-                 "continuous from one lattice to the other: remove one of them",
-                 id, ifix->style, ifix->id);
+                 "continuous from one lattice to the other: {}",
+                 id, ifix->style, ifix->id, in_place_of(ifix->style));
   }
 }
 
@@ -333,6 +345,59 @@ void FixMPMRefine::find_tied()
                      "Fix mpm/refine {}: no node of fix mpm {} is tied: its points and those of {} "
                      "do not meet",
                      id, pair->fine.id(), pair->coarse.id());
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Laws of damage spend the energy of a crack that is one cell of their own lattice wide. Next to the rim functions are those of two
+   lattices, and cracks are as wide as the larger cells. Points that have lost half of their stress and see nodes that
+   are tied, or parents of these
+------------------------------------------------------------------------- */
+
+bigint FixMPMRefine::cracked_at_rim(const MPMTwoScale &pair) const
+{
+  static constexpr double CRACKED = 0.5;
+  std::vector<double> tied(pair.fine.grid.nnodes(), 0.0), parents(pair.coarse.grid.nnodes(), 0.0);
+  for (std::size_t k = 0; k < tied.size(); k++) tied[k] = pair.is_tied((int64_t) k);
+  const auto rim = tied;
+  pair.sums_to_parents(tied, parents);
+  pair.coarse.nodes.sum(parents.data(), 1, 0, 1);
+  bigint mine = 0, all;
+  for (const auto &[field, near] : {std::pair(&pair.fine, &rim), {&pair.coarse, &parents}})
+    for (const auto &run : field->map->runs) {
+      const int column = run.material ? run.material->damage : -1;
+      if (column < 0) continue;
+      for (int i = run.first; i < run.last; i++) {
+        if (run.material->history[i][column] < CRACKED) continue;
+        bool sees = false;
+        MPMStencil(*field).visit(field->grid.blocks[run.slot], i, [&](const auto &node) {
+          sees = sees || (node.weight > 0.0 && (*near)[node.number] > 0.0);
+        });
+        mine += sees;
+      }
+    }
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  return all;
+}
+
+void FixMPMRefine::post_run()
+{
+  const auto materials = find_fixes<FixMPMMaterial>(lmp);
+  const bool can_crack = std::any_of(materials.begin(), materials.end(), [](const auto *m) {
+    return m->damage >= 0;
+  });
+  if (!can_crack || !warned || told_of_cracks) return;    // warned: there was a step
+  for (const auto &pair : pairs) {
+    const bigint cracked = cracked_at_rim(*pair);
+    if (!cracked || told_of_cracks) continue;
+    told_of_cracks = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/refine {}: {} points at the rim between fix mpm {} and {} have lost "
+                     "half of their stress or more by damage: cracks there spend 0.9 to 1.7 times "
+                     "the energy that they spend elsewhere: keep rims three coarse cells away from "
+                     "where the material fails",
+                     id, cracked, pair->coarse.id(), pair->fine.id());
   }
 }
 

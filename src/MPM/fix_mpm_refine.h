@@ -35,6 +35,7 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   FixMPMRefine(class LAMMPS *, int, char **);
   ~FixMPMRefine() override;
   int setmask() override { return 0; }    // called by fix mpm
+  void post_run() override;
 
   /** The fields of this body that are finer than this one, of which it has the name; none if it is none of the body. */
   std::vector<MPMField *> finer_than(const std::string &name) const;
@@ -78,7 +79,7 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   };
   std::vector<Neighbor> neighbors;
   std::vector<MPMReach> reaches;    // of the fields
-  bool warned = false;
+  bool warned = false, told_of_cracks = false;
 
   void check(MPMField &coarse, MPMField &fine) const;
   void check_others(const MPMPlan &) const;
@@ -87,6 +88,7 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
                           const std::string &theirs) const;
   void find_neighbors(const MPMPlan &);
   void find_tied();
+  bigint cracked_at_rim(const MPMTwoScale &) const;
   int level(const std::string &name) const;
   int level(const MPMField &) const;
   bool is_stale() const;

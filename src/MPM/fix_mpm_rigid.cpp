@@ -678,6 +678,7 @@ void FixMPMRigid::move(double dt)
 void FixMPMRigid::act(double dt, Stage stage)
 {
   if (stage == STEP) {
+    const double old[6] = {v[0], v[1], v[2], omega[0], omega[1], omega[2]};
     dt_last = dt;
     load_impulse(dt);
     hold();
@@ -686,6 +687,19 @@ void FixMPMRigid::act(double dt, Stage stage)
     if (heating) heating->begin_step();
     solve();
     move(dt);
+
+    // The nodes were counted with the new velocity of the body. Impulses on it change its kinetic energy with the mean of both: see
+    // FixMPMBoundary::Wall::half_change(). The sum is the same on all ranks
+
+    double faster = 0.0;
+    for (int d = 0; d < 3; d++)
+      faster -= 0.5 * (impulse[d] * (v[d] - old[d]) + impulse[3 + d] * (omega[d] - old[3 + d]));
+    if (comm->me == 0) {
+      auto &ledger = MPMField::all(lmp)[0]->ledger;
+      ledger.contact -= faster * force->mvv2e;
+      ledger.driven -= faster * force->mvv2e;
+      if (ledger.on) ledger.transfer += faster * force->mvv2e;
+    }
     check_motion(dt);
     return;
   }
