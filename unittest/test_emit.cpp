@@ -514,6 +514,43 @@ run 500
   }
 }
 
+// a bar with heat sources slides into a sink: the heat of the points that are still there, of which the material tells only what heat makes what
+// temperature, and of those that went is what came
+PARAMETER_TEST(Sink, HeatIsInBalance, const char *,
+               Values("", "melt 310 2e4", "melt 310 2e4 over 5",
+                      "melt 310 2e4 vary CP table 300 1.0 700 6.0"))
+{
+  const auto scene = [](const char *more) {
+    return plane("si", "p p", "0 2 0 0.2", 1, 0.025) +
+        "fix grid all mpm 0.05\nregion bar block 0 1.4 INF INF INF INF\n"
+        "create_points 1 region bar ppc 2\n"
+        "fix m all mpm/material density 1000 eos linear 4e4 thermal conducting 900 300 50 " +
+        more +
+        "\nvelocity all set 1 0 0\nvariable s atom 1e8*(1+x)\nfix heat all mpm/heat source v_s\n"
+        "region sink block 1.6 2 INF INF INF INF\nfix out all mpm/absorb region sink\n"
+        "compute T all mpm/atom temperature molten\ncompute e all mpm/energy\ntimestep 1e-3\n";
+  };
+  const bool table = strstr(GetParam(), "vary");
+  Scene run(replaced(scene(GetParam()), " molten", *GetParam() ? " molten" : "") + "run 600\n");
+  const double *const out = run.fix_vector("out", 9);
+  EXPECT_GT(out[0], 50.0);
+  const double gone = out[8], came = run.fix("heat")->compute_scalar();
+  auto *const T = run.lmp->modify->get_compute_by_id("T");
+  double there = 0.0;
+  T->compute_peratom();
+  for (int i = 0; i < run.n(); i++) {
+    const double *const columns = *GetParam() ? T->array_atom[i] : &T->vector_atom[i];
+    const double t = columns[0] - 300.0, molten = *GetParam() ? columns[1] : 0.0;
+    // with the table, specific heat rises by half in 40 K
+    const double h = 900.0 * (table ? t + 0.25 * t * t / 40.0 : t) + 2e4 * molten;
+    there += run.lmp->atom->rmass[i] * h;
+  }
+  there = over_ranks(there, MPI_SUM);
+  EXPECT_GT(gone, 0.1 * came);
+  EXPECT_NEAR(measured("heat that is there and that went, over what came", (there + gone) / came),
+              1.0, 1e-9);
+}
+
 // a column of an incompressible fluid runs out of the box: what is there and what has gone are all of it, on any number of processes
 TEST(Channel, DrainOfAnIncompressibleFluid)
 {

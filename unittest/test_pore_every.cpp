@@ -15,7 +15,8 @@ using namespace MPM_TEST;
 SERIAL_TEST(Consolidation, Terzaghi)
 {
   for (const double Kf : {2.2e8, 2.2e9})
-    for (const char *options : {"yhi pressure 0 every 5", "free pressure 0 every 5"}) {
+    for (const char *options : {"yhi pressure 0 every 5", "free pressure 0 every 5",
+                                "yhi pressure 0 every auto", "free pressure 0 every auto"}) {
       const bool free = options[0] == 'f';
       const auto result = consolidate(20, options, free ? 1.2 : 1.0, free ? 0.3 : 0.0, Kf);
       EXPECT_LT(measured(strprintf("Kf %g, %s, rms", Kf, options), result.rms), 0.002);
@@ -40,6 +41,63 @@ SERIAL_TEST(Undrained, PressureIsEven)
   for (const double Kf : {2.2e8, 2.2e9})
     for (const double k : {1e-3, 1e-4, 1e-5, 1e-6, 1e-8})
       EXPECT_LT(scatter_of_pressure(Kf, k, "every 20"), 0.01);
+}
+
+// Points that are a node spacing apart have pressures of their own that are stiffer than those of nodes: waits are shorter then, or noise
+// grows without end
+SERIAL_TEST(Waits, AreShortWithFewPoints)
+{
+  for (const char *transfer : {"apic", "aflip 1.0"})
+    for (const double crossed : {0.5, 0.7, 0.9})
+      for (const char *every : {"every auto", "every 2", "every 4"}) {
+        Scene run(
+            plane("lj", "p p", "0 24 0 4", 1, 0.3) +
+            strprintf("fix grid all mpm 1.0 transfer %s\ncreate_points 1 box ppc 1\n", transfer) +
+            "fix m all mpm/material density 1.0 linear 0.01 0.0\n"
+            "fix water all mpm/pore 0.4 0.5 1.0 soil m 0.4 constant 1e-9 " +
+            every +
+            "\nvelocity all create 1e-8 4711 dist gaussian\nvelocity all set NULL NULL 0\n" +
+            strprintf("timestep %g\nrun 0\n", crossed));
+        const auto energy = [&] {
+          double sum = 0.0;
+          for (int i = 0; i < run.n(); i++)
+            for (int d = 0; d < 2; d++) sum += run.v()[i][d] * run.v()[i][d];
+          return sum;
+        };
+        const double before = energy();
+        run.commands("run 800\n");
+        EXPECT_LT(measured(strprintf("%s, %s, %g spacings in a step", transfer, every, crossed),
+                           energy() / before),
+                  1.0);
+      }
+}
+
+// with auto, flows are for as many steps as waves allow, or for fewer that one stage reaches
+TEST(Auto, WaitsForTheFlow)
+{
+  for (const double k : {1e-6, 1.8e-4}) {
+    Scene run(
+        column(10, strprintf("2.2e8 1000 9810 soil m 0.4 constant %g ylo flux 1e-6 every auto", k),
+               SOIL) +
+        "timestep 4e-5\nrun 0\n");
+    std::vector<int> flows;
+    double before = run.fix("water")->compute_scalar();
+    for (int step = 1; step <= 60; step++) {
+      run.commands("run 1\n");
+      const double now = run.fix("water")->compute_scalar();
+      if (now != before) flows.push_back(step);
+      before = now;
+    }
+    ASSERT_GT(flows.size(), 3u);
+    const double storage = 0.4 / 2.2e8, spacing = 0.1;
+    const double crossing = spacing * std::sqrt(storage * 1870.0);
+    const double limit = 0.98 * 2.0 * spacing * spacing * storage / (6.0 * k / 9810.0);
+    const int waves = (int) (2.5 * crossing / 4e-5), one = (int) (limit / 4e-5);
+    const int steps = std::min(one, waves);
+    for (std::size_t j = 2; j < flows.size(); j++)
+      EXPECT_NEAR(measured("steps of a flow", flows[j] - flows[j - 1]), steps, 1);
+    EXPECT_GT(steps, 1);
+  }
 }
 
 // a column that vibrates between closed ends: frequency and damping of u-p
@@ -112,14 +170,16 @@ SERIAL_TEST(Geostatic, StaysAtRest)
 TEST(Ranks, Agree)
 {
   const auto scene = blocks("initial v_p xlo pressure 1.0 free pressure 0 ylo flux 0.01 every 3");
-  for (const auto &one : {blocks("initial v_p every 3"), between_walls(scene)})
+  for (const auto &one :
+       {blocks("initial v_p every 3"), blocks("initial v_p every auto"), between_walls(scene)})
     expect_same_on_ranks(one, 1e-10);
 }
 
 // a restart file between two flows
 TEST(Restart, Continues)
 {
-  expect_continues(blocks("free pressure 0 initial v_p every 7"), OF_BLOCKS);
+  for (const char *every : {"7", "auto"})
+    expect_continues(blocks(std::string("free pressure 0 initial v_p every ") + every), OF_BLOCKS);
 }
 
 SERIAL_TEST(BadInput, IsRefused)
@@ -132,6 +192,7 @@ SERIAL_TEST(BadInput, IsRefused)
       {{water + "0", "every"},
        {water + "1.5", "every"},
        {water + "2 relax 0.1", "relax has no meaning with every 2"},
+       {water + "auto relax 0.1", "relax has no meaning with every auto"},
        {water + "2 formulation u-v-p", "every is for formulation u-p"},
        {water + "2 retention gardner 1e-3", "every does not go with retention"},
        {water + "2\nfix solve all mpm/implicit static", "every cannot be used with fix mpm/imp"}},

@@ -8,6 +8,8 @@
 
 #include "fix_mpm_absorb.h"
 
+#include "fix_mpm_material.h"
+#include "material/material.h"
 #include "mpm_field.h"
 #include "mpm_guard.h"
 #include "mpm_options.h"
@@ -20,7 +22,9 @@
 #include "region.h"
 #include "update.h"
 
+#include <cmath>
 #include <cstring>
+#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -62,7 +66,7 @@ FixMPMAbsorb::FixMPMAbsorb(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
   next_reneighbor = -1;
   dynamic_group_allow = 0;
   scalar_flag = vector_flag = 1;
-  size_vector = MPMTraffic::NREAL + 1;
+  size_vector = MPMTraffic::NREAL + 2;
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
@@ -102,6 +106,41 @@ bool FixMPMAbsorb::absorbs(int i) const
   return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 && region->match(x[0], x[1], x[2]);
 }
 
+/** Heat of a point whose material conducts it, 0 of others: what warmed it from the temperature that its material has at first. */
+double FixMPMAbsorb::heat_of(int i) const
+{
+  const auto *const field = field_of(lmp, i);
+  const auto *const fix = field ? field->material_of(i) : nullptr;
+  if (!fix || !fix->material->conducts()) return 0.0;
+  const auto &material = *fix->material;
+  const double *const now = fix->history[i];
+  const int T = fix->find_history("temperature"), molten = fix->find_history("molten");
+  std::vector<double> first(fix->nhistory), row;
+  material.initialize(atom->x[i], first.data());
+  const double melted = molten < 0 ? 0.0 : now[molten] - first[molten];
+  const Conduction c = material.conduction(now);
+  if (!c.by_enthalpy)
+    return atom->rmass[i] * c.capacity * (now[T] - first[T] + c.melting.range * melted);
+
+  // the material tells the temperature of a heat: by bisection
+  const auto goes_beyond = [&](double given, double sign) {
+    row = first;
+    material.warm(row.data(), given);
+    const double more = row[T] - now[T] + (molten < 0 ? 0.0 : row[molten] - now[molten]);
+    return sign * more >= 0.0;
+  };
+  if (now[T] == first[T] && melted == 0.0) return 0.0;
+  constexpr int MOST = 200;
+  const double sign = now[T] - first[T] + melted > 0.0 ? 1.0 : -1.0;
+  double low = 0.0, high = sign * c.capacity * (fabs(now[T] - first[T]) + 1.0);
+  for (int k = 0; k < MOST && !goes_beyond(high, sign); k++) high *= 2.0;
+  for (int k = 0; k < MOST && fabs(high - low) > 1.0e-15 * fabs(high); k++) {
+    const double middle = 0.5 * (low + high);
+    (goes_beyond(middle, sign) ? high : low) = middle;
+  }
+  return atom->rmass[i] * high;
+}
+
 /* ----------------------------------------------------------------------
    the points go with the exchange of this step
 ------------------------------------------------------------------------- */
@@ -124,6 +163,11 @@ void FixMPMAbsorb::post_integrate()
 void FixMPMAbsorb::pre_exchange()
 {
   if (next_reneighbor != update->ntimestep) return;
+  double mine = 0.0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (absorbs(i)) mine += heat_of(i);
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  heat += all;
   const MPMTraffic gone = remove_points(
       lmp,
       [this](int i) {
@@ -140,27 +184,29 @@ void FixMPMAbsorb::pre_exchange()
 void FixMPMAbsorb::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double list[2] = {rate, waited};
-  const int size = (int) ((MPMTraffic::NREAL + 2) * sizeof(double));
+  const double list[3] = {rate, waited, heat};
+  const int size = (int) ((MPMTraffic::NREAL + 3) * sizeof(double));
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(total.reals(), sizeof(double), MPMTraffic::NREAL, fp);
-  fwrite(list, sizeof(double), 2, fp);
+  fwrite(list, sizeof(double), 3, fp);
 }
 
 void FixMPMAbsorb::restart(char *buf)
 {
-  double list[MPMTraffic::NREAL + 2];
+  double list[MPMTraffic::NREAL + 3];
   memcpy(list, buf, sizeof(list));
   std::copy_n(list, MPMTraffic::NREAL, total.reals());
   rate = list[MPMTraffic::NREAL];
   waited = list[MPMTraffic::NREAL + 1];
+  heat = list[MPMTraffic::NREAL + 2];
 }
 
 /* ----------------------------------------------------------------------
-   scalar: mass that has gone; vector: points, mass, momentum, kinetic and stored energy of these, and mass per time
+   scalar: mass that has gone; vector: points, mass, momentum, kinetic and stored energy of these, mass per time, and heat
 ------------------------------------------------------------------------- */
 
 double FixMPMAbsorb::compute_vector(int k)
 {
-  return k < MPMTraffic::NREAL ? total.reals()[k] : rate;
+  if (k < MPMTraffic::NREAL) return total.reals()[k];
+  return k == MPMTraffic::NREAL ? rate : heat;
 }

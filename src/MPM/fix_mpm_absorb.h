@@ -47,11 +47,13 @@ class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
 
  private:
   Region *region = nullptr;
-  MPMTraffic total;       // that has gone, of all ranks
-  double rate = 0.0;      // mass per time since the last look
+  MPMTraffic total;     // that has gone, of all ranks
+  double heat = 0.0;    // of these, above the temperature that their material has at first [energy]
+  double rate = 0.0;    // mass per time since the last look
   double waited = 0.0;    // time since then
 
   bool absorbs(int i) const;
+  double heat_of(int i) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -22,6 +22,7 @@
 #include "mpm_leaks.h"
 #include "mpm_options.h"
 #include "mpm_pair_styles.h"
+#include "mpm_steps_or_auto.h"
 #include "mpm_two_scale.h"
 #include "pair_mpm_penalty.h"
 #include "region.h"
@@ -38,28 +39,6 @@ using namespace FixConst;
 using namespace MPM_NS;
 
 static const char *const FACE_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
-
-/** A number of steps, or the word auto, which is none. */
-static OptionValue steps_or_auto(int &to, const std::string &of_number, const std::string &of_auto)
-{
-  OptionValue value = option::integer(to, "N", POSITIVE, of_number);
-  const auto read = value.read;
-  const auto text = value.text;
-  value.usage = "N or *auto*";
-  value.notes.push_back({"*auto*", of_auto});
-  value.read = [&to, read](OptionReader &r) {
-    if (r.iarg < r.input.narg && !strcmp(r.input.arg[r.iarg], "auto")) {
-      r.next();
-      to = 0;
-    } else {
-      read(r);
-    }
-  };
-  value.text = [&to, text] {
-    return to ? text() : std::string("auto");
-  };
-  return value;
-}
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/heat keyword values ...

@@ -19,6 +19,7 @@
 #include "force.h"
 #include "input.h"
 #include "material/material.h"
+#include "math_const.h"
 #include "modify.h"
 #include "mpm_field.h"
 #include "mpm_geostatic.h"
@@ -26,6 +27,7 @@
 #include "mpm_options.h"
 #include "mpm_pair_styles.h"
 #include "mpm_points.h"
+#include "mpm_steps_or_auto.h"
 #include "pair_mpm_penalty.h"
 #include "update.h"
 #include "variable.h"
@@ -46,6 +48,10 @@ static const char *const PART_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"
 
 // of a wait for the next flow: node spacings that waves go, and explicit limits of the flow
 static constexpr double MOST_SPACINGS = 2.5, MOST_LIMITS = 10.0;
+// points that are farther apart than this many node spacings are as stiff as a lattice can be
+static constexpr double FINE = 0.6;
+// times that are equal on paper are told apart by this, as sums of ranks differ by round-off
+static constexpr double NEARLY = 1.0 + 1.0e-6;
 
 Options MPMPoreOptions::declare(int dim)
 {
@@ -257,8 +263,9 @@ Options MPMPoreOptions::declare(int dim)
                 "cross a cell")});
   o.add("stages", {integer(most_stages, "N", POSITIVE, "most stages of the flow in a time step")});
   o.add("every",
-        {integer(every, "N", POSITIVE,
-                 "water flows in one of up to this many steps, for the time of all of them")});
+        {steps_or_auto(every,
+                       "water flows in one of up to this many steps, for the time of all of them",
+                       "as many steps as waves allow and one stage of the flow reaches")});
   o.refuse([=] {
     const bool dries = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
       return soil.retention.can_dry();
@@ -268,9 +275,9 @@ Options MPMPoreOptions::declare(int dim)
                          {forchheimer_alone, "forchheimer", "needs a soil before it"},
                          {formulation == U_V_P, "stages",
                           "is for formulation u-p: with u-v-p waves alone limit the time step"},
-                         {formulation == U_V_P && every > 1, "every",
+                         {formulation == U_V_P && every != 1, "every",
                           "is for formulation u-p: with u-v-p water moves in each step"},
-                         {dries && every > 1, "every",
+                         {dries && every != 1, "every",
                           "does not go with retention: pores fill and empty in each step"},
                          {geostatic && initial != "0.0", "geostatic",
                           "gives points their pressure: leave out initial"},
@@ -319,11 +326,11 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   read_options(lmp, options, narg, arg, 3);
   sets_relax = options.given("relax");
   sets_stages = options.given("stages");
-  if (every > 1 && sets_relax)
+  if (waits() && sets_relax)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/pore relax has no meaning with every {}, where points take the pressure of "
                "the nodes in each flow: remove it",
-               every);
+               every == AUTO ? "auto" : std::to_string(every));
   if (soils.empty())
     error->all(FLERR, narg - 1,
                "Fix mpm/pore needs a soil: use soil with the ID of a fix mpm/material, its "
@@ -340,7 +347,7 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   state.declare(pressure, "mpm/pore:pressure", 1 + domain->dimension, [this](int, double *row) {
     row[0] = initial_value;
   });
-  if (every > 1) state.declare(since, "mpm/pore:since");
+  if (waits()) state.declare(since, "mpm/pore:since");
   if (formulation == U_V_P) state.declare(inertia, "mpm/pore:flow", domain->dimension);
   if (can_dry())
     state.declare(content, "mpm/pore:water", [](int, double *row) {
@@ -532,7 +539,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
       mine.surface.distance_to_seals = [this](const double *x, double far) {
         return distance_to_bodies(x, far);
       };
-    if (every > 1) mine.wait_with(since);
+    if (waits()) mine.wait_with(since);
     mine.init(soils, content, warmth);
     if (!mine.has_water()) continue;
     wet.push_back(&mine);
@@ -556,24 +563,22 @@ void FixMPMPore::init_physics(MPMPlan &plan)
       if (soils[k].material == of_point->material) here[k] = 1;
   }
   warn_of_soils(lmp, id, soils, here, water, !MPMGravity(lmp, "Fix mpm/pore").empty());
-  find_longest_wait();
+  find_crossing();
   warn_of_contact();
   is_implicit = !wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();
   if (is_implicit) init_implicit();
 }
 
-/** Waves by the stiffness of the water cross so many node spacings in it. */
-void FixMPMPore::find_longest_wait()
+void FixMPMPore::find_crossing()
 {
-  longest_wait = std::numeric_limits<double>::max();
+  crossing = std::numeric_limits<double>::max();
   const double unit = force->mvv2e * force->nktv2p;
   for (const auto *mine : wet)
     for (const auto *fix : mine->field.materials)
       for (const auto &soil : soils) {
         if (soil.material != fix->id) continue;
         const double stiff = soil.storage_at(1.0, water) * fix->material->density() * unit;
-        longest_wait =
-            std::min(longest_wait, MOST_SPACINGS * mine->field.lattice.h * sqrt(stiff) / soil.biot);
+        crossing = std::min(crossing, mine->field.lattice.h * sqrt(stiff) / soil.biot);
       }
 }
 
@@ -589,7 +594,7 @@ void FixMPMPore::init_implicit() const
          "slow flow has no inertia of its own, use formulation u-p, or explicit steps");
   refuse(sets_relax, "relax", "it is of the waves of explicit steps, remove it");
   refuse(sets_stages, "stages", "the flow of an implicit step has none, remove it");
-  refuse(every > 1, "every", "soil and water are solved for together, remove it");
+  refuse(waits(), "every", "soil and water are solved for together, remove it");
   for (const auto &soil : soils) {
     refuse(soil.retention.can_dry(), "retention",
            "use explicit steps, or leave it out where pores stay full");
@@ -787,20 +792,41 @@ void FixMPMPore::look_for_shut_pores()
         lowest, of_all[0], of_all[1]);
 }
 
-/** Is the step that begins one with flow? Flow that starts and stops makes waves with the length that waves go in between. Those of up to
- *  some node spacings the lattice takes away; longer ones grow with each flow. */
+/** Is the step that begins one with flow? With auto, flow takes one stage, which costs least and is as exact as flow in each step also where
+ *  soil is soft next to its water and drains through a curved surface. */
 bool FixMPMPore::is_time_to_flow() const
 {
-  if (waited.steps + 1.0 >= every || !rates_known) return true;
+  if (!waits() || !rates_known || (every != AUTO && waited.steps + 1.0 >= every)) return true;
   const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
-  return waited.time + 2.0 * fields[0]->field.step_dt() >
-      std::min(longest_wait, std::min(MOST_LIMITS, reach_of_stages()) * limit);
+  double most = std::min(longest_wait(), std::min(MOST_LIMITS, reach_of_stages()) * limit);
+  if (every == AUTO) most = std::min(most, limit);
+  return waited.time + 2.0 * fields[0]->field.step_dt() > most * NEARLY;
+}
+
+/** Flow that starts and stops makes waves with the length that waves go in between. Those of up to some node spacings the lattice takes
+ *  away; longer ones grow with each flow. In between, points have pressures of their own, of which a flow leaves what nodes see. A wave
+ *  that these do not see must not have turned by more than half of its period by then, or it grows: one of points that are a node spacing
+ *  apart has the frequency 2/crossing, and with closer points none is above 1.4/crossing, for which the former bound and what transfers of
+ *  velocities take from such waves suffice. */
+double FixMPMPore::longest_wait() const
+{
+  if (widest <= FINE) return MOST_SPACINGS * crossing;
+  const double dt = fields[0]->field.step_dt();
+  const double turns = 2.0 * asin(std::min(1.0, dt / crossing));    // in a step
+  return dt * std::floor(MathConst::MY_PI / turns * NEARLY);
 }
 
 /** The longest flow, in limits of an explicit step. */
 double FixMPMPore::reach_of_stages() const
 {
   return most_stages < 3 ? 0.5 : MPMSuperStep::reach(most_stages);
+}
+
+/** One suffices up to the explicit limit where the steps of the motion are shorter than half of it (see mpm_pore.cpp). */
+int FixMPMPore::stages_of(double duration, double limit) const
+{
+  const bool one = duration <= 0.5 * limit || (waited.steps > 0.0 && duration <= limit * NEARLY);
+  return one ? 1 : std::max(3, MPMSuperStep::count(duration, limit, most_stages));
 }
 
 void FixMPMPore::begin_step(bool with_flow)
@@ -830,14 +856,16 @@ void FixMPMPore::topology_changed(MPMField &field)
 
 void FixMPMPore::find_greatest_rates()
 {
-  double mine[2] = {0.0, 0.0}, all[2];
+  double mine[3] = {0.0, 0.0, 0.0}, all[3];
   for (const auto *field : wet) {
     mine[0] = std::max(mine[0], field->conduction_rate());
     mine[1] = std::max(mine[1], field->exchange_rate());
+    mine[2] = std::max(mine[2], field->widest_spacing());
   }
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, world);
   conducted = all[0];
   exchanged = all[1];
+  widest = all[2];
   rates_known = true;
 }
 
@@ -860,7 +888,6 @@ void FixMPMPore::flow()
     waited.time = dt;
     return;
   }
-  waited = {};
   for (auto *field : wet) {
     if (!field->moves_first()) field->take_motion(dt);
     field->move_water();
@@ -868,8 +895,8 @@ void FixMPMPore::flow()
   // waves limit the step of water with inertia, which is one of theirs
   if (formulation == U_P) find_greatest_rates();
   const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
-  const int stages = dt <= 0.5 * limit ? 1
-                                       : std::max(3, MPMSuperStep::count(dt, limit, most_stages));
+  const int stages = stages_of(dt, limit);
+  waited = {};
   if (stages > most_stages)
     error->all(FLERR, Error::NOLASTLINE,
                "The time step {:.6g} is {:.4g} times the explicit limit {:.4g} of the flow of pore "
@@ -971,7 +998,7 @@ void FixMPMPore::write_restart(FILE *fp)
 {
   write_totals(fp, world, came,
                {gradients_known ? 1.0 : 0.0, has_state ? 1.0 : 0.0, rates_known ? 1.0 : 0.0,
-                conducted, exchanged, waited.steps, waited.time});
+                conducted, exchanged, widest, waited.steps, waited.time});
 }
 
 void FixMPMPore::restart(char *buf)
@@ -983,13 +1010,14 @@ void FixMPMPore::restart(char *buf)
   rates_known = same[2] != 0.0;
   conducted = same[3];
   exchanged = same[4];
-  if (every > 1) waited = {same[5], same[6]};
+  widest = same[5];
+  if (waits()) waited = {same[6], same[7]};
 }
 
 /** Of a point between two flows. */
 double FixMPMPore::pressure_now(int i) const
 {
-  if (every == 1) return pressure[i][0];
+  if (!waits()) return pressure[i][0];
   for (const auto *mine : wet)
     if (mine->field.is_point(i)) return pressure[i][0] + mine->undrained(i);
   return pressure[i][0];

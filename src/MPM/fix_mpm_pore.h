@@ -44,7 +44,8 @@ struct MPMPoreOptions {
   double most_suction = -1.0;      ///< at first, positive; negative: no limit
   double relax = 0.2;
   int most_stages = 64;
-  int every = 1;    ///< water flows in one of up to this many steps
+  static constexpr int AUTO = 0;
+  int every = 1;    ///< water flows in one of up to this many steps, or AUTO
 
   MPM_NS::Options declare(int dimension);
 
@@ -135,12 +136,13 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   bool gradients_known = true;    // not yet where pressures were given
   struct {
     double steps = 0.0, time = 0.0;
-  } waited;                     // since the last flow
-  double longest_wait = 0.0;    // by waves
-  bool step_flows = true;       // does water flow in this step?
-  bool shut_known = false;      // has a warning told of shut pores?
-  bool leaks_known = false;     // has look_for_leaks() been done?
-  bool has_state = false;       // of an earlier run: what points have at first is behind them
+  } waited;                    // since the last flow
+  double crossing = 0.0;       // time in which waves by the stiffness of the water cross a cell
+  double widest = 0.0;         // greatest spacing of points, in node spacings
+  bool step_flows = true;      // does water flow in this step?
+  bool shut_known = false;     // has a warning told of shut pores?
+  bool leaks_known = false;    // has look_for_leaks() been done?
+  bool has_state = false;      // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
   std::vector<MPMPore *> wet;    // those that have soil with water
   MPMSuperStep steps;            // of the pressures of all fields together
@@ -180,8 +182,11 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void look_for_leaks();
   void look_for_shut_pores();
   bool is_time_to_flow() const;
+  bool waits() const { return every != 1; }
   double reach_of_stages() const;
-  void find_longest_wait();
+  int stages_of(double duration, double limit) const;
+  void find_crossing();
+  double longest_wait() const;
   void begin_step(bool with_flow);
   void take_off();
   void find_greatest_rates();

@@ -18,7 +18,8 @@
                                        stresses, do not change in large lumps
 
    The first one makes the error of Euler's method in time less than that of the lattice in space: for a wave number k
-   they are t k^2 K/(2 rho c) < SHARE h^2 k^2/6 and about h^2 k^2/12 of the rate. Where exchange through a surface or a contact is faster than conduction
+   they are t k^2 K/(2 rho c) < SHARE h^2 k^2/6 of the rate, which is too fast by that, and about h^2 k^2/12, by which the lattice is too
+   slow. Where exchange through a surface or a contact is faster than conduction
    across a cell it follows with that, as in long steps (MPMHeatFaces::limit()).
 
    What varies from step to step is met in each of them: variables, and regions that move. So is all that is implicit, and heat that others give
@@ -55,7 +56,7 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double MOST_STEPS = 10.0;
-static constexpr double SHARE = 0.1;
+static constexpr double SHARE = 0.3;
 static constexpr double WAY = 0.1;
 static constexpr double LUMP = 0.02;
 static constexpr double NEARLY = 1.0 + 1.0e-6;

@@ -33,7 +33,9 @@
    explicit step of the flow multiplies a pressure by a = 1 - lambda dt; together they are stable up to
    (omega dt)^2 < 2 (1 + a): not at all near the explicit limit a = -1. Stages of RKL2 have a > 0 whatever
    their number is (their greatest share is 2b < 1 with b = (s^2 + s - 2)/(2 s^2 + 2 s)), hence stages begin
-   at half of that limit, and waves and flow do not make each other's limit smaller.
+   at half of that limit, and waves and flow do not make each other's limit smaller. A flow for several steps (mpm_pore_wait.cpp) has one
+   stage up to all of it: the limit is that of nodes at a corner which hardly see a point, and of points in the middle of cells, where
+   pressures that alternate make no force, while a > 0 for what waves excite.
 
    The motion changes the volume of a point by exactly det(I + dt L) - 1, and water is what fills it.
 ------------------------------------------------------------------------- */
@@ -310,7 +312,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
   if (warmth)
     for (auto *list : {&grown, &warm}) list->assign(atom->nmax, 0.0);
   if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
-  fastest = exchange = 0.0;
+  fastest = exchange = largest = 0.0;
   shut = MAXTAGINT;
   nodes.points_to_nodes(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
@@ -326,8 +328,8 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
                             *const initial = atom->vfrac + first;
         for (int p = 0; p < n; p++) V[p] = J[p] * initial[p];
         find_shut(s->of, first, n, J);
-        // a division for each point takes as long as all the rest: apart from it, where the compiler has vectors for them
-        for (int p = 0; p < n; p++) C[p] = V[p] * s->of.storage_at(J[p], water);
+        s->of.storage_at(n, J, water, C);
+        for (int p = 0; p < n; p++) C[p] *= initial[p];
         if (s->of.law == MPMPoreSoil::CONSTANT) {
           const double k = s->of.permeability / water.resistance;
           for (int p = 0; p < n; p++) K[p] = V[p] * k;
@@ -335,6 +337,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           for (int p = 0; p < n; p++) K[p] = V[p] * mobility(*s, first + p, J[p], formula);
         }
         for (int p = 0; p < n; p++) part[p] = s->of.biot * J[p];
+        if (waiting) gather(*s, first, n, J, state);
         if (warmth) expand(*s, first, n, J, V);
         for (int p = 0; p < n && !plain; p++) {
           const int i = first + p;
@@ -403,7 +406,6 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
 {
   if (surface.any()) surface.find_places();
   if (motion) motion->begin_step(flow);
-  if (waiting) gather(state);
   points_to_nodes(state, formula);
   const auto take = [&](int i, double value) {
     mean[i] = value;
@@ -418,10 +420,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
             take(first + p, q[p][3]);
           }
         });
-  } else if (waiting) {
-    for (const auto &run : field.map->runs)
-      for (int i = run.first; i < run.last && soil(run.material); i++) take(i, state[i][0]);
-  } else {
+  } else if (!waiting) {
     nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *values) {
       for (int p = 0; p < n; p++) take(first + p, values[p]);
     });
@@ -744,6 +743,11 @@ double MPMPore::conduction_rate(const MPMRows &state, tagint &tag) const
     tag = atom->tag[i];
   }
   return most < 0.0 ? most : most * steepest / (field.lattice.h * field.lattice.h);
+}
+
+double MPMPore::widest_spacing() const
+{
+  return pow(largest, 1.0 / field.lattice.dim) / field.lattice.h;
 }
 
 double MPMPore::wave_speed(int i, double p, double c) const

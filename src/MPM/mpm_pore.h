@@ -107,6 +107,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
    *  through the surface, in this step. */
   double conduction_rate() const;
   double exchange_rate() const { return exchange; }
+  /** The greatest spacing of this rank's points, the root of their volume, in node spacings. */
+  double widest_spacing() const;
   /** By flow between points at present; -1 without any that have water. Those with a formula, which is
    *  evaluated in steps, count as 0. tag: of the point that limits it. */
   double conduction_rate(const MPMRows &state, tagint &tag) const;
@@ -137,6 +139,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   double fastest = 0.0;    // largest of the points in the last step
   tagint shut = MAXTAGINT;
   double exchange = 0.0;    // rate of exchange through the surface in the last step
+  double largest = 0.0;     // volume of the points in the last step, where water waits
   std::unique_ptr<MPMPoreSuction> suction;    // of soils that can dry
   std::unique_ptr<MPMLayerMean>
       layers;    // soils differ in permeability; null: points have their own
@@ -173,7 +176,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
 
   void conduct(int i, double *q) const;
   double undrained(const Soil &, int i, double J) const;
-  void gather(const MPMRows &state);
+  void gather(const Soil &, int first, int n, const double *J, const MPMRows &state);
   void find_shut(const MPMPoreSoil &, int first, int n, const double *J);
   void init_layers();
   void find_layers(const MPMRows &state, const double *formula);

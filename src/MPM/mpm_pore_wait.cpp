@@ -43,28 +43,31 @@ double MPMPore::undrained(int i) const
   return s ? undrained(*s, i, field.points->jacobian(i)) : 0.0;
 }
 
-/** The flow begins: it is the pressure of points. */
-void MPMPore::gather(const MPMRows &state)
+/** The flow begins: all of it is in the pressure of points, and in forces. Squeezed has their volumes, and capacity what these store. */
+void MPMPore::gather(const Soil &s, int first, int n, const double *J, const MPMRows &state)
 {
-  double room[BATCH];
-  for (const auto &run : field.map->runs) {
-    const Soil *const s = soil(run.material);
-    for (int first = run.first; s && first < run.last; first += BATCH) {
-      const int n = std::min(BATCH, run.last - first);
-      const double *const J = field.jacobians.get(field, first, n, room);
-      for (int p = 0; p < n; p++) {
-        state[first + p][0] += undrained(*s, first + p, J[p]);
-        (*waiting)[first + p] = J[p];
-      }
-    }
+  const int width = 1 + field.lattice.dim;
+  const double alpha = s.of.biot;
+  const double *const V = squeezed.data() + first, *const C = capacity.data() + first,
+                      *const initial = atom->vfrac + first;
+  double *const last = *waiting + first, *const part = in_forces.data() + first,
+                *const value = mean.data() + first, *row = state[first];
+  double change[BATCH];
+  for (int p = 0; p < n; p++) {
+    const double since = last[p] > 0.0 ? last[p] : J[p];
+    change[p] = alpha * (since - J[p]) * initial[p] / C[p];
   }
+  for (int p = 0; p < n; p++, row += width) value[p] = row[0] += change[p];
+  for (int p = 0; p < n; p++) part[p] *= value[p];
+  for (int p = 0; p < n; p++) largest = std::max(largest, V[p]);
+  std::copy_n(J, n, last);
 }
 
 void MPMPore::begin_wait(const MPMRows &state)
 {
   in_forces.resize(atom->nmax);
   const int width = 1 + field.lattice.dim;
-  double room[BATCH], p_old[BATCH];
+  double room[BATCH], p_old[BATCH], storage[BATCH];
   for (const auto &run : field.map->runs) {
     const Soil *const s = soil(run.material);
     if (!s) {
@@ -76,12 +79,14 @@ void MPMPore::begin_wait(const MPMRows &state)
       const int n = std::min(BATCH, run.last - first);
       double *const part = in_forces.data() + first, *const last = *waiting + first;
       const double *const J = field.jacobians.get(field, first, n, room), *row = state[first];
+      int unknown = 0;
+      for (int p = 0; p < n; p++) unknown += !(last[p] > 0.0);
+      for (int p = 0; unknown && p < n; p++) last[p] = last[p] > 0.0 ? last[p] : J[p];
       for (int p = 0; p < n; p++, row += width) p_old[p] = row[0];
-      for (int p = 0; p < n; p++) last[p] = last[p] > 0.0 ? last[p] : J[p];
       // apart from the rest, where the compiler has vectors for divisions
+      s->of.storage_at(n, J, water, storage);
       for (int p = 0; p < n; p++)
-        part[p] =
-            alpha * (J[p] * p_old[p] + alpha * (last[p] - J[p]) / s->of.storage_at(J[p], water));
+        part[p] = alpha * (J[p] * p_old[p] + alpha * J[p] * (last[p] - J[p]) / storage[p]);
     }
   }
 }

@@ -63,10 +63,9 @@ void LAMMPS_NS::add_pressure(const double *pressure, PointRows &rows, int first,
   for (int k = 0; k < 6 * BATCH; k += 8)
     __builtin_prefetch(reinterpret_cast<const void *>(next + 8 * k));
   rows.tau = room;
-  for (int p = 0; p < n; p++, tau += 6, room += 6) {
-    for (int c = 0; c < 3; c++) room[c] = tau[c] - pressure[first + p];
-    for (int c = 3; c < 6; c++) room[c] = tau[c];
-  }
+  std::copy_n(tau, 6 * n, room);
+  for (int p = 0; p < n; p++, room += 6)
+    for (int c = 0; c < 3; c++) room[c] -= pressure[first + p];
 }
 
 /* ----------------------------------------------------------------------
