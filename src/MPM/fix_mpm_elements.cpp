@@ -24,6 +24,7 @@
 #include "math/matrix.h"
 #include "math_extra.h"
 #include "mesh/bending.h"
+#include "mesh/curved_surface.h"
 #include "mesh/element.h"
 #include "mesh/shared_strain.h"
 #include "mesh/triangle_gap.h"
@@ -101,6 +102,9 @@ Options MPMElementsOptions::declare(int dim)
   o.add("bending", {word(bending, {{"no", NONE}, {"yes", CONSTANT}, {"linear", LINEAR}})},
         "do surfaces of triangles, and lines, resist bending, as elastic plates and rods? linear: "
         "with a curvature that changes within triangles");
+  o.add("curved", {yes_no(curved)},
+        "do closed surfaces of triangles, or in 2d of lines, stand for the curved surface through "
+        "their nodes?");
   o.add("axes",
         {numbers(axes, 6, "a1x a1y a1z a2x a2y a2z", ANY_NUMBER, "",
                  "axis 1 of the material, and a vector on the side of axis 2, as they lie on a "
@@ -112,6 +116,8 @@ Options MPMElementsOptions::declare(int dim)
   o.refuse([this, dim] {
     auto rules = thin.rules();
     const char *const wrong = has_axes ? law::check_axes(axes, axes + 3) : nullptr;
+    rules.push_back({curved && thin.dimension(dim) != dim - 1, "curved",
+                     "is for closed surfaces: use thickness"});
     rules.push_back({has_axes && thin.dimension(dim) != 2, "axes",
                      "is for surfaces in 3d, which have a thickness"});
     rules.push_back({has_axes && (bending || !compression), "axes",
@@ -160,6 +166,16 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   } catch (const std::runtime_error &e) {
     error->all(FLERR, "Fix mpm/elements bending: {}", e.what());
   }
+  if (curved && !kind.closed)
+    error->all(FLERR,
+               "Fix mpm/elements curved is for closed surfaces, and that of {} has a rim: use "
+               "curved no",
+               file);
+  try {
+    if (curved && !bending) add_edges(mesh);
+  } catch (const std::runtime_error &e) {
+    error->all(FLERR, "Fix mpm/elements curved: {}", e.what());
+  }
   for (const auto &e : mesh.elements) {
     const auto &rule = ElementRule::of(e.type);
     maxnode = std::max(maxnode, rule.nnode);
@@ -183,7 +199,8 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   nhistory = material->nhistory;
   stride = 2 + maxnode +
       std::max(maxnode * dim + maxpoint * point_size(),
-               bending && along == 2 ? 1 + BentTriangle::size(bending == LINEAR) : 0);
+               bending && along == 2 ? 1 + BentTriangle::size(bending == LINEAR) : 0) +
+      (curved ? 1 : 0);
   width = 18 + nhistory;
   comm_reverse = width;
   work->history.resize((std::size_t) std::max(1, nhistory) * BATCH);
@@ -344,6 +361,12 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     max_of_node = std::max(max_of_node, ++owned[owner]);
     if (local[owner] >= 0) here.emplace_back(local[owner], e);
   }
+  std::vector<double> swells;
+  if (curved)
+    swells = curved_areas(dim, mesh, [&](int a, int b, double *to) {
+      MathExtra::sub3(&x[3 * (std::size_t) b], &x[3 * (std::size_t) a], to);
+      nearest_image(*domain, to);
+    });
   std::sort(here.begin(), here.end());
   pool.assign(here.size() * stride, 0.0);
   double least = std::numeric_limits<double>::max(), volume[2] = {0.0, 0.0}, volumes[2];
@@ -366,6 +389,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
       define_bending(r, X, element.inside, rough);
       continue;
     }
+    if (curved) r[stride - 1] = swells[here[k].second];
     double frequency = 0.0, size = 0.0;
     for (int q = 0; q < rule.npoint; q++) {
       double g[MAX_ELEMENT_NODES][3], frame[3][3];
@@ -579,7 +603,7 @@ double FixMPMElements::largest_extent() const
     largest = std::max(largest, sqrt(square * stretch));
   }
   double mine[2] = {widest, most}, all_of[2];
-  if (bending) {
+  if (bending || curved) {
     MPI_Allreduce(mine, all_of, 2, MPI_DOUBLE, MPI_MAX, world);
     largest = std::max(largest, sqrt(all_of[0] * all_of[1]));
   }
@@ -735,7 +759,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     const int p = w.n + q;
     double g[MAX_ELEMENT_NODES][3];
     w.state[p] = state_of(r, q);
-    w.volume[p] = gradients(rule, q, X, g);
+    w.volume[p] = swell_of(r) * gradients(rule, q, X, g);
     double *const f = F[q];
     if (thin && moved) {
       load_thin(w.thin[p], x, g, rule.nnode, w.state[p]);
@@ -955,7 +979,7 @@ void FixMPMElements::add_sums(Work &w)
     w.mean.assign(15 + nhistory, 0.0);
     find_forces(w, start, rule, f);
     for (int q = 0; q < rule.npoint; q++) {
-      const double V = w.volume[start + q];
+      const double V = w.volume[start + q] / swell_of(row);    // as of the masses of nodes
       for (int m = 0; m < rule.nnode; m++) share[m] += V * rule.N[q][m];
       size += V;
     }
@@ -1043,6 +1067,18 @@ std::vector<FixMPMElements::Face> FixMPMElements::faces() const
   return all;
 }
 
+/** Edges (in 2d: corners): the positions of their nodes, relative to the first one, and these. */
+template <class Visit> void FixMPMElements::for_curved_edges(Visit visit) const
+{
+  for (std::size_t e = 0; e < nodes.size() && curved; e++) {
+    if (type_of(row(e)) != ElementType::EDGE && type_of(row(e)) != ElementType::CORNER) continue;
+    double x[4][3];
+    for (int m = 0; m < nodes_of(row(e)); m++)
+      MathExtra::sub3(atom->x[nodes[e][m]], atom->x[nodes[e][0]], x[m]);
+    visit(x, nodes[e].data());
+  }
+}
+
 double FixMPMElements::widest_gap() const
 {
   double widest = 0.0, all;
@@ -1060,8 +1096,8 @@ double FixMPMElements::widest_gap() const
 }
 
 /* ----------------------------------------------------------------------
-   p times the gradient of the volume that is enclosed, which is a third (in 2d half) of the area for each node, so that the work
-   is p dV exactly
+   p times the gradient of the volume that is enclosed, which is a third (in 2d half) of the area for each node, and that of what is between the triangles and
+   a curved surface, so that the work is p dV exactly
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::add_pressure(bool starting)
@@ -1072,6 +1108,9 @@ void FixMPMElements::add_pressure(bool starting)
     area_vector(dim, at, normal);
     mine[0] += weight * dot(normal, at[0]) / dim;
     mine[1] += weight * sqrt(dot(normal, normal));
+  });
+  for_curved_edges([&](const double(*x)[3], const int *) {
+    mine[0] += curved_volume(dim, x, 1.0, nullptr);
   });
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
   if (side == 0.0) side = kind.closed && all[0] < 0.0 ? -1.0 : 1.0;
@@ -1087,6 +1126,13 @@ void FixMPMElements::add_pressure(bool starting)
     for (int m = 0; m < dim; m++)
       for (int d = 0; d < dim; d++)
         sums[(std::size_t) node[m] * width + width - 3 + d] += weight * factor * normal[d];
+  });
+  for_curved_edges([&](const double(*x)[3], const int *node) {
+    double gradient[4][3] = {{0.0}};
+    curved_volume(dim, x, factor * dim, gradient);
+    for (int m = 0; m <= dim; m++)
+      for (int d = 0; d < dim; d++)
+        sums[(std::size_t) node[m] * width + width - 3 + d] += gradient[m][d];
   });
 }
 
@@ -1267,9 +1313,10 @@ double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
     material->material->wave_speed(w.batch, c);
     for (const auto &[number, row, rule, start] : w.elements) {
       double sum = 0.0, size = 0.0, largest = 0.0;
+      const double stiffer = swell_of(row);
       for (int q = 0; q < rule.npoint; q++) {
         const int p = start + q;
-        sum += w.volume[p] * c[p] * c[p] * rule.nnode * rule.largest_eigenvalue(w.g[p]);
+        sum += stiffer * w.volume[p] * c[p] * c[p] * rule.nnode * rule.largest_eigenvalue(w.g[p]);
         size += w.volume[p];
         largest = std::max(largest, c[p]);
       }

@@ -43,7 +43,8 @@ struct MPMElementsOptions {
   bool compression = true;    ///< do these resist it, or wrinkle?
   enum Bending { NONE, CONSTANT, LINEAR };
   Bending bending =
-      NONE;    ///< do these resist it, with constant or linear curvatures in triangles?
+      NONE;               ///< do these resist it, with constant or linear curvatures in triangles?
+  bool curved = false;    ///< does a closed surface curve between its nodes?
   bool has_axes = false;    ///< of the material
   double axes[6] = {};      ///< in surfaces: axis 1, and the side of axis 2
 
@@ -135,6 +136,8 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   const char *beyond_trials() const
   {
     return bending ? "bending: use explicit steps"
+        : pressure && curved
+        ? "the pressure inside of a surface that is curved: use curved no, or explicit steps"
         : pressure && !pressure->is_given()
         ? "how the pressure of the gas in it changes: use fix mpm/airbag pressure, or explicit "
           "steps"
@@ -225,6 +228,8 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   double &extent_of(double *row) const { return row[2 + maxnode]; }
   double *bent_of(const double *row) const { return const_cast<double *>(row) + 3 + maxnode; }
   int point_size() const { return 15 + nhistory + (thin ? 9 : 0); }
+  /** Area of the curved surface over that of the element. */
+  double swell_of(const double *row) const { return curved ? row[stride - 1] : 1.0; }
   double *motion_of(double *state) const { return state + 15 + nhistory; }    // of surfaces, lines
   FixMPMMaterial *find_material() const;
   std::string names_of_history() const;
@@ -261,6 +266,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void add_sums(Work &);
   void add_pressure(bool starting);
   template <class Visit> void for_faces(Visit) const;
+  template <class Visit> void for_curved_edges(Visit) const;
   void define_bending(double *row, const double (*X)[3], bool inside, bigint &rough) const;
   template <class Visit> void for_bending(Visit) const;
   double bend(const double *row, const double (*x)[3], double (*f)[3]) const;

@@ -252,10 +252,11 @@ void Mesh::add_bending()
       continue;
     }
     MeshElement corner = elements[parts[0].first];
+    const int before = parts[0].second == 1 ? 0 : 1, after = 1 - before;    // along the lines
     corner.type = ElementType::CORNER;
-    corner.node[0] = elements[parts[0].first].node[1 - parts[0].second];
+    corner.node[0] = elements[parts[before].first].node[1 - parts[before].second];
     corner.node[1] = nodes.first;
-    corner.node[2] = elements[parts[1].first].node[1 - parts[1].second];
+    corner.node[2] = elements[parts[after].first].node[1 - parts[after].second];
     elements.push_back(corner);
   }
 }
