@@ -120,6 +120,47 @@ SERIAL_TEST(Blocks, WithAnInclinedInterface)
   }
 }
 
+// where friction is large, nothing slides: as with law stick, on any slope
+SERIAL_TEST(Blocks, StickOnAnySlope)
+{
+  for (const double slope : {0.2, 0.5, 0.8, 1.1, 1.5}) {
+    double force[2];
+    for (const int friction : {0, 1}) {
+      Scene run(blocks(friction ? "law coulomb 2.0" : "law stick", 0.51, slope, 1e6, 0.2) +
+                "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n"
+                "fix right all mpm/boundary xhi slip velocity -0.008 0 0\n"
+                "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\nrun 1\n");
+      force[friction] = touch(run, 1);
+    }
+    EXPECT_NEAR(
+        measured(strprintf("slope %g: force over that of law stick", slope), force[1] / force[0]),
+        1.0, 1e-6);
+  }
+}
+
+// a block in 3d that is pulled along another one, and sticks: it bears the force, whose direction is that of the pull
+SERIAL_TEST(Block, IsPulledAlongAnotherOne)
+{
+  for (const double mu : {5.0}) {
+    Scene run(
+        "units si\ndimension 3\nboundary f f f\natom_style mpm\n"
+        "region box block 0 1.2 0 1.2 0 0.8\ncreate_box 2 box\nneighbor 0.02 bin\n"
+        "region low block 0.1 1.1 0.1 1.1 0 0.4\nregion up block 0.3 0.9 0.3 0.9 0.4 0.8\n"
+        "group up type 2\ngroup low type 1\nfix a up mpm 0.1\nfix b low mpm 0.1\n"
+        "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix a\n"
+        "group up type 2\ngroup low type 1\n"
+        "fix ma up mpm/material density 1000 linear 1e6 0.2\n"
+        "fix mb low mpm/material density 1000 linear 2e6 0.2\n" +
+        strprintf("fix touch all mpm/contact a b law coulomb %g\n", mu) +
+        "fix solve all mpm/implicit static\nfix floor all mpm/boundary zlo stick\n"
+        "fix lid all mpm/boundary zhi stick velocity 0.006 0.008 -0.004\ntimestep 1.0\nrun 1\n");
+    const double fx = touch(run, 0), fy = touch(run, 1), fz = touch(run, 2);
+    EXPECT_NEAR(measured("ratio of the components", fy / fx), 0.008 / 0.006, 0.02);
+    EXPECT_LT(std::hypot(fx, fy) / std::fabs(fz), 0.9 * mu);
+    EXPECT_NEAR(run.fix("floor")->compute_vector(1) / fx, 1.0, 1e-6);
+  }
+}
+
 // what is pulled parts, and touches again where it has parted
 SERIAL_TEST(Blocks, Part)
 {
@@ -262,6 +303,46 @@ SERIAL_TEST(Bodies, KeepTheirMomentum)
   EXPECT_LT(measured("kinetic energy over that of the start", sums()[2] / start[2]), 0.95);
 }
 
+// two equal bars: while their waves run to their ends and back, they press on each other by rho c v A, and then have each other's velocity
+SERIAL_TEST(Bars, Collide)
+{
+  for (const char *scheme : {"newmark", "midpoint"}) {
+    Scene run(plane("si", "f p", "-2 2.5 0 0.1", 2, 0.02) +
+              "region left block -1 0 INF INF INF INF\nregion right block 0.001 1 INF INF INF INF\n"
+              "group l type 1\ngroup r type 2\n"
+              "fix a l mpm 0.05 transfer flip 1.0\nfix b r mpm 0.05 transfer flip 1.0\n"
+              "create_points 1 region left ppc 2 fix a\ncreate_points 2 region right ppc 2 fix b\n"
+              "group l type 1\ngroup r type 2\n"
+              "fix ma l mpm/material density 1000 linear 1e6 0.0\n"
+              "fix mb r mpm/material density 1000 linear 1e6 0.0\n"
+              "velocity l set 0.5 0 0\nvelocity r set -0.5 0 0\n"
+              "fix touch all mpm/contact a b\ncompute e all mpm/energy\n"
+              "thermo_style custom step c_e[1] c_e[2]\n"
+              "fix solve all mpm/implicit " +
+              std::string(scheme) + "\ntimestep 0.0015823\n");
+    const double c = std::sqrt(1e6 / 1000.0), start = 0.5 * 200.0 * 0.25;
+    double most = 0.0, impulse = 0.0, force = 0.0, v[2] = {0.0, 0.0};
+    for (int k = 0; k < 60; k++) {
+      run.commands("run 1\n");
+      const double now = touch(run, 0);
+      impulse += 0.0015823 * now;
+      if (k == 20) force = now;
+      auto *const energy = run.lmp->modify->get_compute_by_id("e");
+      energy->compute_vector();
+      most = std::max(most, energy->vector[0] + energy->vector[1]);
+    }
+    for (int i = 0; i < run.n(); i++)
+      v[run.lmp->atom->type[i] - 1] += run.mass()[i] * run.v()[i][0] / 100.0;
+    EXPECT_NEAR(measured(strprintf("%s: force over rho c v A", scheme), force / (1e3 * c * 0.05)),
+                1.0, 0.03);
+    EXPECT_LT(measured("largest energy over that of the start", most / start), 1.0 + 2e-3);
+    EXPECT_NEAR(v[0] + v[1], 0.0, 1e-12);
+    EXPECT_NEAR(measured("velocity after the impact", v[1]), 0.5, 0.05);
+    EXPECT_NEAR(measured("impulse over the change of momentum", impulse / (100.0 * (v[1] + 0.5))),
+                1.0, 1e-9);
+  }
+}
+
 TEST(Blocks, OnRanks)
 {
   OnRanks run(blocks("", 0.53, 0.1, 3e6, 0.3, "0 1 0 1", "static tolerance 1e-11") +
@@ -293,9 +374,12 @@ TEST(BadInput, IsRefused)
   expect_error(scene("law adhesive 1e3 1e3 1", "static") + walls + "run 0\n", "law adhesive");
   expect_error(scene("law coulomb 0.2 0.3", "static") + walls + "run 0\n", "static friction");
   expect_error(scene("normal volume", "static") + walls + "run 0\n", "remove normal");
-  expect_error(scene("", "newmark") + walls + "run 0\n", "use static or euler");
+  expect_error(scene("", "newmark") + walls + "run 0\n", "use transfer flip 1.0");
+  expect_error(scene("", "alpha") + walls + "run 0\n", "use newmark or midpoint");
   expect_error(scene("", "static solver multigrid") + walls + "run 0\n", "use solver blocks");
   expect_error(scene("", "static slip 0.1") + walls + "run 0\n", "walls with friction");
+  expect_error(scene("law coulomb 0.2", "static slip 0.1") + walls + "run 0\n",
+               "walls with friction");
   expect_error(scene("", "static") + "fix floor all mpm/boundary ylo separate\nrun 0\n",
                "use stick or slip");
   expect_error(scene("", "static") + "fix floor all mpm/boundary ylo slip friction 0.1\nrun 0\n",

@@ -367,7 +367,7 @@ class FixMPMBoundary :
   void add_friction_blocks(double *blocks) override;
   void add_friction_stiffness(double *stiffness) override;
   void correct(const double *du) override;
-  bool decide(const double *u) override;
+  bool decide(const double *u, double unbalanced) override;
   void soften(double by) override { soft = by; }
   void foresee_velocities(const double *v, double share) override
   {

@@ -317,9 +317,9 @@ void FixMPMBoundary::add_friction_stiffness(double *stiffness)
    All that is wrong is changed at first. Where this goes to and fro, only what is most wrong is, and what is all but right stays
 ------------------------------------------------------------------------- */
 
-bool FixMPMBoundary::decide(const double *u)
+bool FixMPMBoundary::decide(const double *u, double unbalanced)
 {
-  if (kind != SEPARATE) return false;
+  if (kind != SEPARATE || unbalanced > 0.0) return false;
   const FieldNodes &list = tried_nodes();
   const double h = tried->lattice.h;
   double mine = 0.0, largest, worst;

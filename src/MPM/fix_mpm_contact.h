@@ -192,16 +192,19 @@ class FixMPMContact :
     int first, last;       // range in links
     int a, b;              // places in bodies
     bool owned;            // in sums
+    Key key;               // of the same tie on all ranks
     bool active;           // it touches
+    bool sticks;           // by friction
     double n[3];           // mean normal from a to b
     double along[2][3];    // unit vectors along the interface, or zero
     double gap;            // that is to be closed [distance]
-    // rows of C are along the normals and, with law stick, along the interface: diagonal of C P_w M^-1 C^T
+    // rows of C are along the normals and, where it sticks, along the interface: diagonal of C P_w M^-1 C^T
     double diagonal[3];
     double push[3], base[3];    // of rows: impulse so far, and that by the motion of walls alone
     double force[3];            // of rows, of a on b
-    // friction, see fix_mpm_boundary_trial.cpp: slip of a on b in the step, its direction as an unknown of its own, force on a
-    double slip[3], dual[3], rubs[3];
+    double stop[3];             // of rows, impulse at the end of the step
+    // of what slides: slip of a on b in the step, its direction in the iteration before, force on a
+    double slip[3], way[3], rubs[3];
   };
 
   struct Account {        // of two bodies, this rank's share
@@ -247,8 +250,7 @@ class FixMPMContact :
   std::vector<char> owned_pairs;    // of nodes that this rank counts
   std::function<int64_t(const MPMField &)> place_of;
   double trial_dt = 0.0;
-  double trial_eps = 0.0,
-         soft = 0.0;    // slips that friction begins with, and with which it is weakened now
+  double of_forces = 1.0;    // of their impulse in a step, what the momentum changes by
   bool closes = false;
   int rounds = 0;    // of decisions in this step
   double shared_at_start =
@@ -304,11 +306,20 @@ class FixMPMContact :
   bool is_known(const Body &, const int *index) const;
   bool measure_gap(Tie &, int axis, const int *index, int low, int high, double &gap) const;
   void add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first, std::size_t last,
-               int axis);
+               int axis, const std::array<int, 6> &line);
   void find_tangents(Tie &, int held) const;
   static bool can_slide(const Tie &tie)
   {
     return tie.along[0][0] != 0.0 || tie.along[0][1] != 0.0 || tie.along[0][2] != 0.0;
+  }
+  /** Does this row hold? */
+  bool acts(const Tie &tie, int row) const
+  {
+    return tie.active && tie.diagonal[row] > 0.0 && (row == 0 || law == STICK || tie.sticks);
+  }
+  bool slides(const Tie &tie) const
+  {
+    return has_friction() && tie.active && !tie.sticks && can_slide(tie);
   }
   const double *direction(const Tie &tie, const Link &link, int row) const
   {
@@ -316,9 +327,12 @@ class FixMPMContact :
   }
   void find_ties();
   void check_overlap();
-  double slip_length(const Tie &) const;
   void find_slip(const Tie &, const double *u, double *slip) const;
-  void change_of_direction(const Tie &, const double *slip, double *change) const;
+  double find_way(const Tie &, double *way) const;
+  void change_of_way(const Tie &, const double *slip, double *way, double *change) const;
+  double wrong_friction(const Tie &, double largest) const;
+  void change_friction(Tie &) const;
+  void begin_touch(Tie &, const double *u) const;
   void rub(const Tie &, const double *on_a, double *force) const;
   void add_force(const Tie &, const Link &, const double *rows, double *force) const;
   void act_after_trials();
@@ -329,12 +343,18 @@ class FixMPMContact :
     place_of = first;
   }
   std::size_t nrows() const override { return ties.size() * rows_of_tie(); }
+  int rows_of_group() const override { return rows_of_tie(); }
+  Key key_of(std::size_t group) const override { return ties[group].key; }
+  bool owns(std::size_t group) const override { return ties[group].owned; }
+  bool holds(std::size_t row) const override
+  {
+    return acts(ties[row / rows_of_tie()], (int) (row % rows_of_tie()));
+  }
+  void visit_row(std::size_t row,
+                 const std::function<void(int64_t k, double c)> &use) const override;
   bool touches() const override;
   void find_approach(const double *v, bool with_gaps, double *rows) const override;
   void add_squares(const double *rows, const double *v, double *sums) const override;
-  void precondition(const double *rows, double gain, double *along) const override;
-  void spread(const double *rows, double *v) const override;
-  double product(const double *a, const double *b) const override;
   void push(double factor, const double *rows) override;
 
   // MPMTrialContact
@@ -344,6 +364,8 @@ class FixMPMContact :
   bool close_gaps(bool yes) override;
   void check_arrival() override {}
   bool has_friction() const override { return law == COULOMB && kinetic_friction > 0.0; }
+  bool is_regularised() const override { return false; }
+  bool rubs() const override;
   void forget_pushes() override;
   void take_base() override;
   void take_forces(double scale) override;
@@ -352,9 +374,10 @@ class FixMPMContact :
   void add_friction_blocks(double *blocks) override;
   void add_friction_stiffness(double *) override {}    // levels are of one field
   void correct(const double *du) override;
-  bool decide(const double *u) override;
-  void soften(double eps) override { soft = eps; }
-  void foresee_velocities(const double *, double) override {}
+  bool decide(const double *u, double unbalanced) override;
+  void soften(double) override {}
+  void take_stop() override;
+  void foresee_velocities(const double *, double share) override { of_forces = share; }
 };
 
 }    // namespace LAMMPS_NS

@@ -22,7 +22,8 @@
 //
 //    g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
 //
-// What touches is held along the normal (law stick: and along the mean plane of the interface of the line) without any penalty, as long as it would not be pulled.
+// What touches is held along the normal (law stick, and law coulomb where it sticks: and along the mean plane of the interface of the line) without any
+// penalty, as long as it would not be pulled, and, with law coulomb, as long as friction can bear it.
 
 #include "fix_mpm_contact.h"
 
@@ -46,16 +47,20 @@ static constexpr double COVERED = 1.0e-3;    // share of the cross-section of a 
 // node spacings at which bodies touch as they are if others do, and at which statics tries whether they touch
 static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
 static constexpr double TOUCHED = 1.0e-6;    // node spacings: no gap
-static constexpr double LONGEST = 0.99;      // of the direction of slip: what slips has a stiffness
+static constexpr double TURNS =
+    1.0e-2;    // node spacings of slip that turn friction into its direction
 static constexpr double WRONG =
     1.0e-9;    // of the largest push, a pull that is let go; node spacings
 static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;    // see fix_mpm_contact.cpp
 static constexpr double ROOM =
     1.1;    // for what bodies that overlap at the start of a run share later
 static constexpr double STILL_RIGHT = 1.0e-4;    // the same in the end
-static constexpr double ALONG_AXIS = 0.99;       // cosine between a normal and an axis
-static constexpr double HELD = 1.0e-12;          // of what rows would move without walls
-static constexpr int AT_ONCE = 6;                // times that all is changed
+static constexpr double ERRORS =
+    10.0;    // of single forces, in the share of all that is not in balance
+static constexpr double ALONG_AXIS = 0.99;    // cosine between a normal and an axis
+static constexpr double HELD = 1.0e-12;       // of what rows would move without walls
+// times that all is changed, and half of the worst; then, only the worst is
+static constexpr int AT_ONCE = 6, HALF = 18;
 
 /* ---------------------------------------------------------------------- */
 
@@ -85,10 +90,10 @@ void FixMPMContact::refuse_trials() const
                id, what, instead);
 }
 
-/** Rows of a tie: along the normals, and with law stick also along the interface. */
+/** Rows of a tie: along the normals, and with friction also along the interface. */
 int FixMPMContact::rows_of_tie() const
 {
-  return law == STICK ? bodies[0].field->lattice.dim : 1;
+  return law == STICK || has_friction() ? bodies[0].field->lattice.dim : 1;
 }
 
 /* ----------------------------------------------------------------------
@@ -249,9 +254,11 @@ void FixMPMContact::find_tangents(Tie &tie, int held) const
 
 /** places: node index along the axis and pair, of which those from first to last are next to each other. */
 void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first,
-                            std::size_t last, int axis)
+                            std::size_t last, int axis, const std::array<int, 6> &line)
 {
   Tie tie = {};
+  std::copy(line.begin(), line.end(), tie.key.begin());
+  tie.key[6] = places[first % places.size()].first;
   const Pair &begin = pairs[places[first % places.size()].second];
   const int dim = bodies[begin.a].field->lattice.dim;
   tie.a = begin.a;
@@ -362,7 +369,7 @@ void FixMPMContact::find_ties()
     if (begin == n) begin = 0;    // all around a box
     for (std::size_t first = begin, last; first < begin + n; first = last) {
       for (last = first + 1; last < begin + n && joined(last);) last++;
-      add_tie(places, first, last, axis);
+      add_tie(places, first, last, axis, key);
     }
   }
   check_overlap();
@@ -394,11 +401,9 @@ void FixMPMContact::check_overlap()
 
 /* ---------------------------------------------------------------------- */
 
-void FixMPMContact::begin_trials(MPMField &, double dt, double, double eps, bool rests)
+void FixMPMContact::begin_trials(MPMField &, double dt, double, double, bool rests)
 {
   trial_dt = dt;
-  trial_eps = eps;
-  soft = 0.0;
   closes = false;
   rounds = 0;
   nodes.clear();
@@ -422,6 +427,7 @@ void FixMPMContact::begin_trials(MPMField &, double dt, double, double eps, bool
   for (auto &tie : ties) {
     if (any && tie.gap <= NEXT_TO * h) tie.gap = 0.0;
     tie.active = any ? tie.gap == 0.0 : rests && tie.gap < NEARBY * h;
+    tie.sticks = has_friction();
   }
 }
 
@@ -459,7 +465,7 @@ void FixMPMContact::find_approach(const double *v, bool with_gaps, double *rows)
     }
     const double closing = with_gaps && closes ? tie.gap / trial_dt : 0.0;
     for (int r = 0; r < nrow; r++, rows++)
-      *rows = !tie.active || tie.diagonal[r] == 0.0 ? 0.0 : u[r] - (r == 0 ? closing : 0.0);
+      *rows = acts(tie, r) ? u[r] - (r == 0 ? closing : 0.0) : 0.0;
   }
 }
 
@@ -475,19 +481,11 @@ void FixMPMContact::add_squares(const double *rows, const double *v, double *sum
             (std::fabs(v[dim * links[k].a + d]) + std::fabs(v[dim * links[k].b + d]));
     if (closes) speed += tie.gap / trial_dt;
     for (int r = 0; r < nrow; r++, rows++) {
-      if (!tie.owned || !tie.active || tie.diagonal[r] == 0.0) continue;
+      if (!tie.owned || !acts(tie, r)) continue;
       sums[0] += *rows * *rows / tie.diagonal[r];
       sums[1] += speed * speed / tie.diagonal[r];
     }
   }
-}
-
-void FixMPMContact::precondition(const double *rows, double gain, double *along) const
-{
-  const int nrow = rows_of_tie();
-  for (const auto &tie : ties)
-    for (int r = 0; r < nrow; r++, rows++, along++)
-      *along = (tie.diagonal[r] > 0.0 ? *rows / tie.diagonal[r] : 0.0) + gain * *along;
 }
 
 /** Adds the forces of these rows of a tie on the bodies at a link, on a with the sign of the row: force[dim]. */
@@ -501,31 +499,19 @@ void FixMPMContact::add_force(const Tie &tie, const Link &link, const double *ro
   }
 }
 
-void FixMPMContact::spread(const double *rows, double *v) const
+void FixMPMContact::visit_row(std::size_t row,
+                              const std::function<void(int64_t k, double c)> &use) const
 {
   const int dim = bodies[0].field->lattice.dim, nrow = rows_of_tie();
-  for (const auto &tie : ties) {
-    for (int k = tie.first; k < tie.last && tie.active; k++) {
-      const Link &link = links[k];
-      double force[3] = {0.0, 0.0, 0.0};
-      add_force(tie, link, rows, force);
-      for (int d = 0; d < dim; d++) {
-        v[dim * link.a + d] += force[d] / link.ra[3];
-        v[dim * link.b + d] -= force[d] / link.rb[3];
-      }
+  const Tie &tie = ties[row / nrow];
+  for (int k = tie.first; k < tie.last; k++) {
+    const Link &link = links[k];
+    const double *const e = direction(tie, link, (int) (row % nrow));
+    for (int d = 0; d < dim; d++) {
+      use(dim * link.a + d, link.share * e[d]);
+      use(dim * link.b + d, -link.share * e[d]);
     }
-    rows += nrow;
   }
-}
-
-double FixMPMContact::product(const double *a, const double *b) const
-{
-  const int nrow = rows_of_tie();
-  double sum = 0.0;
-  for (const auto &tie : ties)
-    for (int r = 0; r < nrow; r++, a++, b++)
-      if (tie.owned && tie.active) sum += *a * *b;
-  return sum;
 }
 
 void FixMPMContact::forget_pushes()
@@ -552,15 +538,27 @@ void FixMPMContact::take_forces(double scale)
     for (int r = 0; r < 3; r++) tie.force[r] = (tie.push[r] - tie.base[r]) / scale;
 }
 
+void FixMPMContact::take_stop()
+{
+  for (auto &tie : ties) MathExtra::copy3(tie.push, tie.stop);
+}
+
 /* ----------------------------------------------------------------------
-   friction of ties that touch, as that of walls (fix_mpm_boundary_trial.cpp): on the nodes of both bodies in their shares of the interface
+   Coulomb's law, without any regularisation. What sticks has rows along the interface, whose forces tell when friction cannot bear them; what slides has friction mu N against the
+   direction w of its slip, on the nodes of both bodies in their shares of the interface, and sticks again if it would go back. This is Newton's method for the
+   projection of P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, with what sticks by an exact condition. With s the slip in the step,
+
+      w = (s + d w0)/|s + d w0|
+
+   where w0 is the direction of the iteration before, or of the force with which it stuck: friction does not jump when a tie begins to slide, and w is that of s
+   in the end. In 2d, w is w0, and friction changes with N alone. N may be negative until it is decided what parts: as long as sets stay, forces have no kinks
 ------------------------------------------------------------------------- */
 
-/** (|s|^2 + eps^2)^(1/2) */
-double FixMPMContact::slip_length(const Tie &tie) const
+bool FixMPMContact::rubs() const
 {
-  const double width = std::max(trial_eps, soft);
-  return std::sqrt(MathExtra::lensq3(tie.slip) + width * width);
+  return has_friction() && std::any_of(ties.begin(), ties.end(), [this](const Tie &tie) {
+           return tie.owned && slides(tie);
+         });
 }
 
 /** Motion of a on b along the interface. */
@@ -575,11 +573,18 @@ void FixMPMContact::find_slip(const Tie &tie, const double *u, double *slip) con
   for (int d = 0; d < 3; d++) slip[d] -= along * tie.n[d];
 }
 
-/** (ds - w s.ds/l)/l, the change of direction that Newton's method knows, see fix_mpm_boundary_trial.cpp */
-void FixMPMContact::change_of_direction(const Tie &tie, const double *slip, double *change) const
+/** w of tie.slip, a unit vector; returns |s + d w0|. What goes back keeps its direction until it sticks. */
+double FixMPMContact::find_way(const Tie &tie, double *way) const
 {
-  const double length = slip_length(tie), along = MathExtra::dot3(tie.slip, slip) / length;
-  for (int d = 0; d < 3; d++) change[d] = (slip[d] - along * tie.dual[d]) / length;
+  const double turns = TURNS * bodies[0].field->lattice.h;
+  for (int d = 0; d < 3; d++) way[d] = tie.slip[d] + turns * tie.way[d];
+  const double length = MathExtra::len3(way);
+  if (bodies[0].field->lattice.dim == 2 || !(MathExtra::dot3(way, tie.way) > 0.5 * length)) {
+    MathExtra::copy3(tie.way, way);
+    return 0.0;
+  }
+  MathExtra::scale3(1.0 / length, way);
+  return length;
 }
 
 /** Adds a force on a, and its reaction. */
@@ -595,60 +600,57 @@ void FixMPMContact::rub(const Tie &tie, const double *on_a, double *force) const
 
 void FixMPMContact::add_friction(const double *u, double *force)
 {
-  if (!has_friction()) return;
   for (auto &tie : ties) {
     MathExtra::zero3(tie.rubs);
-    if (!tie.active || !can_slide(tie)) continue;
+    if (!slides(tie)) continue;
     find_slip(tie, u, tie.slip);
-    if (!(tie.force[0] > 0.0)) continue;
-    const double length = slip_length(tie);
-    for (int d = 0; d < 3; d++)
-      tie.rubs[d] = -kinetic_friction * tie.force[0] * tie.slip[d] / length;
+    double way[3];
+    find_way(tie, way);
+    for (int d = 0; d < 3; d++) tie.rubs[d] = -kinetic_friction * tie.force[0] * way[d];
     rub(tie, tie.rubs, force);
   }
 }
 
+/** Change of w for a change of the slip. */
+void FixMPMContact::change_of_way(const Tie &tie, const double *slip, double *way,
+                                  double *change) const
+{
+  const double length = find_way(tie, way), along = MathExtra::dot3(way, slip);
+  for (int d = 0; d < 3; d++) change[d] = length > 0.0 ? (slip[d] - along * way[d]) / length : 0.0;
+}
+
 void FixMPMContact::add_friction_change(const double *du, double scale, double *dforce)
 {
-  if (!has_friction()) return;
   for (auto &tie : ties) {
-    if (!tie.active || !can_slide(tie) || !(tie.force[0] > 0.0)) continue;
-    double slip[3], turn[3], change[3];
+    if (!slides(tie)) continue;
+    double slip[3], way[3], turn[3], change[3];
     find_slip(tie, du, slip);
-    change_of_direction(tie, slip, turn);
-    const double length = slip_length(tie), more = (tie.push[0] - tie.base[0]) / scale;
+    change_of_way(tie, slip, way, turn);
+    const double more = (tie.push[0] - tie.base[0]) / scale;
     for (int d = 0; d < 3; d++)
-      change[d] = -kinetic_friction * (more * tie.slip[d] / length + tie.force[0] * turn[d]);
+      change[d] = -kinetic_friction * (more * way[d] + std::max(tie.force[0], 0.0) * turn[d]);
     rub(tie, change, dforce);
   }
 }
 
-void FixMPMContact::correct(const double *du)
+void FixMPMContact::correct(const double *)
 {
-  if (!has_friction()) return;
   for (auto &tie : ties) {
-    if (!tie.active || !can_slide(tie)) continue;
-    double slip[3], turn[3];
-    find_slip(tie, du, slip);
-    change_of_direction(tie, slip, turn);
-    const double length = slip_length(tie);
-    for (int d = 0; d < 3; d++) tie.dual[d] = tie.slip[d] / length + turn[d];
-    const double size = MathExtra::len3(tie.dual);
-    if (size > LONGEST) MathExtra::scale3(LONGEST / size, tie.dual);
+    double way[3];
+    if (slides(tie) && find_way(tie, way) > 0.0) MathExtra::copy3(way, tie.way);
   }
 }
 
 void FixMPMContact::add_friction_blocks(double *blocks)
 {
   const int dim = bodies[0].field->lattice.dim;
-  if (!has_friction()) return;
   for (const auto &tie : ties) {
-    if (!tie.active || !can_slide(tie) || !(tie.force[0] > 0.0)) continue;
+    if (!slides(tie) || !(tie.force[0] > 0.0)) continue;
     const double slope = kinetic_friction * tie.force[0];
     for (int e = 0; e < dim; e++) {
-      double along[3], turn[3];
+      double along[3], way[3], turn[3];
       for (int d = 0; d < 3; d++) along[d] = (d == e) - tie.n[d] * tie.n[e];
-      change_of_direction(tie, along, turn);
+      change_of_way(tie, along, way, turn);
       for (int k = tie.first; k < tie.last; k++)
         for (int d = 0; d < dim; d++) {
           const double stiffness = links[k].share * links[k].share * slope * turn[d];
@@ -659,15 +661,55 @@ void FixMPMContact::add_friction_blocks(double *blocks)
   }
 }
 
+/** Of a tie that is in contact with friction: by how much of the force is its state wrong? Positive: it changes. */
+double FixMPMContact::wrong_friction(const Tie &tie, double largest) const
+{
+  if (!has_friction() || !can_slide(tie) || !(largest > 0.0)) return 0.0;
+  if (tie.sticks)
+    return (std::hypot(tie.force[1], tie.force[2]) -
+            kinetic_friction * std::max(tie.force[0], 0.0)) /
+        largest;
+  return -MathExtra::dot3(tie.slip, tie.way) / bodies[0].field->lattice.h;
+}
+
+/** Lets a tie slide against the force with which it stuck, or stick. */
+void FixMPMContact::change_friction(Tie &tie) const
+{
+  MathExtra::zero3(tie.slip);
+  MathExtra::zero3(tie.rubs);
+  if (tie.sticks) {
+    for (int d = 0; d < 3; d++)
+      tie.way[d] = tie.force[1] * tie.along[0][d] + tie.force[2] * tie.along[1][d];
+    MathExtra::norm3(tie.way);
+  }
+  tie.sticks = !tie.sticks;
+}
+
+/** A tie touches from now on. What has slid until then goes on to slide. */
+void FixMPMContact::begin_touch(Tie &tie, const double *u) const
+{
+  tie.active = true;
+  tie.sticks = has_friction();
+  MathExtra::zero3(tie.rubs);
+  if (!tie.sticks || !can_slide(tie)) return;
+  find_slip(tie, u, tie.slip);
+  const double length = MathExtra::len3(tie.slip);
+  if (length < TURNS * bodies[0].field->lattice.h) return;
+  tie.sticks = false;
+  for (int d = 0; d < 3; d++) tie.way[d] = tie.slip[d] / length;
+}
+
 /* ----------------------------------------------------------------------
-   All that is wrong is changed at first. Where this goes to and fro, only what is most wrong is, and what is all but right stays
+   All that is wrong is changed at first. Where this goes to and fro, only what is most wrong is, and what is all but right stays. While forces are not
+   in balance yet, what is wrong by no more than these stays, too
 ------------------------------------------------------------------------- */
 
-bool FixMPMContact::decide(const double *u)
+bool FixMPMContact::decide(const double *u, double unbalanced)
 {
   const double h = bodies[0].field->lattice.h;
   const int dim = bodies[0].field->lattice.dim;
   std::vector<double> along(ties.size(), 0.0), wrong(ties.size(), 0.0);
+  std::vector<char> by_friction(ties.size(), 0);
   double mine = 0.0, largest, worst;
   for (std::size_t k = 0; k < ties.size(); k++) {
     const Tie &tie = ties[k];
@@ -681,6 +723,9 @@ bool FixMPMContact::decide(const double *u)
     const Tie &tie = ties[k];
     if (tie.active) {
       wrong[k] = largest > 0.0 ? -along[k] / largest : 0.0;
+      const double friction = wrong_friction(tie, largest);
+      by_friction[k] = friction > wrong[k] && wrong[k] <= WRONG;
+      if (by_friction[k]) wrong[k] = friction;
     } else {
       double approach = -tie.gap;
       for (int j = tie.first; j < tie.last; j++)
@@ -692,13 +737,23 @@ bool FixMPMContact::decide(const double *u)
     if (tie.owned) mine = std::max(mine, wrong[k]);
   }
   MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE, MPI_MAX, world);
-  const bool all = rounds++ < AT_ONCE;
-  if (worst <= (all ? WRONG : STILL_RIGHT)) return false;
+  const bool all = rounds < AT_ONCE;
+  const double right = std::max(all ? WRONG : STILL_RIGHT, ERRORS * unbalanced);
+  if (worst <= right) return false;
+  const double least = all ? right : std::max(right, (rounds < HALF ? 0.5 : 0.999) * worst);
+  rounds++;
   bool changed = false;
   for (std::size_t k = 0; k < ties.size(); k++) {
-    if (wrong[k] <= (all ? WRONG : 0.5 * worst)) continue;
-    ties[k].active = !ties[k].active;
+    if (wrong[k] <= least) continue;
     changed = true;
+    if (by_friction[k]) {
+      change_friction(ties[k]);
+    } else if (ties[k].active) {
+      ties[k].active = false;
+      MathExtra::zero3(ties[k].rubs);
+    } else {
+      begin_touch(ties[k], u);
+    }
   }
   return changed;
 }
@@ -718,10 +773,11 @@ void FixMPMContact::act_after_trials()
     Account &entry = accounts[pair_index(tie.a, tie.b, (int) bodies.size())];
     for (int k = tie.first; k < tie.last && tie.active; k++) {
       const Link &link = links[k];
-      double impulse[3] = {0.0, 0.0, 0.0};
+      double impulse[3] = {0.0, 0.0, 0.0}, stop[3] = {0.0, 0.0, 0.0};
       add_force(tie, link, tie.force, impulse);
+      add_force(tie, link, tie.stop, stop);
       for (int d = 0; d < dim; d++) {
-        impulse[d] = trial_dt * (impulse[d] - link.share * tie.rubs[d]);
+        impulse[d] = trial_dt * of_forces * (impulse[d] - link.share * tie.rubs[d]) + stop[d];
         link.ra[d] -= impulse[d] / link.ra[3];
         link.rb[d] += impulse[d] / link.rb[3];
         if (tie.owned) entry.impulse[d] += impulse[d];

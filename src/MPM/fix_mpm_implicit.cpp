@@ -238,7 +238,7 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
             "of fix {} {}, and fix {} {} has one of these: use stick, or slip without "
             "friction",
             dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id, style, name);
-    rubs = rubs || contact->has_friction();
+    rubs = rubs || (contact->has_friction() && contact->is_regularised());
   }
   if (slip > 0.0 && !rubs)
     error->all(FLERR, Error::NOLASTLINE,
@@ -263,10 +263,11 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
           "mpm/contact names, but there are {} of these and {} of those, and fix mpm {}: let "
           "bodies share a fix mpm, name all of them in one fix mpm/contact, or use explicit steps",
           fields.size(), contacts.size(), field->id());
-  if (time != STATIC && time != EULER)
+  if (keeps_acceleration())
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/implicit finds contact between bodies (fix mpm/contact {}) with the forces "
-               "of the end of a step alone: use static or euler",
+               "Fix mpm/implicit alpha and hht keep accelerations of points, whose part in the "
+               "force between bodies (fix mpm/contact {}) would not be told: use newmark or "
+               "midpoint",
                contacts[0]->id);
   if (preconditioner == MULTIGRID)
     error->all(FLERR, Error::NOLASTLINE,
@@ -314,7 +315,10 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("implicit step", [this]() {
       rest();
     });
-  if (place == MPMPlan::AFTER_MOTION && time == MIDPOINT && fields[0]->affine)
+  if (place == MPMPlan::AFTER_MOTION && time == MIDPOINT &&
+      std::any_of(fields.begin(), fields.end(), [](const MPMField *of) {
+        return (bool) of->affine;
+      }))
     plan.together("implicit step", [this]() {
       solver->end_motion();
     });

@@ -11,6 +11,7 @@
 
 #include "mpm_trial_contact.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -25,6 +26,17 @@ class MPMBodyContact : public MPMTrialContact {
   /** The number of the first node of each body in vectors. Before begin_trials(). */
   virtual void place_bodies(const std::function<int64_t(const MPMField &)> &first) = 0;
   virtual std::size_t nrows() const = 0;
+  /** Rows come in groups of this number, on the same nodes. */
+  virtual int rows_of_group() const = 0;
+  /** By what groups are told from each other on all ranks. */
+  using Key = std::array<int, 7>;
+  virtual Key key_of(std::size_t group) const = 0;
+  virtual bool owns(std::size_t group) const = 0;
+  /** Does this row hold now? */
+  virtual bool holds(std::size_t row) const = 0;
+  /** use(k, c) for the entries c of C in a row, whether it holds or not. */
+  virtual void visit_row(std::size_t row,
+                         const std::function<void(int64_t k, double c)> &use) const = 0;
   /** Does anything touch, on this rank? */
   virtual bool touches() const = 0;
   /** [row] C v, and less g if gaps are closed; zero where bodies do not touch. */
@@ -32,12 +44,6 @@ class MPMBodyContact : public MPMTrialContact {
   /** Of rows r that count on this rank: sums[0] r . D^-1 r, with D the diagonal of C P_w M^-1 C^T, and, with v, sums[1] the same of the speeds
    *  at their nodes. */
   virtual void add_squares(const double *rows, const double *v, double *sums) const = 0;
-  /** along = D^-1 r + gain along */
-  virtual void precondition(const double *rows, double gain, double *along) const = 0;
-  /** v += M^-1 C^T r */
-  virtual void spread(const double *rows, double *v) const = 0;
-  /** a . b, of rows that count on this rank. */
-  virtual double product(const double *a, const double *b) const = 0;
   /** Impulses of rows, which are summed up, see MPMTrialContact. */
   virtual void push(double factor, const double *rows) = 0;
 

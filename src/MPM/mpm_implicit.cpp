@@ -16,6 +16,7 @@
 #include "mpm_physics.h"
 #include "mpm_plan.h"
 #include "mpm_stencil.h"
+#include "mpm_ties.h"
 #include "mpm_trial_contact.h"
 
 #include <Eigen/Eigenvalues>
@@ -28,8 +29,6 @@ using namespace MPM_NS;
 
 static constexpr double PROJECTED = 1.0e-12;    // relative change by one action more
 static constexpr int MOST_REPEATS = 200;
-static constexpr double TIED = 1.0e-14;    // what is left of the approach of bodies that touch
-static constexpr int MOST_TIES = 100;
 static constexpr double ENOUGH = 0.9;    // of the slope that may be left, with the other sign
 static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
@@ -43,9 +42,11 @@ static constexpr double SOFT = 0.1, HARDER = 0.1;    // the same at first, and i
 static constexpr double NEARLY = 1.0e-3;             // of all forces, for that change
 static constexpr double MAY_GROW =
     100.0;    // forces that are not in balance, where lines of nodes begin to stick or slip
-static constexpr double AT_ONCE = 0.1;       // node spacings that walls move nodes alone
-static constexpr int ROUNDS = 2;             // of friction of walls that press on each other
-static constexpr double LOST = 1.0e12;       // times the first residual
+static constexpr double STALLS = 0.5;     // of forces that are left, after an iteration
+static constexpr int MOST_SLOW = 2;       // of these, until bodies decide what touches and slides
+static constexpr double AT_ONCE = 0.1;    // node spacings that walls move nodes alone
+static constexpr int ROUNDS = 2;          // of friction of walls that press on each other
+static constexpr double LOST = 1.0e12;    // times the first residual
 static constexpr double REACHED = 1.0e-9;    // in points
 // unknowns of a system that is factorized as a whole, which is faster than levels, by dimension
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};
@@ -173,7 +174,7 @@ void MPMImplicit::act(double *velocities)
 {
   for (auto *contact : contacts) contact->forget_pushes();
   act_by_walls(velocities);
-  if (touching) tie(velocities);
+  if (touching) ties->close(velocities);
 }
 
 void MPMImplicit::act_by_walls(double *velocities)
@@ -194,6 +195,13 @@ void MPMImplicit::find_constraints()
   closing.clear();
   wall_speed = 0.0;
   if (!constrained) return;
+  if (has_friction) {
+    int mine = 0, any;
+    for (const auto *contact : contacts)
+      if (contact->rubs()) mine = 1;
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
+    rubs = any;
+  }
 
   // is P P = P for a vector that is no special one, and the same on all ranks?
 
@@ -237,15 +245,21 @@ void MPMImplicit::find_touching()
   int mine = tied->touches(), any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
   touching = any;
+  const int acts = repeats;
   of_walls.assign(nreals(), 0.0);
   act_by_walls(of_walls.data());
   speed_of_walls = std::sqrt(product(of_walls.data(), of_walls.data()));
+  if (!touching) return;
+  if (!ties->known_for(acts))
+    ties->begin(*tied, mass, width, acts, field.plan->actions.size() > 1, [this](double *v) {
+      take_by_walls(v);
+    });
+  ties->factorize();
 }
 
 /** v <- P_w v, see project(). */
 void MPMImplicit::take_by_walls(double *v)
 {
-  if (field.plan->actions.size() == 1) return;    // there is nothing but contact
   double scale = 1.0;
   if (speed_of_walls > 0.0) {
     const double size = std::sqrt(product(v, v));
@@ -255,39 +269,6 @@ void MPMImplicit::take_by_walls(double *v)
   act_by_walls(v);
   if (speed_of_walls > 0.0)
     for (int64_t k = 0; k < nreals(); k++) v[k] = (v[k] - of_walls[k]) / scale;
-}
-
-/** Velocities that walls have acted on become those with which nothing that touches approaches each other, by impulses that walls know of. */
-void MPMImplicit::tie(double *v)
-{
-  const std::size_t n = tied->nrows();
-  double sums[2];
-  for (auto *list : {&closing_in, &along, &next_along}) list->assign(n, 0.0);
-  along_all.resize(nreals());
-  // r . D^-1 r of rows that this rank owns, and what it would be of their speeds
-  double enough = 0.0, before = 0.0;
-  tied->find_approach(v, true, closing_in.data());
-  for (int it = 0; it < MOST_TIES; it++) {
-    tied->add_squares(closing_in.data(), it == 0 ? v : nullptr, sums);
-    double all[2];
-    sum_in_order(lmp, 2, sums, of_ranks, all);
-    if (it == 0) enough = TIED * TIED * all[1];
-    if (!(all[0] > enough)) return;
-    const double gain = it == 0 ? 0.0 : all[0] / before;
-    before = all[0];
-    tied->precondition(closing_in.data(), gain, along.data());
-    std::fill(along_all.begin(), along_all.end(), 0.0);
-    tied->spread(along.data(), along_all.data());
-    take_by_walls(along_all.data());
-    tied->find_approach(along_all.data(), false, next_along.data());
-    sums[0] = tied->product(along.data(), next_along.data());
-    sum_in_order(lmp, 1, sums, of_ranks, all);
-    if (!(all[0] > 0.0)) return;    // walls hold all of it
-    const double way = before / all[0];
-    tied->push(way, along.data());
-    for (int64_t k = 0; k < nreals(); k++) v[k] -= way * along_all[k];
-    for (std::size_t k = 0; k < n; k++) closing_in[k] -= way * next_along[k];
-  }
 }
 
 /** Displacements of what walls hold, and was not at them at the start of the step. */
@@ -388,11 +369,11 @@ double MPMImplicit::negligible_forces(const std::vector<double> &u, double stiff
 }
 
 /** What touches, when forces are in balance: false, on all ranks, if nothing has to be changed. */
-bool MPMImplicit::decide_contact(std::vector<double> &u)
+bool MPMImplicit::decide_contact(std::vector<double> &u, double unbalanced)
 {
   int changed = 0, any;
   for (auto *contact : contacts)
-    if (contact->decide(u.data())) changed = 1;
+    if (contact->decide(u.data(), unbalanced)) changed = 1;
   MPI_Allreduce(&changed, &any, 1, MPI_INT, MPI_MAX, lmp->world);
   if (!any) return false;
   find_constraints();
@@ -815,7 +796,9 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
   now.residuals.clear();
   // friction begins soft, so that what slips and what sticks is found in small changes, and walls do not tear what they drag
   double softness = 0.0;
-  if (rubs) {
+  if (std::any_of(contacts.begin(), contacts.end(), [](const MPMTrialContact *contact) {
+        return contact->has_friction() && contact->is_regularised();
+      })) {
     double most = SOFT * field.lattice.h;
     for (int64_t k = 0; k < nreals(); k++) most = std::max(most, std::fabs(held[k]));
     MPI_Allreduce(&most, &softness, 1, MPI_DOUBLE, MPI_MAX, lmp->world);
@@ -830,7 +813,9 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
   bool wall_moves = closes || (options.time == MPMImplicitOptions::STATIC && wall_speed > 0.0);
   // since walls have moved, and it is known what touches
   double first = wall_moves ? 0.0 : now.unbalanced;
+  int slow = 0;    // iterations that gained next to nothing since bodies have decided
   while (true) {
+    bool changed = false;
     now.residuals.push_back(now.unbalanced);
     const double enough =
         std::max({options.tolerance * size, options.absolute * lmp->force->ftm2v,
@@ -846,8 +831,15 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
       last = 0.0;
       continue;
     }
-    if (left <= enough && !wall_moves) {
-      if (contacts.empty() || !decide_contact(u)) return CONVERGED;
+    // bodies decide early what touches and what slides, as long as that changes
+    const bool converged = left <= enough;
+    const bool stalls = tied && last > 0.0 && left > STALLS * last && ++slow > MOST_SLOW;
+    const bool may_decide = converged || stalls || (tied && now.unbalanced <= NEARLY * size);
+    if (may_decide && !wall_moves)
+      changed = decide_contact(u, converged || stalls ? 0.0 : now.ratio);
+    if (changed) slow = 0;
+    if (converged && !wall_moves && !changed) return CONVERGED;
+    if (may_decide && !wall_moves && changed) {
       last = first = 0.0;
       std::fill(held.begin(), held.end(), 0.0);
       closes = wall_moves = meet_walls(u, aim);
@@ -963,7 +955,7 @@ void MPMImplicit::approach(std::vector<double> &u)
     for (int64_t k = 0; k < nreals() && rests; k++) held[k] = (aim - now.reached) * dt * wall[k];
     const int most = (int) options.most_iterations;
     const Outcome outcome =
-        newton(u, first.empty() ? most : std::min(most, (rubs ? 3 : 1) * IN_A_PART));
+        newton(u, first.empty() ? most : std::min(most, (has_friction ? 3 : 1) * IN_A_PART));
     by_levels = by_levels && outcome == CONVERGED;
     if (outcome == CONVERGED) {
       now.parts++;
@@ -997,7 +989,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
   by_levels = false;
   take_nodes();
   contacts.clear();
-  rubs = false;
+  rubs = has_friction = false;
   bool all_hold = true;
   slip = options.slip > 0.0 ? options.slip : SLIP * field.lattice.h;
   const double slip_time = dt * options.share_of_end();
@@ -1007,6 +999,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
     if (auto *contact = action->trial_contact()) {
       if (auto *const bodies = dynamic_cast<MPMBodyContact *>(contact)) {
         tied = bodies;
+        ties = std::make_unique<MPMTies>(lmp);
         bodies->place_bodies([this](const MPMField &of) {
           return first_of(of);
         });
@@ -1014,7 +1007,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
       contact->begin_trials(field, dt, slip_time, slip, options.time == MPMImplicitOptions::STATIC);
       contacts.push_back(contact);
       all_hold = all_hold && action->is_projection();
-      rubs = rubs || contact->has_friction();
+      has_friction = has_friction || contact->has_friction();
     }
   impacts = !all_hold && options.moves_by_mean();
   rub_share = accelerates_by_friction() ? share_of_contact() : 1.0;
@@ -1142,7 +1135,7 @@ void MPMImplicit::finish()
   each_record([&](const Member &, int64_t n, double *record) {
     for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
   });
-  if (options.time == MPMImplicitOptions::MIDPOINT && field.affine) find_end_of_motion();
+  if (options.time == MPMImplicitOptions::MIDPOINT) find_end_of_motion();
   if (options.keeps_acceleration()) keep_accelerations();
 }
 

@@ -27,6 +27,7 @@ namespace LAMMPS_NS {
 class MPMBodyContact;
 class MPMField;
 class MPMNodePressure;
+class MPMTies;
 class MPMTrialContact;
 
 /** How a field is stepped. */
@@ -81,7 +82,7 @@ struct MPMImplicitOptions {
 
       P = P_w - P_w M^-1 C^T S^-1 C P_w,   S = C P_w M^-1 C^T
 
-   with S^-1 by conjugate gradients: S is diagonal, and known, but where walls join nodes of several lines.
+   by factors of S (MPMTies), which is next to diagonal.
 
    Where there is a pressure of nodes (MPMNodePressure), it is found with u by the same iterations (mpm_implicit_pressure.cpp). */
 class MPMImplicit : private MPMNodeSystem {
@@ -173,8 +174,9 @@ class MPMImplicit : private MPMNodeSystem {
   bool touching = false;                      // does anything touch by that?
   std::vector<double> of_walls;               // w of walls alone
   double speed_of_walls = 0.0;
-  std::vector<double> closing_in, along, next_along, along_all;    // for S
-  bool rubs = false;                                               // one of them has friction
+  std::unique_ptr<MPMTies> ties;               // solves for what they need
+  bool has_friction = false;                   // one of them
+  bool rubs = false;                           // and has friction that projections do not bear
   double slip = 0.0;                           // from which on it is that of Coulomb
   double of_pushes = 1.0;                      // scale of the last projection
   double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of their way in this step
@@ -265,12 +267,11 @@ class MPMImplicit : private MPMNodeSystem {
   void act_by_walls(double *velocities);
   void take_by_walls(double *velocities);
   void find_touching();
-  void tie(double *velocities);
   void project(double *x);
   void find_friction(const std::vector<double> &u);
   bool find_carried();
   void bear_carried();
-  bool decide_contact(std::vector<double> &u);
+  bool decide_contact(std::vector<double> &u, double unbalanced);
   void find_closing();
   bool meet_walls(std::vector<double> &u, double share);
   double negligible_forces(const std::vector<double> &u, double stiffness) const;
@@ -291,6 +292,8 @@ class MPMImplicit : private MPMNodeSystem {
   void find_loads(const std::vector<double> &u);
   const double *part_of(const std::vector<double> &u);
   void find_end_of_motion();
+  void find_end_of_points(Member &);
+  void end_motion_of(MPMField &);
   void find_accelerations();
   void keep_accelerations();
   void account();

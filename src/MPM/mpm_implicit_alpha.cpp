@@ -26,7 +26,6 @@ void MPMImplicit::find_accelerations()
 {
   const int dim = width;
   const double *const of_point = lmp->atom->rmass;
-  const MPMStencil stencil(field);
   // walls that bring contact hold by forces of the end of the step alone: until then, nodes have those of the body there
   std::vector<double> borne;
   if (impacts) {
@@ -36,15 +35,20 @@ void MPMImplicit::find_accelerations()
     for (int64_t k = 0; k < nreals(); k++) borne[k] -= rest[k];
   }
   acceleration.assign(nreals(), 0.0);
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      const double *const a = kept.rows[(int) i];
-      stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
-        const double share = of_point[i] * node.weight;
-        for (int d = 0; d < dim; d++) acceleration[dim * node.number + d] += share * a[d];
-      });
-    }
-  field.nodes.sum(acceleration.data(), dim, 0, dim);
+  for (auto &member : members) {
+    MPMField &of = member->field;
+    double *const values = &acceleration[dim * member->first];
+    const MPMStencil stencil(of);
+    for (const auto &run : of.map->runs)
+      for (bigint i = run.first; i < run.last; i++) {
+        const double *const a = kept.rows[(int) i];
+        stencil.visit(of.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+          const double share = of_point[i] * node.weight;
+          for (int d = 0; d < dim; d++) values[dim * node.number + d] += share * a[d];
+        });
+      }
+    of.nodes.sum(values, dim, 0, dim);
+  }
   for (int64_t k = 0; k < nreals(); k++)
     acceleration[k] = mass[k / dim] > 0.0 ? acceleration[k] / mass[k / dim] : 0.0;
   if (impacts) mean = acceleration;
@@ -59,14 +63,18 @@ void MPMImplicit::keep_accelerations()
   const auto &had = impacts ? mean : acceleration;
   if (kept.known)
     for (int64_t k = 0; k < nreals(); k++) next[k] -= had[k];
-  field.nodes.complete(next.data(), dim, dim);
-  const MPMStencil stencil(field);
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      double *const a = kept.rows[(int) i];
-      stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
-        for (int d = 0; d < dim; d++) a[d] += node.weight * next[dim * node.number + d];
-      });
-    }
+  for (auto &member : members) {
+    MPMField &of = member->field;
+    double *const values = &next[dim * member->first];
+    of.nodes.complete(values, dim, dim);
+    const MPMStencil stencil(of);
+    for (const auto &run : of.map->runs)
+      for (bigint i = run.first; i < run.last; i++) {
+        double *const a = kept.rows[(int) i];
+        stencil.visit(of.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+          for (int d = 0; d < dim; d++) a[d] += node.weight * values[dim * node.number + d];
+        });
+      }
+  }
   kept.known = true;
 }

@@ -28,6 +28,7 @@
 #include "mpm_implicit.h"
 
 #include "mpm_field.h"
+#include "mpm_trial_contact.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -99,5 +100,6 @@ void MPMImplicit::end_impacts(const std::vector<double> &u)
   }
   stopped = ending;
   act(stopped.data());
+  for (auto *contact : contacts) contact->take_stop();
   if (keeps) project(next.data());
 }

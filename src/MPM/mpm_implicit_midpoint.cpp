@@ -40,18 +40,28 @@ void MPMImplicit::find_end_of_motion()
       of_nodes[2 * dim * n + d] = impacts ? stopped[dim * n + d] - v : v - start[dim * n + d];
       of_nodes[2 * dim * n + U + d] = dt * v;
     }
-  field.nodes.complete(of_nodes.data(), 2 * dim, 2 * dim);
-
-  const double h = field.lattice.h,
-               inverse = shape_constants[field.options.shape].inv_moment / (h * h);    // of D
-  const MPMStencil stencil(field);
   of_points.assign((std::size_t) lmp->atom->nmax * (dim + square), 0.0);
-  for (const auto &run : field.map->runs)
+  for (auto &member : members)
+    if (member->field.affine) find_end_of_points(*member);
+}
+
+/** The same of the points of one field. */
+void MPMImplicit::find_end_of_points(Member &member)
+{
+  MPMField &of = member.field;
+  const int dim = width, square = dim * dim, U = dim;
+  double *const values = &of_nodes[2 * dim * member.first];
+  of.nodes.complete(values, 2 * dim, 2 * dim);
+
+  const double h = of.lattice.h,
+               inverse = shape_constants[of.options.shape].inv_moment / (h * h);    // of D
+  const MPMStencil stencil(of);
+  for (const auto &run : of.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       double *const more = &of_points[i * (dim + square)], *const C = more + dim;
       double end[3] = {0.0}, moved[3] = {0.0}, products[9] = {0.0};
-      stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
-        const double *const w = &of_nodes[2 * dim * node.number], *const u = w + U;
+      stencil.visit(of.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+        const double *const w = &values[2 * dim * node.number], *const u = w + U;
         for (int a = 0; a < dim; a++) {
           const double v1 = u[a] / dt + w[a];
           more[a] += node.weight * w[a];
@@ -72,16 +82,22 @@ void MPMImplicit::find_end_of_motion()
 
 void MPMImplicit::end_motion()
 {
-  const double kinetic = field.ledger.on ? field.ledger.point_kinetic_energy() : 0.0;
+  for (auto &member : members)
+    if (member->field.affine) end_motion_of(member->field);
+}
+
+void MPMImplicit::end_motion_of(MPMField &of)
+{
+  const double kinetic = of.ledger.on ? of.ledger.point_kinetic_energy() : 0.0;
   const int dim = width, square = dim * dim;
-  for (const auto &run : field.map->runs)
+  for (const auto &run : of.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       const double *const more = &of_points[i * (dim + square)];
       for (int d = 0; d < dim; d++) lmp->atom->v[i][d] += more[d];
-      for (int k = 0; k < square; k++) field.affine->C[i][k] += more[dim + k];
+      for (int k = 0; k < square; k++) of.affine->C[i][k] += more[dim + k];
     }
-  if (!field.ledger.on) return;
-  const double gained = field.ledger.point_kinetic_energy() - kinetic;
-  field.ledger.transfer += gained;
-  field.ledger.take(-gained);
+  if (!of.ledger.on) return;
+  const double gained = of.ledger.point_kinetic_energy() - kinetic;
+  of.ledger.transfer += gained;
+  of.ledger.take(-gained);
 }

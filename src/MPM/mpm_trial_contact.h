@@ -39,6 +39,10 @@ class MPMTrialContact {
   /** Points have moved: an error if any has come into the wall. Collective. */
   virtual void check_arrival() = 0;
   virtual bool has_friction() const = 0;
+  /** Is friction as above, with a width eps? Else that of what sticks is left to projections, and decide() tells what slides. */
+  virtual bool is_regularised() const { return true; }
+  /** Is there anything with friction that is no projection, on this rank? It may change with decide(). */
+  virtual bool rubs() const { return has_friction(); }
   /** Sums of impulses begin again with zero. */
   virtual void forget_pushes() = 0;
   /** The sums are those of nodes that are at rest: of the motion of walls alone. */
@@ -56,10 +60,12 @@ class MPMTrialContact {
   /** The correction du of the motion has been found, of which all or a part will be made. */
   virtual void correct(const double *du) = 0;
   /** Lets go what the wall would pull after the motion u, and holds what went into the wall. Returns whether this changes
-   *  anything, on this rank. */
-  virtual bool decide(const double *u) = 0;
+   *  anything, on this rank. unbalanced: the share of forces that is not in balance yet; walls wait until it is 0. */
+  virtual bool decide(const double *u, double unbalanced) = 0;
   /** Friction is weakened to that of a larger eps for a correction: 0 ends this. */
   virtual void soften(double eps) = 0;
+  /** The sums are those of impulses that bring velocities of the end of a step to what is held, and act once: in the stage STEP. */
+  virtual void take_stop() {}
   /** Nodes will have these velocities after the stage STEP, in which they get this share of the friction that was found; valid until then. */
   virtual void foresee_velocities(const double *v, double share) = 0;
 
