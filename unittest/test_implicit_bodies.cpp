@@ -138,29 +138,6 @@ SERIAL_TEST(Blocks, StickOnAnySlope)
   }
 }
 
-// a block in 3d that is pulled along another one, and sticks: it bears the force, whose direction is that of the pull
-SERIAL_TEST(Block, IsPulledAlongAnotherOne)
-{
-  for (const double mu : {5.0}) {
-    Scene run(
-        "units si\ndimension 3\nboundary f f f\natom_style mpm\n"
-        "region box block 0 1.2 0 1.2 0 0.8\ncreate_box 2 box\nneighbor 0.02 bin\n"
-        "region low block 0.1 1.1 0.1 1.1 0 0.4\nregion up block 0.3 0.9 0.3 0.9 0.4 0.8\n"
-        "group up type 2\ngroup low type 1\nfix a up mpm 0.1\nfix b low mpm 0.1\n"
-        "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix a\n"
-        "group up type 2\ngroup low type 1\n"
-        "fix ma up mpm/material density 1000 linear 1e6 0.2\n"
-        "fix mb low mpm/material density 1000 linear 2e6 0.2\n" +
-        strprintf("fix touch all mpm/contact a b law coulomb %g\n", mu) +
-        "fix solve all mpm/implicit static\nfix floor all mpm/boundary zlo stick\n"
-        "fix lid all mpm/boundary zhi stick velocity 0.006 0.008 -0.004\ntimestep 1.0\nrun 1\n");
-    const double fx = touch(run, 0), fy = touch(run, 1), fz = touch(run, 2);
-    EXPECT_NEAR(measured("ratio of the components", fy / fx), 0.008 / 0.006, 0.02);
-    EXPECT_LT(std::hypot(fx, fy) / std::fabs(fz), 0.9 * mu);
-    EXPECT_NEAR(run.fix("floor")->compute_vector(1) / fx, 1.0, 1e-6);
-  }
-}
-
 // what is pulled parts, and touches again where it has parted
 SERIAL_TEST(Blocks, Part)
 {
