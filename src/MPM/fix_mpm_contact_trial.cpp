@@ -48,7 +48,7 @@ static constexpr double COVERED = 1.0e-3;    // share of the cross-section of a 
 static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
 static constexpr double TOUCHED = 1.0e-6;    // node spacings: no gap
 static constexpr double TURNS =
-    1.0e-4;    // node spacings of slip that turn friction into its direction
+    1.0e-2;    // node spacings of slip that turn friction into its direction
 static constexpr double WRONG =
     1.0e-9;    // of the largest push, a pull that is let go; node spacings
 static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;    // see fix_mpm_contact.cpp

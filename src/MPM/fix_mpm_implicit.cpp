@@ -263,6 +263,12 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
           "mpm/contact names, but there are {} of these and {} of those, and fix mpm {}: let "
           "bodies share a fix mpm, name all of them in one fix mpm/contact, or use explicit steps",
           fields.size(), contacts.size(), field->id());
+  if (keeps_acceleration())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit alpha and hht keep accelerations of points, whose part in the "
+               "force between bodies (fix mpm/contact {}) would not be told: use newmark or "
+               "midpoint",
+               contacts[0]->id);
   if (preconditioner == MULTIGRID)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/implicit solver multigrid knows one fix mpm, and there are {}, which fix "
