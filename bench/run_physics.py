@@ -28,7 +28,9 @@ CASES = {"heat": (("heat", "yes", " "), ("none", "yes", " ")),
          "heat_idle": (("heat_idle", "no", " "), ("none", "no", " ")),
          "pore": (("pore", "no", " "), ("none", "no", " ")),
          "pore_every_3": (("pore", "no", "every 3"), ("none", "no", " ")),
-         "pore_every_5": (("pore", "no", "every 5"), ("none", "no", " ")), "pore_idle": (("pore_idle", "no", " "), ("none", "no", " "))}
+         "pore_every_5": (("pore", "no", "every 5"), ("none", "no", " ")),
+         "pore_every_auto": (("pore", "no", "every auto"), ("none", "no", " ")),
+         "pore_idle": (("pore_idle", "no", " "), ("none", "no", " "))}
 SHORT = 10    # steps of the shorter run
 
 

@@ -10,7 +10,7 @@ its reference log (log.*.g++.1), in all columns of all rows that the run has; tw
 numbers of one; published numbers are met where there are some.
 
 Parts 1 and 2 are the runs of half of the examples each, part 3 the runs with two processes, of which
-half of the steps will do. An example that is run with a coarser lattice is begun with its own one, too,
+a third of the steps will do. An example that is run with a coarser lattice is begun with its own one, too,
 for the first rows of its log."""
 
 import glob
@@ -37,7 +37,7 @@ FEWER_STEPS = {"grains-on-block": 1000, "impact-on-crystal": 1000, "vortex": 110
                "friction-weld": 9000, "machining": 2500, "foam": 2000, "net": 2000, "tent": 1000, "folded-airbag": 15000, "microstructure": 10, "hare": 400, "quench": 1000, "casting": 1000,
                "pouring-honey": 400, "drop": 300, "extruder": 8000, "elastic-gate": 26500, "elastic-plate": 4600}    # until the last time of PUBLISHED
 
-# the same with two processes, where it is less than half of these
+# the same with two processes, where it is less than a third of these
 FEWER_STEPS_OF_TWO = {"pouring-honey": 150, "elastic-gate": 1500, "elastic-plate": 1500,
                       "settlement": 10}    # of each of its runs, which is all of them
 
@@ -294,15 +294,15 @@ def points_made(output):
     return re.findall(r"Created (\d+) (?:material points|atoms)", output)
 
 
-def half_of_the_steps(path, output):
-    """For a run with two processes: those of the first row after half of the steps that one process took, so that
+def third_of_the_steps(path, output):
+    """For a run with two processes: those of the first row after a third of the steps that one process took, so that
     the end is compared; None where that is not clear."""
     if len(re.findall(STEPS, read(path), re.M)) != 1:
         return None
     names, rows = max(mt.thermo(output), key=lambda table: len(table[1]))
     steps = [int(row[names.index("Step")]) for row in rows]
-    half = FEWER_STEPS_OF_TWO.get(os.path.basename(os.path.dirname(path)), steps[-1] / 2)
-    return next(step for step in steps if step >= half)
+    least = FEWER_STEPS_OF_TWO.get(os.path.basename(os.path.dirname(path)), steps[-1] / 3)
+    return next(step for step in steps if step >= least)
 
 
 def output_of(path):
@@ -353,7 +353,7 @@ def make_tests(path, part):
 
     def two_processes():
         expected = with_one_process(path)
-        steps = half_of_the_steps(path, expected)
+        steps = third_of_the_steps(path, expected)
         with Example(path, processes=2, steps=steps) as example:
             check_run(example)
             most = compare(example.result.output, expected, PROCESSES_TOLERANCE, name, "first" if steps else "all",

@@ -22,7 +22,7 @@ cxx=${CXX:-c++}
 mkdir -p "$folder/$part" && folder=$(cd "$folder/$part" && pwd) && cd "$folder" || exit 1
 
 flags=(-std=c++17 -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
-       -DMPM_SANITIZED -include "$root/cmake/sanitize.h" -fno-omit-frame-pointer -fopenmp-simd -ffp-contract=fast
+       -DMPM_SANITIZED -fno-omit-frame-pointer -fopenmp-simd -ffp-contract=fast
        -fno-math-errno -fno-trapping-math
        -Wall -Wextra -I"$src" -I"$root/unittest" -isystem "${MPM_EIGEN:-/usr/include/eigen3}" -fPIC
        -D_GLIBCXX_ASSERTIONS -fsanitize=float-cast-overflow)
@@ -58,6 +58,7 @@ export UBSAN_OPTIONS=print_stacktrace=1
 unset GTEST_OUTPUT MPM_ISA
 
 unit_tests() {
+  flags+=(-include "$root/cmake/sanitize.h")
   # kernels of Bernstein polynomials and of polypic take long to compile; no test here calls them
   cat >others.cpp <<'CODE'
 #include "transfer/kernels_isa.h"
@@ -121,9 +122,10 @@ CODE
 }
 
 with_lammps() {
-  # half of the time would be that for headers
+  # half of the time would be that for headers; compiled ones must be the first that are included
   read -ra lammps <<<"$MPM_LAMMPS_FLAGS"
-  cat >lammps.h <<'CODE'
+  echo "#include \"$root/cmake/sanitize.h\"" >lammps.h
+  cat >>lammps.h <<'CODE'
 #include <algorithm>
 #include <cmath>
 #include <functional>
