@@ -342,6 +342,26 @@ TEST(Blocks, Restart)
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
 
+// in methods of second order, too, through an impact in which bodies slide along each other
+TEST(Bodies, RanksAndRestart)
+{
+  for (const char *scheme : {"newmark", "midpoint"}) {
+    const std::string fixes =
+        "fix a up mpm 0.1 transfer flip 1.0\nfix b low mpm 0.1 transfer flip 1.0\n"
+        "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
+        "fix mb low mpm/material density 2000 neohookean 3e6 0.3\n"
+        "fix touch all mpm/contact a b law coulomb 0.2\nfix solve all mpm/implicit " +
+        std::string(scheme) + " tolerance 1e-11\ntimestep 2e-3\n";
+    const std::string scene = plane("si", "p p", "0 3 0 1", 2, 0.02) +
+        "group up type 2\ngroup low type 1\n" + fixes +
+        "region low block 0.5 1.2 0.2 0.8 INF INF\nregion up block 1.23 1.8 0.1 0.6 INF INF\n"
+        "create_points 1 region low spacing 0.05 fix b\n"
+        "create_points 2 region up spacing 0.05 fix a\n"
+        "group up type 2\ngroup low type 1\nvelocity low set 1.0 0.3 0\n";
+    Twins(scene, 20, "neighbor 0.02 bin\n" + fixes, 20, 1e-9);
+  }
+}
+
 TEST(BadInput, IsRefused)
 {
   const std::string walls = "fix floor all mpm/boundary ylo slip\n";

@@ -358,7 +358,8 @@ void MPMImplicit::find_friction(const std::vector<double> &u)
     std::fill(friction.begin(), friction.end(), 0.0);
     for (auto *contact : contacts) {
       contact->take_forces(of_pushes);
-      contact->add_friction(slide_of(u), friction.data());
+      // bodies that stick have no slip in u, and that of what slides has to be measured in the same way
+      contact->add_friction(contact->is_regularised() ? slide_of(u) : u.data(), friction.data());
     }
     for (double &force : friction) force *= rub_share;
   }

@@ -23,6 +23,8 @@
    Friction is against the velocity v of the end, not against u, for the same reason: what sticks has v = 0. Where accelerations are kept by points it is in
    these, with the force f that presses, as nodes at the surface would have large ones without it, which points would bring to their neighbors. Else it is a
    part of f, and a term dt^2 (beta/gamma - 1/2) (a0 + f/m) of (beta/gamma) dt v is left out, which is zero in what sticks, what slips steadily, and gamma = 1/2.
+   Between bodies it is against u: what sticks there has u = 0, exactly, and then v = 0 by the impulse at the end. With v for what slides, neither would be right
+   where slip comes to its end within a step. Its work, with this force and u, takes energy, too.
 ------------------------------------------------------------------------- */
 
 #include "mpm_implicit.h"
