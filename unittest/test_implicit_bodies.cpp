@@ -211,6 +211,47 @@ SERIAL_TEST(Block, SticksOnAnotherOne)
   }
 }
 
+// a block that slides on another one comes to rest after v^2/(2 mu g), and friction has its energy
+SERIAL_TEST(Block, SlidesToRest)
+{
+  for (const char *scheme : {"euler", "newmark", "midpoint"}) {
+    const std::string grid = *scheme == 'e' ? "fix %s mpm 0.1\n"
+                                            : "fix %s mpm 0.1 transfer flip 1.0\n";
+    const double mu = 0.3, g = 10.0, v = 0.6, mass = 0.8 * 0.4 * 1000.0;
+    Scene run(plane("si", "f f", "0 2 0 0.9", 2, 0.02) + "group up type 2\ngroup low type 1\n" +
+              strprintf(grid.c_str(), "a up") + strprintf(grid.c_str(), "b low") +
+              "region low block 0 2 0 0.2 INF INF\nregion up block 0.3 1.1 0.2 0.6 INF INF\n"
+              "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix a\n"
+              "group up type 2\ngroup low type 1\n"
+              "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
+              "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n" +
+              strprintf("fix touch all mpm/contact b a law coulomb %g\n", mu) +
+              "fix floor all mpm/boundary ylo stick\n" +
+              strprintf("fix g all gravity %g vector 0 -1 0\nvelocity up set %g 0 0\n", g, v) +
+              "fix solve all mpm/implicit " + scheme + "\ntimestep 2e-3\n");
+    const auto mean = [&](double **of) {
+      double sum = 0.0;
+      int n = 0;
+      for (int i = 0; i < run.n(); i++)
+        if (run.lmp->atom->type[i] == 2) {
+          sum += of[i][0];
+          n++;
+        }
+      return sum / n;
+    };
+    run.commands("run 0\n");
+    const double begin = mean(run.x());
+    run.commands("run 200\n");
+    EXPECT_NEAR(measured(strprintf("%s: way over that of theory", scheme),
+                         (mean(run.x()) - begin) / (v * v / (2.0 * mu * g))),
+                1.0, 0.03);
+    EXPECT_NEAR(measured("work of friction over the energy",
+                         run.fix("touch")->compute_scalar() / (0.5 * mass * v * v)),
+                -1.0, 0.04);
+    EXPECT_LT(std::fabs(measured("velocity in the end", mean(run.v()))), 0.06 * v);
+  }
+}
+
 // Lame: two rings of different stiffness with a pressure in the bore
 SERIAL_TEST(Rings, PressOnEachOther)
 {

@@ -784,7 +784,7 @@ void FixMPMContact::act_after_trials()
       }
       if (tie.owned) entry.count += 1.0;
     }
-    if (tie.owned && tie.active) entry.work += MathExtra::dot3(tie.rubs, tie.slip);
+    if (tie.owned && tie.active) entry.work += of_forces * MathExtra::dot3(tie.rubs, tie.slip);
   }
   for (std::size_t n = 0; n < nodes.size(); n++)
     for (std::size_t k = 0; k < bodies.size(); k++) {
