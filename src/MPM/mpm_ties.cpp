@@ -12,6 +12,7 @@
 #include "mpm_node_system.h"
 
 #include "comm.h"
+#include "error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -175,8 +176,13 @@ void MPMTies::factorize()
     }
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(list.begin(), list.end());
-    if (factors.compute(matrix)) break;
+    if (factors.compute(matrix)) return;
   }
+  error->all(
+      FLERR, Error::NOLASTLINE,
+      "Fix mpm/implicit: {} conditions of bodies that touch contradict each other or are not "
+      "finite: look for points that have been lost or pressed flat, or use smaller steps",
+      n);
 }
 
 void MPMTies::close(double *v)
