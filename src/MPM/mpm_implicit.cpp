@@ -960,7 +960,7 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     now.iterations++;
     if (!solved.converged() && solved.outcome != SolveReport::INDEFINITE) {
       now.failure = "the linear system " + solved.describe();
-      if (!multigrid) now.failure += " (use solver multigrid)";
+      if (!multigrid && !tied) now.failure += " (use solver multigrid)";
       return now.iterations == before + 1 ? HOPELESS : FAILED;
     }
     // the energy has no minimum along some way, such as next to a state that is not stable: the solution goes as far as it had
