@@ -1409,9 +1409,11 @@ void FixMPMElements::unpack_restart(int i, int nth)
   int n;
   const double *const values = from_restart(i, nth, n);
   if (n != 1 + (int) values[0] * stride)
-    error->one(FLERR,
-               "Fix mpm/elements {}: the restart file was written with another mesh or material",
-               id);
+    error->one(
+        FLERR,
+        "Fix mpm/elements {}: the restart file was written with another mesh or material, or with "
+        "other values of bending or curved",
+        id);
   unpack_exchange(i, const_cast<double *>(values));
 }
 
