@@ -399,17 +399,22 @@ SERIAL_TEST(Ring, ForceOnTheSide)
 // dashpots of two fixes on one face add up, which is told; not those of other faces, also at a corner, or of other points
 TEST(Dashpot, WarnsOfTwoOnOneFace)
 {
-  const auto warnings = [](const std::string &second) {
-    return lines_that_say(strip("", 0.3, 20, 4) +
-                              "region top plane 0 4 0 0 -1 0\nregion half block INF INF INF 2 INF "
-                              "INF\ngroup low region half\ngroup high subtract all low\n"
-                              "fix one low mpm/dashpot region right 1 0.5\n" +
-                              second + "\ntimestep 0.1\nrun 1\nrun 1\n",
-                          "has the dashpots of fix one, too");
+  const auto warnings = [](const std::string &second, int height = 4, int low = 2) {
+    return lines_that_say(
+        strip("", 0.3, 20, height) +
+            strprintf("region top plane 0 %d 0 0 -1 0\nregion half block INF INF INF %d INF INF\n",
+                      height, low) +
+            "group low region half\ngroup high subtract all low\n"
+            "fix one low mpm/dashpot region right 1 0.5\n" +
+            second + "\ntimestep 0.1\nrun 1\nrun 1\n",
+        "has the dashpots of fix one, too");
   };
-  const auto half = warnings("fix two all mpm/dashpot region right 1 0.5");
+  const std::string all = "fix two all mpm/dashpot region right 1 0.5";
+  const auto half = warnings(all), small = warnings(all, 40, 1);
   ASSERT_EQ(half.size(), 1u);
   EXPECT_THAT(half[0], HasSubstr("Fix mpm/dashpot two: 50 % of its area"));
+  ASSERT_EQ(small.size(), 1u);    // all of a small one
+  EXPECT_THAT(small[0], HasSubstr("Fix mpm/dashpot two: 2.5 % of its area"));
   EXPECT_EQ(warnings("fix two high mpm/dashpot region right 1 0.5").size(), 0u);
   EXPECT_EQ(warnings("fix two all mpm/dashpot region left 1 0.5").size(), 0u);
   EXPECT_EQ(warnings("fix two all mpm/dashpot region top 1 0.5").size(), 0u);

@@ -282,24 +282,25 @@ void FixMPMDashpot::define()
 
 void FixMPMDashpot::warn_about_others() const
 {
-  constexpr double SAME_SIDE = 0.9, MUCH = 0.05;    // cosine of normals; of the area
+  constexpr double SAME_SIDE = 0.9, MUCH = 0.05;    // cosine of normals; of the smaller area
   for (auto *ifix : modify->get_fix_by_style("^mpm/dashpot$")) {
     const auto *const other = dynamic_cast<FixMPMDashpot *>(ifix);
     if (other == this || !other->defined) continue;
-    double mine[2] = {0.0, 0.0}, all[2];    // area, and what of it the other one has, too
+    double mine[3] = {0.0, 0.0, 0.0}, all[3];    // areas of this and the other one, and of both
     for (int i = 0; i < atom->nlocal; i++) {
       const double *const a = rows[i], *const b = other->rows[i];
       mine[0] += a[AREA];
+      mine[1] += b[AREA];
       if (a[AREA] > 0.0 && b[AREA] > 0.0 && dot(a + NORMAL, b + NORMAL) > SAME_SIDE)
-        mine[1] += std::min(a[AREA], b[AREA]);
+        mine[2] += std::min(a[AREA], b[AREA]);
     }
-    MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
-    if (comm->me == 0 && all[1] > MUCH * all[0])
+    MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+    if (comm->me == 0 && all[2] > MUCH * std::min(all[0], all[1]))
       error->warning(FLERR,
-                     "Fix mpm/dashpot {}: {:.0f} % of its area has the dashpots of fix {}, too, "
+                     "Fix mpm/dashpot {}: {:.3g} % of its area has the dashpots of fix {}, too, "
                      "which add up there, so that waves are reflected: give the two different "
                      "regions or groups",
-                     id, 100.0 * all[1] / all[0], other->id);
+                     id, 100.0 * all[2] / all[0], other->id);
   }
 }
 

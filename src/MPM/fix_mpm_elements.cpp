@@ -26,6 +26,7 @@
 #include "mesh/bending.h"
 #include "mesh/curved_surface.h"
 #include "mesh/element.h"
+#include "mesh/rims.h"
 #include "mesh/shared_strain.h"
 #include "mesh/triangle_gap.h"
 #include "modify.h"
@@ -166,16 +167,16 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   } catch (const std::runtime_error &e) {
     error->all(FLERR, "Fix mpm/elements bending: {}", e.what());
   }
+  try {
+    if (curved && !bending) add_edges(mesh, find_rims(mesh));
+  } catch (const std::runtime_error &e) {
+    error->all(FLERR, "Fix mpm/elements curved: {}", e.what());
+  }
   if (curved && !kind.closed)
     error->all(FLERR,
                "Fix mpm/elements curved is for closed surfaces, and that of {} has a rim: use "
                "curved no",
                file);
-  try {
-    if (curved && !bending) add_edges(mesh);
-  } catch (const std::runtime_error &e) {
-    error->all(FLERR, "Fix mpm/elements curved: {}", e.what());
-  }
   for (const auto &e : mesh.elements) {
     const auto &rule = ElementRule::of(e.type);
     maxnode = std::max(maxnode, rule.nnode);
@@ -1408,9 +1409,11 @@ void FixMPMElements::unpack_restart(int i, int nth)
   int n;
   const double *const values = from_restart(i, nth, n);
   if (n != 1 + (int) values[0] * stride)
-    error->one(FLERR,
-               "Fix mpm/elements {}: the restart file was written with another mesh or material",
-               id);
+    error->one(
+        FLERR,
+        "Fix mpm/elements {}: the restart file was written with another mesh or material, or with "
+        "other values of bending or curved",
+        id);
   unpack_exchange(i, const_cast<double *>(values));
 }
 

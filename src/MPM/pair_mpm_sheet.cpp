@@ -234,34 +234,49 @@ void PairMPMSheet::warn_about_gaps()
 
 void PairMPMSheet::warn_about_passages()
 {
-  auto now = look_at_faces();
-  if (comm->nprocs > 1) {    // faces may have gone to other ranks since
-    auto &known = passages.known;
-    const int size = (int) (known.size() * sizeof(Passages::Sight));
-    std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
-    MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
-    for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
-    std::vector<Passages::Sight> all((starts.back() + sizes.back()) / sizeof(Passages::Sight));
-    MPI_Allgatherv(known.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
-                   world);
-    known.swap(all);
-  }
+  std::vector<Passages::FaceID> mine;
+  auto now = look_at_faces(mine);
+  if (comm->nprocs > 1) share_passages(mine);
   const auto *const found = passages.look(std::move(now));
-  int mine = found ? comm->me : comm->nprocs, first;
-  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, world);
+  int rank = found ? comm->me : comm->nprocs, first;
+  MPI_Allreduce(&rank, &first, 1, MPI_INT, MPI_MIN, world);
   if (first == comm->nprocs) return;
   warned_through = true;
-  if (comm->me == first)
+  Passages::Sight told = {};
+  if (comm->me == first) told = *found;
+  MPI_Bcast(&told, sizeof(told), MPI_BYTE, first, world);
+  if (comm->me == 0)    // which has the log file
     error->warning(FLERR,
                    "Pair style mpm/sheet: node {} has gone through element {} of fix mpm/elements "
                    "{}, seen at step {}, and may be held on the wrong side from now on: use a "
                    "larger stiffness or distance, or a finer mesh",
-                   found->node, found->face / 2, bodies[found->body].elements->id,
-                   update->ntimestep);
+                   told.node, told.face / 2, bodies[told.body].elements->id, update->ntimestep);
+  passages.forget();    // the next run begins with what it sees first
 }
 
-/** Nodes that are next to faces of this rank, but not near these along the surface. */
-std::vector<Passages::Sight> PairMPMSheet::look_at_faces()
+/** What is known of faces that have gone to other ranks, which are few, goes to all of these. */
+void PairMPMSheet::share_passages(std::vector<Passages::FaceID> &mine)
+{
+  std::sort(mine.begin(), mine.end());
+  const auto others = passages.take_others(mine);
+  const int size = (int) others.size();
+  int largest;
+  MPI_Allreduce(&size, &largest, 1, MPI_INT, MPI_MAX, world);
+  if (largest == 0) return;
+  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
+  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
+  std::vector<Passages::Sight> all((std::size_t) starts.back() + sizes.back());
+  MPI_Datatype sight;    // as the number of bytes may be above what an int has
+  MPI_Type_contiguous(sizeof(Passages::Sight), MPI_BYTE, &sight);
+  MPI_Type_commit(&sight);
+  MPI_Allgatherv(others.data(), size, sight, all.data(), sizes.data(), starts.data(), sight, world);
+  MPI_Type_free(&sight);
+  passages.add(all);
+}
+
+/** Nodes that are next to faces of this rank, but not near these along the surface; mine: these faces. */
+std::vector<Passages::Sight> PairMPMSheet::look_at_faces(std::vector<Passages::FaceID> &mine)
 {
   // nodes that come to a face from next to it: nodes at edges and rims keep those that go around them farther away
   constexpr double MARGIN = 0.1;
@@ -286,6 +301,8 @@ std::vector<Passages::Sight> PairMPMSheet::look_at_faces()
   for (std::size_t b = 0; b < bodies.size(); b++) {
     const auto &body = bodies[b];
     for (const auto &face : body.elements->faces()) {
+      const int64_t number = 2 * (int64_t) face.element + face.part;
+      mine.emplace_back((int64_t) b, number);
       const double *at[3];
       int64_t low[3], high[3];
       for (int m = 0; m < dim; m++) at[m] = x[face.node[m]];
@@ -308,8 +325,7 @@ std::vector<Passages::Sight> PairMPMSheet::look_at_faces()
         for (int m = 0; m < dim; m++)
           if (same && body.nodes->near(atom->tag[i] - body.low, atom->tag[face.node[m]] - body.low))
             return;
-        sights.push_back(
-            {atom->tag[i], (int64_t) b, 2 * (int64_t) face.element + face.part, side, within});
+        sights.push_back({atom->tag[i], (int64_t) b, number, side, within});
       };
       for (int64_t i = low[0]; i <= high[0]; i++)
         for (int64_t j = low[1]; j <= high[1]; j++) {
@@ -439,7 +455,7 @@ void PairMPMSheet::find_bodies()
                   [](const Body &a, const Body &b) {
                     return a.elements == b.elements;
                   }))
-    passages.known.clear();    // which has their numbers
+    passages.forget();    // which has their numbers
 }
 
 double PairMPMSheet::init_one(int i, int j)

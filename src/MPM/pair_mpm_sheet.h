@@ -85,7 +85,8 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
   void warn_about_start();
   void warn_about_gaps();
   void warn_about_passages();
-  std::vector<MPM_NS::Passages::Sight> look_at_faces();
+  void share_passages(std::vector<MPM_NS::Passages::FaceID> &mine);
+  std::vector<MPM_NS::Passages::Sight> look_at_faces(std::vector<MPM_NS::Passages::FaceID> &mine);
   int body_of(int i) const;
   Coeff &coeff_of(int i, int j);
 };

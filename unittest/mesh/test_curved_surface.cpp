@@ -8,6 +8,7 @@
 #include "math/matrix.h"
 #include "mesh/curved_surface.h"
 #include "mesh/gmsh.h"
+#include "mesh/rims.h"
 
 #include "gtest/gtest.h"
 
@@ -32,7 +33,7 @@ struct Sizes {
 Sizes sizes_of(Mesh mesh, int dim = 3)
 {
   Sizes s = {};
-  add_edges(mesh);
+  add_edges(mesh, find_rims(mesh));
   const auto areas = curved_areas(dim, mesh, [&](int a, int b, double *to) {
     for (int d = 0; d < 3; d++) to[d] = mesh.nodes[b][d] - mesh.nodes[a][d];
   });
@@ -223,9 +224,9 @@ TEST(CurvedSurface, Refuses)
   Mesh squares;
   squares.nodes.resize(4);
   squares.elements.push_back({ElementType::QUAD, 0, 7, {0, 1, 2, 3}});
-  EXPECT_THROW(add_edges(squares), std::runtime_error);
+  EXPECT_THROW(find_rims(squares), std::runtime_error);
   Mesh book;
   book.nodes.resize(5);
   for (int k = 2; k < 5; k++) book.elements.push_back({ElementType::TRIANGLE, 0, k, {0, 1, k}});
-  EXPECT_THROW(add_edges(book), std::runtime_error);
+  EXPECT_THROW(find_rims(book), std::runtime_error);
 }

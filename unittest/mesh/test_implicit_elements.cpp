@@ -133,10 +133,11 @@ std::string ball(int divisions, double R)
 }
 
 /** A balloon of neohookean whose pressure grows in five steps to that of a stretch of 1.2. */
-std::string balloon(const ScratchFile &file, const std::string &gas, const std::string &implicit)
+std::string balloon(const ScratchFile &file, const std::string &gas, const std::string &implicit,
+                    const std::string &more = "")
 {
   return MPM_TEST::box(3, -0.2, 0.2, 0.02, "frame total") +
-      thin_body(file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+      thin_body(file.name, "thickness 0.001", "neohookean 1e5 0.3", more) +
       "variable p equal (step+1)/5*0.844962*1e5/2.6*0.01\nfix p all mpm/airbag e " + gas +
       "\nfix solve all mpm/implicit " + implicit +
       "\nvariable r atom sqrt(x*x+y*y+z*z)\ncompute r all reduce ave v_r\n"
@@ -209,4 +210,5 @@ SERIAL_TEST(Elements, BadInput)
   const ScratchFile bag("bag", ball(2, 0.1));
   expect_error(balloon(bag, "gas 102325 1.4 outside 101325", "static") + "run 1\n",
                "use fix mpm/airbag pressure");
+  expect_error(balloon(bag, "pressure v_p", "static", "curved yes") + "run 1\n", "use curved no");
 }

@@ -115,4 +115,14 @@ TEST(Passages, Looks)
   const Sight *const found = passages.look({{9, 0, 2, -1, 0}, {5, 0, 2, -1, 1}});
   ASSERT_NE(found, nullptr);
   EXPECT_EQ(found->node, 9);
+
+  // what is known of faces that another rank has now goes there, and is found there
+  const auto others = passages.take_others({{0, 1}, {0, 2}});
+  EXPECT_TRUE(others.empty());
+  const auto of_face_2 = passages.take_others({{0, 1}, {1, 2}});
+  EXPECT_EQ(of_face_2.size(), 2u);
+  Passages there;
+  there.add(of_face_2);
+  EXPECT_EQ(passages.look({{5, 0, 2, 1, 1}}), nullptr);
+  EXPECT_NE(there.look({{5, 0, 2, 1, 1}}), nullptr);
 }

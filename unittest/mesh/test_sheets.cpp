@@ -279,21 +279,25 @@ TEST(Sheets, WarnsOfMeshesThatAreTooCoarse)
 TEST(Sheets, WarnsOfNodesThatGoThrough)
 {
   const double a = 0.05, h = 0.058;
-  const auto warnings = [&](const std::vector<Node> &velocities, double k) {
-    ScratchFile file("strip.msh", folded(1, 6, 3, a, 0.0));
+  const ScratchFile file("strip.msh", folded(1, 6, 3, a, 0.0));
+  const auto two_sheets = [&](double k) {
     const std::string mesh = "create_points 1 mesh " + file.name + " thickness 0.001";
-    std::string commands = MPM_TEST::box(3, "si", "f f f", "-0.4 0.9 -0.4 0.9 -0.4 0.4", 1, 0.02) +
-        mesh + "\n" + mesh + strprintf(" move %.17g %.17g %g\n", a / 3.0, a / 3.0, h) +
+    return MPM_TEST::box(3, "si", "f f f", "-0.4 0.9 -0.4 0.9 -0.4 0.4", 1, 0.02) + mesh + "\n" +
+        mesh + strprintf(" move %.17g %.17g %g\n", a / 3.0, a / 3.0, h) +
         "group low id <= 28\ngroup up id > 28\n"
         "fix m all mpm/material density 1000 neohookean 1e5 0.3\n"
         "fix a low mpm/elements " +
         file.name + " thickness 0.001\nfix b up mpm/elements " + file.name +
         " thickness 0.001\npair_style mpm/sheet 0.045\n" +
         strprintf("pair_coeff * * %g\ntimestep 1e-3\n", k);
+  };
+  const std::string words = "has gone through element";
+  const auto warnings = [&](const std::vector<Node> &velocities, double k) {
+    std::string commands = two_sheets(k);
     for (const Node &v : velocities)
       commands += strprintf("fix go up move linear %g %g %g\nrun 200\nrun 200\nunfix go\n", v[0],
                             v[1], v[2]);
-    return lines_that_say(commands, "has gone through element");
+    return lines_that_say(commands, words);
   };
   const double down = -2.0 * h / 0.4, away = 0.5 / 0.4;
   const auto through = warnings({{0.0, 0.0, down}, {0.0, 0.0, -down}}, 1.0);
@@ -302,6 +306,17 @@ TEST(Sheets, WarnsOfNodesThatGoThrough)
   EXPECT_EQ(warnings({{0.0, 0.0, down}}, 0.0).size(), 0u);
   EXPECT_EQ(warnings({{0.0, 0.0, -down}}, 1.0).size(), 0u);
   EXPECT_EQ(warnings({{away, 0.0, 0.0}, {0.0, 0.0, down}, {-away, 0.0, 0.0}}, 1.0).size(), 0u);
+
+  // all go to other ranks meanwhile
+  for (const double z : {0.0, -2.0 * h})
+    EXPECT_EQ(lines_that_say(two_sheets(1.0) +
+                                 strprintf("displace_atoms all move -0.35 0 0\nrun 0\n"
+                                           "displace_atoms all move 0.75 0 0\n"
+                                           "displace_atoms up move 0 0 %.17g\nrun 0\n",
+                                           z),
+                             words)
+                  .size(),
+              z < 0.0 ? 1u : 0u);
 }
 
 SERIAL_TEST(Sheets, BadInput)

@@ -802,6 +802,20 @@ SERIAL_TEST(ThinElements, BadInput)
   EXPECT_THAT(failure(line.name, "section 1e-5", "bending yes", ""), HasSubstr("make an angle"));
   EXPECT_THAT(failure(ball.name, thick, "bending yes", "", "eos linear 1e5 strength j2 4e4 100"),
               HasSubstr("what resists bending: it must be elastic"));
+  EXPECT_THAT(failure(ball.name, thick, "curved yes", gas), "");
+  EXPECT_THAT(failure(ball.name, thick, "curved yes bending yes", gas), "");
+  const std::vector<Node> corners = {{0, 0, 0},   {0.1, 0, 0},   {0.1, 0.1, 0},   {0, 0.1, 0},
+                                     {0, 0, 0.1}, {0.1, 0, 0.1}, {0.1, 0.1, 0.1}, {0, 0.1, 0.1}};
+  ScratchFile box_of_squares(
+      "box.msh",
+      gmsh(3, corners,
+           {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}));
+  EXPECT_THAT(failure(box_of_squares.name, thick, "", gas), "");
+  EXPECT_THAT(failure(box_of_squares.name, thick, "curved yes", gas),
+              HasSubstr("element 1 is a quadrangle: use triangles"));
+  EXPECT_THAT(failure(open.name, thick, "curved yes", ""), HasSubstr("has a rim: use curved no"));
+  EXPECT_THAT(failure(line.name, "section 1e-5", "curved yes", ""),
+              HasSubstr("is for closed surfaces: use thickness"));
   const std::string cloth = "woven 1e5 1e5 1e3", plain = "axes 1 0 0 0 1 0";
   EXPECT_THAT(failure(open.name, thick, plain, "", cloth), "");
   EXPECT_THAT(failure(open.name, thick, "", "", cloth), HasSubstr("use the keyword axes"));

@@ -10,12 +10,10 @@
 
 #include "math/matrix.h"
 #include "mesh/gmsh.h"
+#include "mesh/rims.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 using namespace MPM_NS;
@@ -192,26 +190,10 @@ void BentLine::stiffness_sums(double *sum) const
 void Mesh::add_bending()
 {
   const auto n = elements.size();
-  const auto problem = [&](std::size_t e, const std::string &what) {
-    return std::runtime_error("element " + std::to_string(elements[e].label) + " " + what);
-  };
-  std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, int>>> rims;    // element, node
-  for (std::size_t e = 0; e < n; e++) {
-    const auto &element = elements[e];
-    if (element.type == ElementType::LINE) {
-      for (int k = 0; k < 2; k++) rims[{element.node[k], element.node[k]}].emplace_back(e, k);
-    } else if (element.type == ElementType::TRIANGLE) {
-      for (int k = 0; k < 3; k++)
-        rims[std::minmax(element.node[(k + 1) % 3], element.node[(k + 2) % 3])].emplace_back(e, k);
-    } else
-      throw problem(e, "is a quadrangle: bending is for triangles and lines");
-  }
+  Rims rims = find_rims(*this);
   std::vector<char> at_rim(this->nodes.size(), 0);
-  for (const auto &[nodes, parts] : rims) {
-    if (parts.size() > 2)
-      throw problem(parts[0].first, "has a rim with more than two elements: these cannot bend");
+  for (const auto &[nodes, parts] : rims)
     if (parts.size() == 1) at_rim[nodes.first] = at_rim[nodes.second] = 1;
-  }
   for (std::size_t e = 0; e < n; e++) {
     const MeshElement element = elements[e];    // a copy, as the list grows
     if (element.type == ElementType::LINE) continue;
@@ -240,23 +222,5 @@ void Mesh::add_bending()
     });
     elements.push_back(patch);
   }
-  for (const auto &[nodes, parts] : rims) {
-    if (parts.size() != 2) continue;
-    if (elements[parts[0].first].type != ElementType::LINE) {
-      MeshElement edge = elements[parts[0].first];
-      const int i = parts[0].second, a = edge.node[(i + 1) % 3], b = edge.node[(i + 2) % 3];
-      const int all[4] = {a, b, edge.node[i], elements[parts[1].first].node[parts[1].second]};
-      edge.type = ElementType::EDGE;
-      std::copy_n(all, 4, edge.node);
-      elements.push_back(edge);
-      continue;
-    }
-    MeshElement corner = elements[parts[0].first];
-    const int before = parts[0].second == 1 ? 0 : 1, after = 1 - before;    // along the lines
-    corner.type = ElementType::CORNER;
-    corner.node[0] = elements[parts[before].first].node[1 - parts[before].second];
-    corner.node[1] = nodes.first;
-    corner.node[2] = elements[parts[after].first].node[1 - parts[after].second];
-    elements.push_back(corner);
-  }
+  add_edges(*this, rims);
 }

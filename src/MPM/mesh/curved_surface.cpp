@@ -14,8 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
-#include <string>
+#include <utility>
 
 using namespace MPM_NS;
 
@@ -158,46 +157,6 @@ double area_of_triangle(const double (*p)[2], const double *angle)
 double MPM_NS::curved_volume(int dim, const double (*x)[3], double factor, double (*gradient)[3])
 {
   return dim == 2 ? volume_of_corner(x, factor, gradient) : volume_of_edge(x, factor, gradient);
-}
-
-void MPM_NS::add_edges(Mesh &mesh)
-{
-  const auto problem = [&](std::size_t e, const std::string &what) {
-    return std::runtime_error("element " + std::to_string(mesh.elements[e].label) + " " + what);
-  };
-  // elements at a rim, and their node at it (line) or across from it (triangle)
-  std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, int>>> rims;
-  for (std::size_t e = 0; e < mesh.elements.size(); e++) {
-    const auto &element = mesh.elements[e];
-    if (element.type != ElementType::LINE && element.type != ElementType::TRIANGLE)
-      throw problem(e, "is a quadrangle: use triangles");
-    const int n = element.type == ElementType::LINE ? 2 : 3;
-    for (int k = 0; k < n; k++) {
-      const int a = element.node[n == 2 ? k : (k + 1) % 3],
-                b = element.node[n == 2 ? k : (k + 2) % 3];
-      rims[std::minmax(a, b)].emplace_back(e, k);
-    }
-  }
-  for (const auto &[nodes, parts] : rims) {
-    if (parts.size() > 2) throw problem(parts[0].first, "has a rim with more than two elements");
-    if (parts.size() < 2) continue;
-    MeshElement edge = mesh.elements[parts[0].first];
-    const MeshElement &other = mesh.elements[parts[1].first];
-    const int i = parts[0].second, j = parts[1].second;
-    if (edge.type == ElementType::LINE) {
-      const bool first = i == 1;    // it ends there
-      const int ends[3] = {first ? edge.node[0] : other.node[0], nodes.first,
-                           first ? other.node[1] : edge.node[1]};
-      std::copy_n(ends, 3, edge.node);
-      edge.type = ElementType::CORNER;
-    } else {
-      const int all[4] = {edge.node[(i + 1) % 3], edge.node[(i + 2) % 3], edge.node[i],
-                          other.node[j]};
-      std::copy_n(all, 4, edge.node);
-      edge.type = ElementType::EDGE;
-    }
-    mesh.elements.push_back(edge);
-  }
 }
 
 std::vector<double> MPM_NS::curved_areas(int dim, const Mesh &mesh,

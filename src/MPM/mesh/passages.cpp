@@ -59,3 +59,13 @@ const Passages::Sight *Passages::look(std::vector<Sight> now)
   known.swap(now);
   return found < 0 ? nullptr : &known[found];
 }
+
+std::vector<Passages::Sight> Passages::take_others(const std::vector<FaceID> &faces)
+{
+  const auto first = std::partition(known.begin(), known.end(), [&](const Sight &sight) {
+    return std::binary_search(faces.begin(), faces.end(), FaceID(sight.body, sight.face));
+  });
+  std::vector<Sight> others(first, known.end());
+  known.erase(first, known.end());
+  return others;
+}

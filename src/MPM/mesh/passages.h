@@ -10,6 +10,7 @@
 #define MPM_MESH_PASSAGES_H
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace MPM_NS {
@@ -36,13 +37,20 @@ class Passages {
     }
   };
 
+  using FaceID = std::pair<int64_t, int64_t>;    ///< body, face
+
   /** Of those that are seen now, one that has come through a face since the last look, null: there is none. */
   const Sight *look(std::vector<Sight> now);
 
-  /** What is known of the last look, for ranks that see these pairs in the next one. */
-  std::vector<Sight> known;
+  /** Take away what is known of faces that are not among these, which are sorted: other ranks have them now. */
+  std::vector<Sight> take_others(const std::vector<FaceID> &faces);
+  void add(const std::vector<Sight> &more) { known.insert(known.end(), more.begin(), more.end()); }
 
+  void forget() { known.clear(); }
   double memory() const { return (double) known.capacity() * sizeof(Sight); }
+
+ private:
+  std::vector<Sight> known;    // of the last look
 };
 
 }    // namespace MPM_NS
