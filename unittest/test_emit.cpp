@@ -551,6 +551,22 @@ PARAMETER_TEST(Sink, HeatIsInBalance, const char *,
               1.0, 1e-9);
 }
 
+// a bar whose points differ in specific heat and first temperature is warmed and goes as a whole: what went with it is what came
+TEST(Sink, HeatOfPointsThatDiffer)
+{
+  Scene run(plane("si", "p p", "0 2 0 0.2", 1, 0.025) +
+            "fix grid all mpm 0.05\nregion bar block 0 1.4 INF INF INF INF\n"
+            "create_points 1 region bar ppc 2\n"
+            "fix m all mpm/material density 1000 eos linear 4e4 thermal conducting 900 300 50 "
+            "random T0 normal 0.1 0.2 7 random CP normal 0.1 0.2 8\n"
+            "velocity all set 1 0 0\nvariable s atom 1e8*(1+x)\nfix heat all mpm/heat source v_s\n"
+            "region sink block 1.6 2 INF INF INF INF\nfix out all mpm/absorb region sink every 10\n"
+            "timestep 1e-3\nrun 1700\n");
+  const double gone = run.fix_vector("out", 9)[8], came = run.fix("heat")->compute_scalar();
+  EXPECT_EQ(run.lmp->atom->natoms, 0);
+  EXPECT_NEAR(measured("heat that went over what came", gone / came), 1.0, 1e-9);
+}
+
 // a column of an incompressible fluid runs out of the box: what is there and what has gone are all of it, on any number of processes
 TEST(Channel, DrainOfAnIncompressibleFluid)
 {

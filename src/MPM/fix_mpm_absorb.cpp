@@ -9,7 +9,7 @@
 #include "fix_mpm_absorb.h"
 
 #include "fix_mpm_material.h"
-#include "material/material.h"
+#include "material/heat.h"
 #include "mpm_field.h"
 #include "mpm_guard.h"
 #include "mpm_options.h"
@@ -22,9 +22,7 @@
 #include "region.h"
 #include "update.h"
 
-#include <cmath>
 #include <cstring>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -106,39 +104,13 @@ bool FixMPMAbsorb::absorbs(int i) const
   return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 && region->match(x[0], x[1], x[2]);
 }
 
-/** Heat of a point whose material conducts it, 0 of others: what warmed it from the temperature that its material has at first. */
+/** Heat of a point whose material conducts it, 0 of others: what warmed it from the temperature that it has at first. */
 double FixMPMAbsorb::heat_of(int i) const
 {
   const auto *const field = field_of(lmp, i);
   const auto *const fix = field ? field->material_of(i) : nullptr;
   if (!fix || !fix->material->conducts()) return 0.0;
-  const auto &material = *fix->material;
-  const double *const now = fix->history[i];
-  const int T = fix->find_history("temperature"), molten = fix->find_history("molten");
-  std::vector<double> first(fix->nhistory), row;
-  material.initialize(atom->x[i], first.data());
-  const double melted = molten < 0 ? 0.0 : now[molten] - first[molten];
-  const Conduction c = material.conduction(now);
-  if (!c.by_enthalpy)
-    return atom->rmass[i] * c.capacity * (now[T] - first[T] + c.melting.range * melted);
-
-  // the material tells the temperature of a heat: by bisection
-  const auto goes_beyond = [&](double given, double sign) {
-    row = first;
-    material.warm(row.data(), given);
-    const double more = row[T] - now[T] + (molten < 0 ? 0.0 : row[molten] - now[molten]);
-    return sign * more >= 0.0;
-  };
-  if (now[T] == first[T] && melted == 0.0) return 0.0;
-  constexpr int MOST = 200;
-  const double sign = now[T] - first[T] + melted > 0.0 ? 1.0 : -1.0;
-  double low = 0.0, high = sign * c.capacity * (fabs(now[T] - first[T]) + 1.0);
-  for (int k = 0; k < MOST && !goes_beyond(high, sign); k++) high *= 2.0;
-  for (int k = 0; k < MOST && fabs(high - low) > 1.0e-15 * fabs(high); k++) {
-    const double middle = 0.5 * (low + high);
-    (goes_beyond(middle, sign) ? high : low) = middle;
-  }
-  return atom->rmass[i] * high;
+  return atom->rmass[i] * heat_since_start(*fix->material, fix->history[i]);
 }
 
 /* ----------------------------------------------------------------------

@@ -48,8 +48,11 @@ static const char *const PART_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"
 
 // of a wait for the next flow: node spacings that waves go, and explicit limits of the flow
 static constexpr double MOST_SPACINGS = 2.5, MOST_LIMITS = 10.0;
-// points that are farther apart than this many node spacings are as stiff as a lattice can be
+// points that are farther apart than this many node spacings are as stiff as a lattice can be, whose waves have the frequency 2/crossing
 static constexpr double FINE = 0.6;
+// root of the mean square of slopes of points in layers (MPMPore::Layers), which is the frequency of their waves times crossing; the lattice
+// takes away those up to this in MOST_SPACINGS
+static constexpr double SLOW = 1.45;
 // times that are equal on paper are told apart by this, as sums of ranks differ by round-off
 static constexpr double NEARLY = 1.0 + 1.0e-6;
 
@@ -810,7 +813,7 @@ bool FixMPMPore::is_time_to_flow() const
  *  velocities take from such waves suffice. */
 double FixMPMPore::longest_wait() const
 {
-  if (widest <= FINE) return MOST_SPACINGS * crossing;
+  if (!coarse) return MOST_SPACINGS * crossing;
   const double dt = fields[0]->field.step_dt();
   const double turns = 2.0 * asin(std::min(1.0, dt / crossing));    // in a step
   return dt * std::floor(MathConst::MY_PI / turns * NEARLY);
@@ -865,8 +868,43 @@ void FixMPMPore::find_greatest_rates()
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_MAX, world);
   conducted = all[0];
   exchanged = all[1];
-  widest = all[2];
+  if (waits()) find_coarse_points(all[2]);
   rates_known = true;
+}
+
+/** Those that are wide, or that lie in layers which are a node spacing apart along one axis and are close along another. */
+void FixMPMPore::find_coarse_points(double widest)
+{
+  coarse = widest > FINE;
+  for (const auto *field : wet) {
+    const auto &soils_here = field->layers_of_points();
+    std::vector<double> mine, all;
+    for (const auto &soil : soils_here) {
+      mine.push_back(soil.volume);
+      mine.insert(mine.end(), soil.steep, soil.steep + 3);
+    }
+    all.resize(mine.size());
+    MPI_Allreduce(mine.data(), all.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM,
+                  world);
+    for (std::size_t k = 0; k < all.size(); k += 4)
+      for (int d = 1; d <= 3 && all[k] > 0.0; d++)
+        coarse = coarse || all[k + d] > SLOW * SLOW * all[k];
+  }
+}
+
+/** Flow through a surface that is not a face of the box, in a lump that one stage cannot take: once. */
+void FixMPMPore::look_for_long_flow(double duration, double limit)
+{
+  if (long_known || every == AUTO || waited.steps == 0.0 || duration <= limit * NEARLY ||
+      conditions[MPMPoreSurface::FREE].kind == MPMPoreCondition::CLOSED)
+    return;
+  long_known = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/pore every {}: {} steps have one flow, for {:.3g} times its explicit "
+                   "limit: curved surfaces of soft soil drain too fast then, by 1 to 2 % of the "
+                   "pressure: use every auto",
+                   every, waited.steps + 1.0, duration / limit);
 }
 
 /** Those of the first step of all, before it begins. */
@@ -896,6 +934,7 @@ void FixMPMPore::flow()
   if (formulation == U_P) find_greatest_rates();
   const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
   const int stages = stages_of(dt, limit);
+  if (formulation == U_P) look_for_long_flow(dt, limit);
   waited = {};
   if (stages > most_stages)
     error->all(FLERR, Error::NOLASTLINE,
@@ -998,7 +1037,7 @@ void FixMPMPore::write_restart(FILE *fp)
 {
   write_totals(fp, world, came,
                {gradients_known ? 1.0 : 0.0, has_state ? 1.0 : 0.0, rates_known ? 1.0 : 0.0,
-                conducted, exchanged, widest, waited.steps, waited.time});
+                conducted, exchanged, coarse ? 1.0 : 0.0, waited.steps, waited.time});
 }
 
 void FixMPMPore::restart(char *buf)
@@ -1010,7 +1049,7 @@ void FixMPMPore::restart(char *buf)
   rates_known = same[2] != 0.0;
   conducted = same[3];
   exchanged = same[4];
-  widest = same[5];
+  coarse = same[5] != 0.0;
   if (waits()) waited = {same[6], same[7]};
 }
 

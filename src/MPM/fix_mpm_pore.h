@@ -138,9 +138,10 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
     double steps = 0.0, time = 0.0;
   } waited;                    // since the last flow
   double crossing = 0.0;       // time in which waves by the stiffness of the water cross a cell
-  double widest = 0.0;         // greatest spacing of points, in node spacings
+  bool coarse = false;         // can points in between be as stiff as a lattice can be?
   bool step_flows = true;      // does water flow in this step?
   bool shut_known = false;     // has a warning told of shut pores?
+  bool long_known = false;     // has one told of flows that take too much at once?
   bool leaks_known = false;    // has look_for_leaks() been done?
   bool has_state = false;      // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
@@ -190,6 +191,8 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void begin_step(bool with_flow);
   void take_off();
   void find_greatest_rates();
+  void find_coarse_points(double widest);
+  void look_for_long_flow(double duration, double limit);
   void know_rates();
   void flow();
   void take_solution();

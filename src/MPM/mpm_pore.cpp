@@ -313,6 +313,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
     for (auto *list : {&grown, &warm}) list->assign(atom->nmax, 0.0);
   if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
   fastest = exchange = largest = 0.0;
+  if (waiting) lie.assign(soils.size(), {});
   shut = MAXTAGINT;
   nodes.points_to_nodes(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {

@@ -107,8 +107,16 @@ class MPMPore : public MPMNodePressure, protected Pointers {
    *  through the surface, in this step. */
   double conduction_rate() const;
   double exchange_rate() const { return exchange; }
-  /** The greatest spacing of this rank's points, the root of their volume, in node spacings. */
+  /** The greatest spacing of this rank's points, the root of their volume, in node spacings; where water waits, of the last step. */
   double widest_spacing() const;
+  /** How points of a soil lie between nodes. */
+  struct Layers {
+    double volume = 0.0;
+    double steep[3] =
+        {};    ///< volume times the square of the slope of an alternating velocity, in cells, along each axis
+  };
+  /** Of this rank's points in the last step, by soil, where water waits. */
+  const std::vector<Layers> &layers_of_points() const { return lie; }
   /** By flow between points at present; -1 without any that have water. Those with a formula, which is
    *  evaluated in steps, count as 0. tag: of the point that limits it. */
   double conduction_rate(const MPMRows &state, tagint &tag) const;
@@ -140,6 +148,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   tagint shut = MAXTAGINT;
   double exchange = 0.0;    // rate of exchange through the surface in the last step
   double largest = 0.0;     // volume of the points in the last step, where water waits
+  std::vector<Layers> lie;
   std::unique_ptr<MPMPoreSuction> suction;    // of soils that can dry
   std::unique_ptr<MPMLayerMean>
       layers;    // soils differ in permeability; null: points have their own
@@ -177,6 +186,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   void conduct(int i, double *q) const;
   double undrained(const Soil &, int i, double J) const;
   void gather(const Soil &, int first, int n, const double *J, const MPMRows &state);
+  void look_at_layers(Layers &, int first, int n, const double *V) const;
   void find_shut(const MPMPoreSoil &, int first, int n, const double *J);
   void init_layers();
   void find_layers(const MPMRows &state, const double *formula);

@@ -26,6 +26,7 @@
 #include "mpm_points.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -60,7 +61,27 @@ void MPMPore::gather(const Soil &s, int first, int n, const double *J, const MPM
   for (int p = 0; p < n; p++, row += width) value[p] = row[0] += change[p];
   for (int p = 0; p < n; p++) part[p] *= value[p];
   for (int p = 0; p < n; p++) largest = std::max(largest, V[p]);
+  look_at_layers(lie[&s - soils.data()], first, n, V);
   std::copy_n(J, n, last);
+}
+
+/** With quadratic functions, velocities of nodes that alternate along an axis have no slope at nodes, and one of two in a cell in the
+ *  middle between them, for velocities of 1 and -1; in between it is linear. */
+void MPMPore::look_at_layers(Layers &sum, int first, int n, const double *V) const
+{
+  double volume = 0.0;
+  for (int p = 0; p < n; p++) volume += V[p];
+  sum.volume += volume;
+  for (int d = 0; d < field.lattice.dim; d++) {
+    const double *const x = atom->x[first] + d;
+    const double origin = field.lattice.origin[d], cells = 1.0 / field.lattice.h;
+    double steep = 0.0;
+    for (int p = 0; p < n; p++) {
+      const double at = cells * (x[3 * p] - origin), slope = 4.0 * (at - std::floor(at + 0.5));
+      steep += V[p] * slope * slope;
+    }
+    sum.steep[d] += steep;
+  }
 }
 
 void MPMPore::begin_wait(const MPMRows &state)

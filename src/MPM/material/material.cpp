@@ -13,6 +13,7 @@
 
 #include "law/heat_curve.h"
 #include "material/elastic_motion.h"
+#include "material/heat.h"
 #include "material/melting_solid.h"
 #include "material/parts.h"
 #include "material/random_field.h"
@@ -142,6 +143,19 @@ class ComposedMaterial : public Material {
   {
     double *const T = history + thermal->history;
     heat_curve().warm(heat, *T, melting.latent > 0.0 ? T + 1 : nullptr);
+  }
+
+  /** See heat_since_start(). */
+  double heat_of(const double *history) const
+  {
+    LocalParameters local(*this, *thermal);
+    const LawParameters &p = thermal->random.empty() ? thermal->parameters : local.at(history, 1);
+    const bool melts = thermal->info->count_history(p) > 1;
+    double first[2] = {first_temperature(history, 1), 0.0};
+    if (melts) thermal->info->initialize(p, nullptr, first);
+    const double *const now = history + thermal->history;
+    return heat_between(thermal->info->conduction(p), first[0], first[1], now[0],
+                        melts ? now[1] : 0.0);
   }
 
   void initialized() const override
@@ -396,11 +410,15 @@ class ComposedMaterial : public Material {
         c = thermal->info->conduction(p);
       }
       const double f = melts ? now[1][i] : 0.0, old = melts ? before[1][i] : 0.0;
-      heat[i] = density *
-          (is_curved()
-               ? heat_curve().enthalpy(now[0][i], f) - heat_curve().enthalpy(before[0][i], old)
-               : c.capacity * (now[0][i] - before[0][i] + c.melting.range * (f - old)));
+      heat[i] = density * heat_between(c, before[0][i], old, now[0][i], f);
     }
+  }
+
+  /** Heat per mass from one temperature and molten fraction to another. */
+  double heat_between(const Conduction &c, double T0, double f0, double T, double f) const
+  {
+    if (is_curved()) return heat_curve().enthalpy(T, f) - heat_curve().enthalpy(T0, f0);
+    return c.capacity * (T - T0 + c.melting.range * (f - f0));
   }
 
   /** Energy per reference volume that the laws have stored, those of a batch without thermal stretch. */
@@ -1307,6 +1325,11 @@ class ComposedMaterial : public Material {
 }    // namespace
 
 /* ---------------------------------------------------------------------- */
+
+double MPM_NS::heat_since_start(const Material &material, const double *history)
+{
+  return static_cast<const ComposedMaterial &>(material).heat_of(history);
+}
 
 std::unique_ptr<Material> MPM_NS::compose(const MaterialDefinition &definition,
                                           const LawTable *table)
