@@ -358,6 +358,36 @@ SERIAL_TEST(Jet, DensityAtTheMouth)
   EXPECT_NEAR(measured("mass around the end of the mouth", mass / (RHO * 0.12 * B)), 1.0, 0.06);
 }
 
+// A mouth that is shaken with what it holds works with the mean of its velocities before and after each step: that is what its material gets as
+// kinetic energy, with any time step and transfer. All nodes that its points see are held: its end is just beyond a plane of nodes
+TEST(Plug, WorkOfAShakenMouth)
+{
+  for (const char *options : {"", " transfer flip 0.9", " transfer apic scheme musl"})
+    for (const double dt : {0.002, 0.01}) {
+      Scene run(plane("si", "f f", "0 2 0 1", 1, 0.02) + "fix grid all mpm 0.05 shape linear" +
+                options +
+                "\nfix m all mpm/material density 1000 eos linear 0.1\n"
+                "region mouth block 0.6 1.000001 0.4 0.6 INF INF\n"
+                "variable u equal 0.2+0.5*sin(20*time)\n"
+                "fix in all mpm/emit 1 region mouth velocity 0 0 0 normal 1 0 0 move 0 v_u 0\n"
+                "compute e all mpm/energy\nthermo_style custom step c_e\n" +
+                strprintf("timestep %g\nrun 1\n", dt));
+      const auto kinetic = [&]() {
+        double sum = 0.0;
+        for (int i = 0; i < run.n(); i++)
+          for (int d = 0; d < 2; d++)
+            sum += 0.5 * run.mass()[i] * run.lmp->atom->v[i][d] * run.lmp->atom->v[i][d];
+        return over_ranks(sum, MPI_SUM);
+      };
+      const double work = run.fix("in")->compute_vector(12), start = kinetic();
+      run.commands("run 40\n");
+      const double gained = kinetic() - start;
+      EXPECT_GT(std::fabs(gained), 1.0) << options;
+      EXPECT_NEAR(run.fix("in")->compute_vector(12) - work, gained, 1e-9 * start)
+          << options << " " << dt;
+    }
+}
+
 // flow through a channel: a steady state with the same points on any number of processes, and after a restart
 TEST(Channel, RanksAndRestart)
 {

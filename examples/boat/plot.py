@@ -33,7 +33,7 @@ print("period of roll: %.3f s, %.3f s" % tuple(periods))
 print("volume within %.2f %%" % (100 * max(abs(volume[1:] / 0.76 - 1.0))))
 
 figure = plt.figure(figsize=(9, 4.6))
-grid = figure.add_gridspec(2, 6, hspace=0.35, wspace=1.2, left=0.08, right=0.98, bottom=0.11, top=0.95)
+grid = figure.add_gridspec(2, 6, hspace=0.35, wspace=1.4, left=0.1, right=0.98, bottom=0.11, top=0.95)
 for k, step in enumerate((0, 20, 80)):
     x, y, p = np.loadtxt("water.%d.txt" % step, skiprows=9, usecols=(1, 2, 3)).T
     axis = figure.add_subplot(grid[0, 2 * k:2 * k + 2])
@@ -48,5 +48,5 @@ for k, (label, measured, linear) in enumerate((("heave [m]", heave, exact[0]), (
     axis.plot(t, measured, lw=1.0, label="boat")
     axis.plot(t, linear, "k--", lw=0.7, label="linear theory")
     axis.set(xlabel="time [s]", ylabel=label)
-    axis.legend(fontsize=7, frameon=False)
+    axis.legend(fontsize=7, frameon=False, ncol=2, loc="lower right", bbox_to_anchor=(1.0, 0.98))
 figure.savefig("boat.png", dpi=100)

@@ -1659,12 +1659,13 @@ void FixMPMBoundary::bear(MPMField &field, int64_t node, const double *push)
   Grid &grid = field.grid;
   if (!grid.owns(node)) return;
   const double *const record = grid.record(node);
-  double V[3], moved = 0.0, driven = 0.0, gained = 0.0;
+  double V[3], faster[3] = {0.0}, moved = 0.0, driven = 0.0, gained = 0.0;
   wall.velocity(field, node, V);
+  if (wall.changes) wall.half_change(field, node, faster);
   for (int d = 0; d < grid.lattice.dim; d++) {
     impulse[d] += push[d];
-    moved += push[d] * record[d];
-    driven += push[d] * V[d];
+    moved += push[d] * (record[d] - faster[d]);
+    driven += push[d] * (V[d] - faster[d]);
     if (field.ledger.on) gained += 0.5 * push[d] * (record[d] + record[4 + d]);
   }
   add_moment(grid, node, push);

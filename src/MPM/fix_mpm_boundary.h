@@ -263,7 +263,7 @@ class FixMPMBoundary :
     double before[3];                                  // velocity in the last step
     double gradient_before[3][3], origin_before[3];    // at its end, see at_end_of_step()
     bool uniform;
-    bool changes;                     // is its velocity another one than in the last step?
+    bool changes;                     // may its velocity be another one than in the last step?
     double turned[3][3], moved[3];    // nodes of the total frame at X are at X + turned X + moved
 
     void rotate(double angle, const double *axis, const double *center, double dt);

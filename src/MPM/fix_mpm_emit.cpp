@@ -415,7 +415,8 @@ void FixMPMEmit::list_nodes()
 }
 
 /* ----------------------------------------------------------------------
-   Work is impulse times the velocity with which points are moved, as that of walls, see fix_mpm_boundary.cpp
+   Work is impulse times the velocity with which points are moved, less half of what this has changed by since the last step, as that of walls:
+   see FixMPMBoundary::Wall::half_change()
 ------------------------------------------------------------------------- */
 
 void FixMPMEmit::act(double dt, Stage stage)
@@ -427,9 +428,14 @@ void FixMPMEmit::act(double dt, Stage stage)
   const int dim = field->lattice.dim;
   Grid &grid = field->grid;
   MPMLedger &ledger = field->ledger;
-  double V[3], worked = 0.0, collided = 0.0;
-  for (int d = 0; d < 3; d++) V[d] = flow[d] + drift[d];
+  double V[3], faster[3], worked = 0.0, collided = 0.0;
+  for (int d = 0; d < 3; d++) {
+    V[d] = flow[d] + drift[d];
+    faster[d] = past.acted != 0.0 ? 0.5 * (V[d] - past.velocity[d]) : 0.0;
+  }
   if (counts) {
+    std::copy_n(V, 3, past.velocity);
+    past.acted = 1.0;
     std::fill_n(impulse, 3, 0.0);
     dt_last = dt;
   }
@@ -441,7 +447,7 @@ void FixMPMEmit::act(double dt, Stage stage)
       for (int d = 0; d < dim; d++) {
         change[d] = V[d] - record[d];
         impulse[d] += record[3] * change[d];
-        moved += change[d] * V[d];
+        moved += change[d] * (V[d] - faster[d]);
         if (ledger.on) gained += 0.5 * change[d] * (V[d] + record[4 + d]);
       }
       if (ledger.on) ledger.note_push(record, change);
@@ -615,6 +621,8 @@ void FixMPMEmit::write_restart(FILE *fp)
   std::vector<double> list = {past.travel, past.layers, past.started, past.work, past.newest};
   list.insert(list.end(), past.shift, past.shift + 3);
   list.insert(list.end(), past.direction, past.direction + 3);
+  list.push_back(past.acted);
+  list.insert(list.end(), past.velocity, past.velocity + 3);
   list.insert(list.end(), past.total.reals(), past.total.reals() + MPMTraffic::NREAL);
   if (comm->me) return;
   const int size = (int) (list.size() * sizeof(double));
@@ -633,7 +641,9 @@ void FixMPMEmit::restart(char *buf)
   past.newest = list[4];
   std::copy_n(list + 5, 3, past.shift);
   std::copy_n(list + 8, 3, past.direction);
-  std::copy_n(list + 11, MPMTraffic::NREAL, past.total.reals());
+  past.acted = list[11];
+  std::copy_n(list + 12, 3, past.velocity);
+  std::copy_n(list + 15, MPMTraffic::NREAL, past.total.reals());
 }
 
 /* ----------------------------------------------------------------------

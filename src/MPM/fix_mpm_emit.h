@@ -102,9 +102,11 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
     double started = 0.0;
     double work = 0.0;      // of the mouth on the material, this rank's share [energy]
     double newest = 0.0;    // largest ID of any point so far, also of those that were removed
-    MPMTraffic total;       // that has entered, of all ranks
+    double acted = 0.0;     // there was a last step,
+    double velocity[3] = {0.0, 0.0, 0.0};    // and what nodes were given in it
+    MPMTraffic total;                        // that has entered, of all ranks
   } past;
-  static constexpr int NREAL = 11 + MPMTraffic::NREAL;
+  static constexpr int NREAL = 15 + MPMTraffic::NREAL;
 
   double flow[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};    // velocities of this step
   double speed = 0.0;                                    // along the flow, relative to the mouth
