@@ -608,6 +608,99 @@ SERIAL_TEST(Drag, OfDarcyDependsOnPorosity)
   EXPECT_NEAR(run.lmp->update->dt * sqrt(c2) / c.h, 1.0, 1e-3);
 }
 
+namespace {
+
+/** Mean velocity of the soil up to the end, from a time on. */
+double velocity_of_soil(Scene &run, double from, double to)
+{
+  const auto height = [&]() {
+    double y = 0.0;
+    int n = 0;
+    for (const auto &s : run.gather())
+      if (s.type == 1) {
+        y += s.x[1];
+        n++;
+      }
+    return y / n;
+  };
+  run.commands(strprintf(
+      "fix end all halt 1 v_t > %.17g error continue message no\nrun 1000000\nunfix end\n", from));
+  const double first = height(),
+               start = run.lmp->update->atime +
+      (run.lmp->update->ntimestep - run.lmp->update->atimestep) * run.lmp->update->dt;
+  run.commands(
+      strprintf("fix end all halt 1 v_t > %.17g error continue message no\nrun 1000000\n", to));
+  const double stop = run.lmp->update->atime +
+      (run.lmp->update->ntimestep - run.lmp->update->atimestep) * run.lmp->update->dt;
+  return (height() - first) / (stop - start);
+}
+
+}    // namespace
+
+// A plug of soil in a closed column of water sinks, or rises if its grains are light, as fast as the drag of the water that it
+// pushes aside allows: the superficial velocity of this is that of the plug, k (rho_s/rho_f - 1) (1 - n).
+SERIAL_TEST(Plug, SinksAsTheWaterLetsIt)
+{
+  const double k = 5.0e-3;
+  for (const double grains : {GRAINS, 500.0}) {
+    Column c;
+    c.h = 0.05;
+    c.height = 1.0;
+    c.soil[0] = 0.4;
+    c.soil[1] = 0.6;
+    c.water[1] = 1.0;
+    c.K = 4.0e6;
+    c.E = 1.0e6;
+    c.drag = strprintf("darcy %.17g", k * 1.0e-3 / (WATER * G));
+    c.options = "transfer aflip 1.0 smooth 0.5";
+    std::string text = replaced(c.text(), strprintf("density %.17g linear", DRY),
+                                strprintf("density %.17g linear", (1.0 - POROSITY) * grains));
+    text = replaced(text, strprintf("s w %.17g", GRAINS), strprintf("s w %.17g", grains));
+    text = replaced(text, "fix s soil mpm 0.050000000000000003 transfer aflip 1.0 smooth 0.5",
+                    "fix s soil mpm 0.050000000000000003 transfer aflip 1.0");
+    Scene run(
+        text +
+        "variable t equal time\nvariable g equal 9.81*(time<0.5)*sin(PI*time)^2+9.81*(time>=0.5)\n"
+        "fix walls all mpm/boundary ylo yhi slip\nfix g all gravity v_g vector 0 -1 0\n"
+        "fix step all mpm/dt 0.4\n");
+    const double exact = -k * (grains / WATER - 1.0) * (1.0 - POROSITY);
+    const double v = velocity_of_soil(run, 0.6, 1.6);
+    EXPECT_NEAR(measured("velocity of the plug over k", v / k), exact / k, 0.02);
+  }
+}
+
+// A pond sinks into a dry bed. Behind a front without suction pores are full: n dL/dt = k (H - n L + L)/L with the depth H
+// of the pond at first, and L of the front.
+SERIAL_TEST(Pond, SinksIntoADryBed)
+{
+  const double k = 0.02, deep = 0.3, end = 3.0;
+  double front = 0.0;
+  const double d = 1.0e-5;    // of the front
+  for (double t = 0.0; t < end; front += d)
+    t += d * POROSITY * (front + 0.5 * d) / (k * (deep + (1.0 - POROSITY) * (front + 0.5 * d)));
+  Column c;
+  c.h = 0.025;
+  c.height = 1.0;
+  c.soil[1] = 0.6;
+  c.water[0] = 0.6;
+  c.water[1] = 0.6 + deep;
+  c.K = 2.0e6;
+  c.drag = strprintf("darcy %.17g", k * 1.0e-3 / (WATER * G));
+  c.options = "transfer aflip 1.0";
+  Scene run(
+      replaced(c.text(), "fix w water mpm 0.025000000000000001",
+               "fix w water mpm 0.025 smooth 0.5") +
+      "variable t equal time\nfix floor all mpm/boundary ylo slip\n"
+      "fix g all gravity 9.81 vector 0 -1 0\nfix step all mpm/dt 0.4\n" +
+      strprintf("fix end all halt 10 v_t > %.17g error continue message no\nrun 1000000\n", end));
+  double top = 0.0;
+  for (const auto &s : run.gather())
+    if (s.type == 2) top = std::max(top, s.x[1]);
+  const double gone = c.water[1] - (top + 0.25 * c.h);
+  EXPECT_GT(measured("water in the bed over exact", gone / (POROSITY * front)), 0.82);
+  EXPECT_LT(gone / (POROSITY * front), 1.0);
+}
+
 /** Soil falls into a pool, some of which is in its pores; along y there is gravity. */
 static std::string slump(int dim, const std::string &options = "transfer apic")
 {
