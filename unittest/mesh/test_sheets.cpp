@@ -402,6 +402,18 @@ TEST(Sheets, FacesHoldNodes)
   EXPECT_LT(run.evaluate("v_l"), 0.8 * -20.0);
   EXPECT_EQ(run.evaluate("pe"), 0.0);
 
+  // flat sheets that are moved into each other: above and below, each contact has the energy of its distance on its side, and a little less next to rims
+
+  Scene moved(scene(1.0, dt, "faces yes") +
+              "unfix n\ncompute touch all pair mpm/sheet\nthermo_style custom step pe c_touch[1]\n"
+              "fix go up move linear 0 0 -1.0\n");
+  for (const double gap : {0.5 * D, -0.4 * D}) {
+    moved.commands(strprintf("run %d\n", (int) lround((gap > 0.0 ? h - gap : 0.9 * D) / dt)));
+    const double contacts = moved.evaluate("c_touch[1]");
+    EXPECT_GT(contacts, 100.0);
+    EXPECT_NEAR(moved.evaluate("pe") / (0.5 * k * contacts * (D - gap) * (D - gap)), 1.0, 0.05);
+  }
+
   // and so far that they do not
 
   EXPECT_EQ(lines_that_say(scene(20.0, dt, "faces yes", 0.01) + "run 60\nrun 0\n",
