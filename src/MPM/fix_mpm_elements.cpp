@@ -535,13 +535,17 @@ std::vector<NearNodes::Edge> FixMPMElements::edges() const
       }
   }
 
-  // all of them in the order of ranks
+  return gather(mine);
+}
 
-  const int size = (int) (mine.size() * sizeof(NearNodes::Edge));
+/** What ranks have, on all of them and in their order. */
+template <class T> std::vector<T> FixMPMElements::gather(const std::vector<T> &mine) const
+{
+  const int size = (int) (mine.size() * sizeof(T));
   std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
   MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
   for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
-  std::vector<NearNodes::Edge> all((starts.back() + sizes.back()) / sizeof(NearNodes::Edge));
+  std::vector<T> all((starts.back() + sizes.back()) / sizeof(T));
   MPI_Allgatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
                  world);
   return all;
@@ -1066,6 +1070,24 @@ std::vector<FixMPMElements::Face> FixMPMElements::faces() const
     }
   }
   return all;
+}
+
+std::vector<FixMPMElements::NumberedFace> FixMPMElements::all_faces() const
+{
+  std::vector<NumberedFace> mine;
+  for (int i = 0; i < atom->nlocal && along == dim - 1;
+       i++)    // other rows may be left of before a restart
+    for (int k = 0; k < count[i]; k++) {
+      const double *const r = row((std::size_t) first[i] + k);
+      if (bends(r)) continue;
+      const int nnode = rule_of(r).nnode;
+      for (int part = 0; part < (nnode == 4 ? 2 : 1); part++) {
+        mine.push_back({(bigint) r[0], part, {}});
+        for (int m = 0; m < std::min(3, nnode); m++)
+          mine.back().node[m] = (int64_t) r[2 + SPLIT[part][m]] - ids.low;
+      }
+    }
+  return gather(mine);
 }
 
 /** Edges (in 2d: corners): the positions of their nodes, relative to the first one, and these. */

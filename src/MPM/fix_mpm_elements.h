@@ -173,6 +173,13 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   };
   std::vector<Face> faces() const;
 
+  /** The same of all ranks together, on all ranks: nodes are counted from the first one on. */
+  struct NumberedFace {
+    bigint element, part;
+    int64_t node[3];
+  };
+  std::vector<NumberedFace> all_faces() const;
+
  private:
   struct Work;
   struct IDs {    // of the nodes: their number and range
@@ -238,6 +245,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void check_fields() const;
   void make_elements(const MPM_NS::Mesh &);
   IDs count_nodes() const;
+  template <class T> std::vector<T> gather(const std::vector<T> &mine) const;
   void find_nodes();
   void compute(bool starting);
   void load(Work &, std::size_t e, bool moved) const;

@@ -29,7 +29,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int NO_BODY = -1;
 // paths along a sheet that are shorter than this many distances: a fold whose layers touch has one of pi/2 distances around it
 static constexpr double NEAR = 2.0;
 // nodes that are so much closer than the distance may get to the other side
@@ -109,6 +108,7 @@ void PairMPMSheet::compute(int eflag, int vflag)
   }
   pvector[0] = contacts;
   pvector[1] = dissipated;
+  if (faces) touch_faces(eflag);
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
@@ -119,11 +119,14 @@ void PairMPMSheet::compute(int eflag, int vflag)
 void PairMPMSheet::find_pairs()
 {
   pairs.clear();
+  const auto touches_faces = [&](int body) {
+    return faces && body != NO_BODY && !bodies[body].faces.empty();
+  };
   for (int ii = 0; ii < list->inum; ii++) {
     const int i = list->ilist[ii], mine = body_of(i);
     for (int jj = 0; jj < list->numneigh[i]; jj++) {
       const int j = list->firstneigh[i][jj] & NEIGHMASK, other = body_of(j);
-      if ((mine == NO_BODY && other == NO_BODY) ||
+      if ((mine == NO_BODY && other == NO_BODY) || touches_faces(mine) || touches_faces(other) ||
           coeff_of(atom->type[i], atom->type[j]).stiffness == 0.0)
         continue;
       if (mine == other) {
@@ -133,10 +136,11 @@ void PairMPMSheet::find_pairs()
       pairs.emplace_back(i, j);
     }
   }
+  if (faces) find_faces();
   warn_about_step();
   if (starting) warn_about_start();
-  if (!warned_gap) warn_about_gaps();
-  if (!warned_through) warn_about_passages();
+  if (!faces && !warned_gap) warn_about_gaps();
+  if (!faces && !warned_through) warn_about_passages();
 }
 
 int PairMPMSheet::body_of(int i) const
@@ -148,7 +152,7 @@ int PairMPMSheet::body_of(int i) const
 
 /* ----------------------------------------------------------------------
    The bound of the elements does not know of contacts. A node between two others that hold still has a frequency of
-   sqrt(2 k/m), and 2/omega is the limit
+   sqrt(2 k/m), and 2/omega is the limit. With faces it bears others as well, by twice as much
 ------------------------------------------------------------------------- */
 
 void PairMPMSheet::warn_about_step()
@@ -159,7 +163,8 @@ void PairMPMSheet::warn_about_step()
     if (body_of(i) == NO_BODY) continue;
     for (int t = 1; t <= atom->ntypes; t++) {
       const double k = coeff_of(atom->type[i], t).stiffness;
-      if (k > 0.0) shortest = std::min(shortest, sqrt(2.0 * atom->rmass[i] / (k * force->ftm2v)));
+      const double parts = faces ? 1.0 : 2.0;
+      if (k > 0.0) shortest = std::min(shortest, sqrt(parts * atom->rmass[i] / (k * force->ftm2v)));
     }
   }
   MPI_Allreduce(&shortest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
@@ -191,12 +196,20 @@ void PairMPMSheet::warn_about_start()
     mine[1] += 0.5 * share * coeff_of(atom->type[i], atom->type[j]).stiffness * overlap * overlap;
     least = std::min(least, r);
   }
+  if (faces)
+    for_face_contacts([&](const FaceContact &c) {
+      if (!(distance - c.gap > CLOSER * distance)) return;
+      mine[0] += c.share;
+      mine[1] += 0.5 * c.stiffness * (distance - c.gap) * (distance - c.gap);
+      least = std::min(least, c.gap);
+    });
   MPI_Allreduce(mine, sums, 2, MPI_DOUBLE, MPI_SUM, world);
   MPI_Allreduce(&least, &closest, 1, MPI_DOUBLE, MPI_MIN, world);
   if (sums[0] == 0.0 || comm->me != 0) return;
   error->warning(
       FLERR,
-      "Pair style mpm/sheet: {} pairs of nodes, or of a node and another atom, are closer than the "
+      "Pair style mpm/sheet: {} pairs of nodes, or of a node and another atom or a face, are "
+      "closer than the "
       "distance {} at the start, the closest by {:.4g}: they push each other away at once, with an "
       "energy of {:.6g}: use a smaller distance, which may need a finer mesh, or layers that are "
       "farther apart",
@@ -237,42 +250,56 @@ void PairMPMSheet::warn_about_passages()
   std::vector<Passages::FaceID> mine;
   auto now = look_at_faces(mine);
   if (comm->nprocs > 1) share_passages(mine);
-  const auto *const found = passages.look(std::move(now));
+  if (!tell_first(passages.look(std::move(now)),
+                  "has gone through element {} of fix mpm/elements {}, seen at step {}, and may be "
+                  "held on the wrong side from now on: use a larger stiffness or distance, or a "
+                  "finer mesh, or the keyword faces"))
+    return;
+  warned_through = true;
+  passages.forget();    // the next run begins with what it sees first
+}
+
+/** A warning of what the first of those ranks has found that have found something; null: nothing. Has one? On all ranks together. */
+bool PairMPMSheet::tell_first(const Passages::Sight *found, const char *what) const
+{
   int rank = found ? comm->me : comm->nprocs, first;
   MPI_Allreduce(&rank, &first, 1, MPI_INT, MPI_MIN, world);
-  if (first == comm->nprocs) return;
-  warned_through = true;
+  if (first == comm->nprocs) return false;
   Passages::Sight told = {};
   if (comm->me == first) told = *found;
   MPI_Bcast(&told, sizeof(told), MPI_BYTE, first, world);
   if (comm->me == 0)    // which has the log file
-    error->warning(FLERR,
-                   "Pair style mpm/sheet: node {} has gone through element {} of fix mpm/elements "
-                   "{}, seen at step {}, and may be held on the wrong side from now on: use a "
-                   "larger stiffness or distance, or a finer mesh",
-                   told.node, told.face / 2, bodies[told.body].elements->id, update->ntimestep);
-  passages.forget();    // the next run begins with what it sees first
+    error->warning(FLERR, "Pair style mpm/sheet: node {} {}", told.node,
+                   fmt::format(fmt::runtime(what), told.face / 2, bodies[told.body].elements->id,
+                               update->ntimestep));
+  return true;
 }
 
 /** What is known of faces that have gone to other ranks, which are few, goes to all of these. */
 void PairMPMSheet::share_passages(std::vector<Passages::FaceID> &mine)
 {
   std::sort(mine.begin(), mine.end());
-  const auto others = passages.take_others(mine);
-  const int size = (int) others.size();
+  passages.add(from_all_ranks(passages.take_others(mine)));
+}
+
+std::vector<Passages::Sight>
+PairMPMSheet::from_all_ranks(const std::vector<Passages::Sight> &mine) const
+{
+  std::vector<Passages::Sight> all;
+  const int size = (int) mine.size();
   int largest;
   MPI_Allreduce(&size, &largest, 1, MPI_INT, MPI_MAX, world);
-  if (largest == 0) return;
+  if (largest == 0) return all;
   std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
   MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
   for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
-  std::vector<Passages::Sight> all((std::size_t) starts.back() + sizes.back());
+  all.resize((std::size_t) starts.back() + sizes.back());
   MPI_Datatype sight;    // as the number of bytes may be above what an int has
   MPI_Type_contiguous(sizeof(Passages::Sight), MPI_BYTE, &sight);
   MPI_Type_commit(&sight);
-  MPI_Allgatherv(others.data(), size, sight, all.data(), sizes.data(), starts.data(), sight, world);
+  MPI_Allgatherv(mine.data(), size, sight, all.data(), sizes.data(), starts.data(), sight, world);
   MPI_Type_free(&sight);
-  passages.add(all);
+  return all;
 }
 
 /** Nodes that are next to faces of this rank, but not near these along the surface; mine: these faces. */
@@ -281,9 +308,42 @@ std::vector<Passages::Sight> PairMPMSheet::look_at_faces(std::vector<Passages::F
   // nodes that come to a face from next to it: nodes at edges and rims keep those that go around them farther away
   constexpr double MARGIN = 0.1;
   std::vector<Passages::Sight> sights;
-  double **const x = atom->x;
-  const int nall = atom->nlocal + atom->nghost, dim = domain->dimension;
   const double range = distance + neighbor->skin;
+  std::vector<SeenFace> owned;
+  for (std::size_t b = 0; b < bodies.size(); b++)
+    for (const auto &face : bodies[b].elements->faces()) {
+      const auto &n = face.node;
+      owned.push_back({(int) b, {n[0], n[1], n[2]}, 2 * face.element + face.part});
+      mine.emplace_back((int64_t) b, owned.back().number);
+    }
+  for_atoms_near(
+      owned, atom->nlocal + atom->nghost, range, [&](int i, int f, const double *const at[3]) {
+        bool within;
+        const int side = side_of_face(domain->dimension, at, atom->x[i], range, MARGIN, within);
+        if (side != 0 && touches(i, owned[f]))
+          sights.push_back({atom->tag[i], owned[f].body, owned[f].number, side, within});
+      });
+  return sights;
+}
+
+/** Does an atom touch a face: is there a coefficient, and is it not near along the surface? */
+bool PairMPMSheet::touches(int i, const SeenFace &face)
+{
+  if (coeff_of(atom->type[i], atom->type[face.node[0]]).stiffness == 0.0) return false;
+  const auto &body = bodies[face.body];
+  if (!(atom->mask[i] & body.elements->groupbit)) return true;
+  for (int m = 0; m < domain->dimension; m++)
+    if (body.nodes->near(atom->tag[i] - body.low, atom->tag[face.node[m]] - body.low)) return false;
+  return true;
+}
+
+/** Visit atoms, of the first ones, that may be closer to a face than range, with the face and the positions of its nodes. */
+void PairMPMSheet::for_atoms_near(
+    const std::vector<SeenFace> &list, int natoms, double range,
+    const std::function<void(int i, int f, const double *const at[3])> &visit) const
+{
+  double **const x = atom->x;
+  const int dim = domain->dimension;
 
   // atoms in cells of this size
 
@@ -293,50 +353,32 @@ std::vector<Passages::Sight> PairMPMSheet::look_at_faces(std::vector<Passages::F
   const auto key_of = [](int64_t i, int64_t j, int64_t k) {
     return (i * 2097152 + j) * 2097152 + k;
   };
-  std::vector<std::pair<int64_t, int>> cells(nall);
-  for (int i = 0; i < nall; i++)
+  std::vector<std::pair<int64_t, int>> cells(natoms);
+  for (int i = 0; i < natoms; i++)
     cells[i] = {key_of(cell_of(x[i][0]), cell_of(x[i][1]), cell_of(x[i][2])), i};
   std::sort(cells.begin(), cells.end());
 
-  for (std::size_t b = 0; b < bodies.size(); b++) {
-    const auto &body = bodies[b];
-    for (const auto &face : body.elements->faces()) {
-      const int64_t number = 2 * (int64_t) face.element + face.part;
-      mine.emplace_back((int64_t) b, number);
-      const double *at[3];
-      int64_t low[3], high[3];
-      for (int m = 0; m < dim; m++) at[m] = x[face.node[m]];
-      for (int d = 0; d < 3; d++) {
-        double least = at[0][d], most = at[0][d];
-        for (int m = 1; m < dim; m++) {
-          least = std::min(least, at[m][d]);
-          most = std::max(most, at[m][d]);
-        }
-        low[d] = cell_of(least - range);
-        high[d] = cell_of(most + range);
+  for (std::size_t f = 0; f < list.size(); f++) {
+    const double *at[3];
+    int64_t low[3], high[3];
+    for (int m = 0; m < dim; m++) at[m] = x[list[f].node[m]];
+    for (int d = 0; d < 3; d++) {
+      double least = at[0][d], most = at[0][d];
+      for (int m = 1; m < dim; m++) {
+        least = std::min(least, at[m][d]);
+        most = std::max(most, at[m][d]);
       }
-      const int type = atom->type[face.node[0]];
-      const auto visit = [&](int i) {
-        if (coeff_of(atom->type[i], type).stiffness == 0.0) return;
-        bool within;
-        const int side = side_of_face(dim, at, x[i], range, MARGIN, within);
-        if (side == 0) return;
-        const bool same = atom->mask[i] & body.elements->groupbit;
-        for (int m = 0; m < dim; m++)
-          if (same && body.nodes->near(atom->tag[i] - body.low, atom->tag[face.node[m]] - body.low))
-            return;
-        sights.push_back({atom->tag[i], (int64_t) b, number, side, within});
-      };
-      for (int64_t i = low[0]; i <= high[0]; i++)
-        for (int64_t j = low[1]; j <= high[1]; j++) {
-          const auto first = std::lower_bound(cells.begin(), cells.end(),
-                                              std::make_pair(key_of(i, j, low[2]), -1));
-          for (auto c = first; c != cells.end() && c->first <= key_of(i, j, high[2]); ++c)
-            visit(c->second);
-        }
+      low[d] = cell_of(least - range);
+      high[d] = cell_of(most + range);
     }
+    for (int64_t i = low[0]; i <= high[0]; i++)
+      for (int64_t j = low[1]; j <= high[1]; j++) {
+        const auto first =
+            std::lower_bound(cells.begin(), cells.end(), std::make_pair(key_of(i, j, low[2]), -1));
+        for (auto c = first; c != cells.end() && c->first <= key_of(i, j, high[2]); ++c)
+          visit(c->second, (int) f, at);
+      }
   }
-  return sights;
 }
 
 /* ----------------------------------------------------------------------
@@ -348,6 +390,9 @@ Options MPMSheetOptions::declare()
   using namespace option;
   Options o("pair_style mpm/sheet");
   o.argument(number(distance, "D", POSITIVE));
+  o.add(
+      "faces", {yes_no(faces)},
+      "do nodes touch the triangles of surfaces, and in 2d their lines, in place of their nodes?");
   return o;
 }
 
@@ -422,7 +467,19 @@ void PairMPMSheet::init_style()
     error->all(FLERR, Error::NOLASTLINE,
                "Pair style mpm/sheet with damping needs the velocities of ghost atoms: use "
                "comm_modify vel yes");
-  warned_deep = warned_dt = warned_gap = warned_through = false;
+  warned_deep = warned_dt = warned_gap = warned_through = warned_lost = false;
+
+  // atoms may have been displaced since the last run: only those that are on the wrong side keep what they know
+
+  approaches.erase(std::remove_if(approaches.begin(), approaches.end(),
+                                  [](const Approach &a) {
+                                    return !a.sight.within;
+                                  }),
+                   approaches.end());
+  if (faces && !force->newton_pair)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Pair style mpm/sheet with faces yes needs newton on for pairs, as nodes of a face "
+               "can be on other ranks: use the newton command");
   if (modify->nfix_restart_peratom) starting = false;
   neighbor->add_request(this);
 }
@@ -444,9 +501,13 @@ void PairMPMSheet::find_bodies()
                  "whose lattice holds together what is closer than its cells: move them with fix "
                  "nve, or use fix mpm/contact",
                  elements->id, field);
-    bodies.push_back({elements, elements->first_node(),
+    bodies.push_back({elements,
+                      elements->first_node(),
                       std::make_unique<NearNodes>(elements->number_of_nodes(), elements->edges(),
-                                                  NEAR * distance)});
+                                                  NEAR * distance),
+                      {},
+                      {}});
+    if (faces) find_faces_of(bodies.back());
   }
   if (bodies.empty())
     error->all(FLERR, Error::NOLASTLINE,
@@ -454,8 +515,10 @@ void PairMPMSheet::find_bodies()
   if (!std::equal(bodies.begin(), bodies.end(), bodies_before.begin(), bodies_before.end(),
                   [](const Body &a, const Body &b) {
                     return a.elements == b.elements;
-                  }))
+                  })) {
     passages.forget();    // which has their numbers
+    approaches.clear();
+  }
 }
 
 double PairMPMSheet::init_one(int i, int j)
@@ -493,18 +556,26 @@ void PairMPMSheet::read_restart(FILE *fp)
 void PairMPMSheet::write_restart_settings(FILE *fp)
 {
   fwrite(&distance, sizeof(double), 1, fp);
+  fwrite(&faces, sizeof(bool), 1, fp);
 }
 
 void PairMPMSheet::read_restart_settings(FILE *fp)
 {
-  if (comm->me == 0) utils::sfread(FLERR, &distance, sizeof(double), 1, fp, nullptr, error);
+  if (comm->me == 0) {
+    utils::sfread(FLERR, &distance, sizeof(double), 1, fp, nullptr, error);
+    utils::sfread(FLERR, &faces, sizeof(bool), 1, fp, nullptr, error);
+  }
   MPI_Bcast(&distance, 1, MPI_DOUBLE, 0, world);
+  MPI_Bcast(&faces, sizeof(bool), MPI_BYTE, 0, world);
 }
 
 double PairMPMSheet::memory_usage()
 {
   double bytes = Pair::memory_usage() + (double) pairs.capacity() * sizeof(pairs[0]);
   bytes += passages.memory();
-  for (const auto &body : bodies) bytes += body.nodes->memory();
+  bytes += (double) seen.capacity() * sizeof(seen[0]) +
+      (double) approaches.capacity() * sizeof(approaches[0]);
+  for (const auto &body : bodies)
+    bytes += body.nodes->memory() + (double) body.faces.capacity() * sizeof(body.faces[0]);
   return bytes;
 }

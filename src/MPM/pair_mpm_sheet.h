@@ -16,11 +16,13 @@ PairStyle(mpm/sheet,PairMPMSheet);
 #define LMP_PAIR_MPM_SHEET_H
 
 #include "declare/option.h"
+#include "mesh/face_contact.h"
 #include "mesh/near_nodes.h"
 #include "mesh/passages.h"
 #include "pair.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -30,6 +32,7 @@ namespace LAMMPS_NS {
 /** Settings of pair_style mpm/sheet. */
 struct MPMSheetOptions {
   double distance = 0.0;    ///< of two sheets that touch
+  bool faces = false;       ///< do nodes touch triangles, in 2d lines, and not nodes?
 
   MPM_NS::Options declare();
 };
@@ -46,7 +49,10 @@ struct MPMSheetCoeff {
 /** Contact of surfaces and lines (fix mpm/elements with thickness or section) that no lattice moves with themselves, with
  *  each other, and with any other atoms: two of them that are closer than a distance D repel each other with
  *  k (D - r), except for nodes of one body that are near each other along it (by a path shorter than 2 D without
- *  deformation). D must be large enough for the mesh that nodes cannot pass between those of another layer. */
+ *  deformation). D must be large enough for the mesh that nodes cannot pass between those of another layer.
+ *
+ *  With faces, they touch triangles of a surface, in 2d its lines, in place of its nodes. A node has a side of each face that is close, which it keeps where
+ *  it goes through: it is pushed back. */
 class PairMPMSheet : public Pair, private MPMSheetOptions {
  public:
   PairMPMSheet(class LAMMPS *);
@@ -64,19 +70,46 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
 
  private:
   using Coeff = MPMSheetCoeff;
+  static constexpr int NO_BODY = -1;
 
+  struct Face {
+    int64_t low, node[3], number;
+  };
   struct Body {
     class FixMPMElements *elements;
     tagint low;    // ID of its first node
     std::unique_ptr<MPM_NS::NearNodes> nodes;
+    std::vector<Face> faces;           // with the keyword faces, in the order of their lowest nodes
+    std::vector<std::size_t> first;    // of those of a node
+  };
+  struct
+      FaceContact {    // of an atom with a face, or with an edge or a node that several have in common
+    int atom, nnode, node[3];
+    double weight[3];                    // of the nodes
+    double n[3];                         // direction in which the atom is pushed, of length one
+    double gap;                          // below zero: it is on the other side
+    double share, stiffness, damping;    // see ContactPart
+  };
+  struct SeenFace {
+    int body, node[3];    // local indices
+    bigint number;        // two times the element, plus which half
+  };
+  struct Approach {    // of an atom of this rank and a face that can touch
+    int atom, face;
+    MPM_NS::Passages::Sight
+        sight;    // side: that from which it is pushed; within: is it on the other one?
+    bool operator<(const Approach &other) const { return sight < other.sight; }
   };
 
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<Body> bodies;
   std::vector<std::pair<int, int>> pairs;    // that can touch, of the present neighbor list
   bool starting = true;    // before the first step of bodies that are not from a restart file
-  bool warned_deep = false, warned_dt = false, warned_gap = false, warned_through = false;
+  bool warned_deep = false, warned_dt = false, warned_gap = false, warned_through = false,
+       warned_lost = false;
   MPM_NS::Passages passages;
+  std::vector<SeenFace> seen;          // all of which this rank has the nodes
+  std::vector<Approach> approaches;    // those of an atom are next to each other
 
   void allocate();
   void find_bodies();
@@ -86,6 +119,17 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
   void warn_about_gaps();
   void warn_about_passages();
   void share_passages(std::vector<MPM_NS::Passages::FaceID> &mine);
+  std::vector<MPM_NS::Passages::Sight>
+  from_all_ranks(const std::vector<MPM_NS::Passages::Sight> &mine) const;
+  bool tell_first(const MPM_NS::Passages::Sight *found, const char *what) const;
+  bool touches(int i, const SeenFace &);
+  void for_atoms_near(const std::vector<SeenFace> &, int natoms, double range,
+                      const std::function<void(int, int, const double *const[3])> &) const;
+  void find_faces_of(Body &) const;
+  void find_faces();
+  double see_faces();
+  void for_face_contacts(const std::function<void(const FaceContact &)> &);
+  void touch_faces(int eflag);
   std::vector<MPM_NS::Passages::Sight> look_at_faces(std::vector<MPM_NS::Passages::FaceID> &mine);
   int body_of(int i) const;
   Coeff &coeff_of(int i, int j);

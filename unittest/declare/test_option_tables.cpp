@@ -93,6 +93,7 @@ std::map<std::string, std::string> files()
   add("mpm_point", MPMPointOptions().declare());
   add("pair_mpm_penalty", MPMPenaltyOptions().declare());
   add("pair_mpm_penalty_coeff", MPMPenaltyCoeff().declare());
+  add("pair_mpm_sheet", MPMSheetOptions().declare());
   add("pair_mpm_sheet_coeff", MPMSheetCoeff().declare());
   add("region_mpm_mesh", MPMRegionMeshOptions().declare());
   return all;

@@ -181,17 +181,19 @@ TEST(Sheets, RanksAndRestart)
   const std::string head = MPM_TEST::box(3, "si", "f f f", "-0.3 0.6 -0.3 0.6 -0.3 0.6", 1, 0.02) +
       "comm_modify vel yes\n";
   const std::string points = "create_points 1 mesh " + mine + " thickness 0.001\n";
-  const std::string rest = "fix m all mpm/material density 1000 neohookean 1e5 0.3\n"
-                           "fix e all mpm/elements " +
-      mine + " thickness 0.001\npair_style mpm/sheet 0.045\npair_coeff * * 40\n" +
-      strprintf("group rest id > %d\nfix move rest nve\n", 7 * 4) +
-      "fix g all gravity 9.81 vector 0 0.3 -1\ntimestep 2e-4\n";
-  const std::string start = head + points + rest;
-  Scene serial(replaced(start, mine, own.name) + "run 200\n", MPI_COMM_SELF);
-  Continued run(start, 100, "neighbor 0.02 bin\ncomm_modify vel yes\n" + rest, 100);
-  const auto state = run.whole.gather();
-  EXPECT_LT(measured("ranks", difference(serial.gather(), state)), 1e-9);
-  EXPECT_TRUE(identical(state, run.again.gather()));
+  for (const std::string faces : {"no", "yes"}) {
+    const std::string rest = "fix m all mpm/material density 1000 neohookean 1e5 0.3\n"
+                             "fix e all mpm/elements " +
+        mine + " thickness 0.001\npair_style mpm/sheet 0.045 faces " + faces +
+        "\npair_coeff * * 40\n" + strprintf("group rest id > %d\nfix move rest nve\n", 7 * 4) +
+        "fix g all gravity 9.81 vector 0 0.3 -1\ntimestep 2e-4\n";
+    const std::string start = head + points + rest;
+    Scene serial(replaced(start, mine, own.name) + "run 200\n", MPI_COMM_SELF);
+    Continued run(start, 100, "neighbor 0.02 bin\ncomm_modify vel yes\n" + rest, 100);
+    const auto state = run.whole.gather();
+    EXPECT_LT(measured("ranks", difference(serial.gather(), state)), 1e-9);
+    EXPECT_TRUE(identical(state, run.again.gather()));
+  }
 }
 
 // layers in the mesh that are closer than the distance are told, with the energy that pushes them apart: once, and not after a restart
@@ -319,6 +321,112 @@ TEST(Sheets, WarnsOfNodesThatGoThrough)
               z < 0.0 ? 1u : 0u);
 }
 
+// two sheets of triangles in no order, with a distance of a fifth of an edge, that come together with up to 0.4 of it in a step: none of their nodes goes through, which those that
+// touch nodes only do at once; momentum is kept, and energy the better the shorter the steps, by their square
+TEST(Sheets, FacesHoldNodes)
+{
+  const double a = 0.05, D = 0.01, dt = 1e-4, h = 1.2 * D,
+               k = 0.2 * 1000.0 * 0.001 * a * a / 2.0 / dt / dt;
+  const auto mesh = [&](int seed, double angle) {
+    const int n = 8;
+    unsigned state = (unsigned) seed;
+    const auto random = [&]() {    // -1 to 1
+      state = 1664525u * state + 1013904223u;
+      return state / 2147483648.0 - 1.0;
+    };
+    std::vector<Node> x;
+    std::vector<std::vector<int>> f;
+    for (int j = 0; j <= n; j++)
+      for (int i = 0; i <= n; i++) {
+        const bool inner = i > 0 && i < n && j > 0 && j < n;
+        const double p = a * (i - 0.5 * n + (inner ? 0.2 * random() : 0.0)),
+                     q = a * (j - 0.5 * n + (inner ? 0.2 * random() : 0.0));
+        x.push_back({cos(angle) * p - sin(angle) * q, sin(angle) * p + cos(angle) * q, 0.0});
+      }
+    for (int j = 0; j < n; j++)
+      for (int i = 0; i < n; i++) {
+        const int p = j * (n + 1) + i, q = p + n + 1;
+        f.push_back((i + j) % 2 ? std::vector<int>{p, p + 1, q}
+                                : std::vector<int>{p, p + 1, q + 1});
+        f.push_back((i + j) % 2 ? std::vector<int>{p + 1, q + 1, q}
+                                : std::vector<int>{p, q + 1, q});
+      }
+    return gmsh(2, x, f);
+  };
+  const ScratchFile low("low.msh", mesh(1, 0.0)), up("up.msh", mesh(2, 0.37));
+  const auto scene = [&](double speed, double step, const std::string &faces, double share = 1.0) {
+    return MPM_TEST::box(3, "si", "f f f", "-0.6 0.6 -0.6 0.6 -0.5 0.5", 1, 0.5 * D) +
+        "create_points 1 mesh " + low.name + " thickness 0.001\ncreate_points 1 mesh " + up.name +
+        strprintf(" thickness 0.001 move 0.007 0.011 %g\n", h) +
+        "group low id <= 81\ngroup up id > 81\n"
+        "fix m all mpm/material density 1000 neohookean 1e5 0.3\n"
+        "fix a low mpm/elements " +
+        low.name + " thickness 0.001\nfix b up mpm/elements " + up.name + " thickness 0.001\n" +
+        strprintf("pair_style mpm/sheet %g %s\npair_coeff * * %g\n", D, faces.c_str(), share * k) +
+        strprintf("fix n all nve\nvelocity up set 0 0 %g\ntimestep %g\n", -speed, step) +
+        "compute ke all ke\nthermo_modify norm no\n"
+        "variable e equal c_ke+f_a[1]+f_b[1]+pe\nvariable p equal mass(all)*vcm(all,z)\n"
+        "variable l equal vcm(low,z)\nvariable u equal vcm(up,z)\n"
+        "thermo_style custom step pe v_e v_p v_l v_u\n";
+  };
+  const std::string words = "to the other side of element";
+  for (const double part : {0.01, 0.04, 0.1, 0.4}) {    // of D in a step
+    const double speed = part * D / dt;
+    const std::string commands = scene(speed, dt, "faces yes");
+    const int steps = (int) (3.5 * h / speed / dt);
+    EXPECT_EQ(lines_that_say(commands + strprintf("run %d\nrun 0\n", steps), words).size(), 0u);
+    Scene run(commands + "run 0\n");
+    const double p = run.evaluate("v_p");
+    run.commands(strprintf("run %d\n", steps));
+    EXPECT_NEAR(run.evaluate("v_p") / p, 1.0, 1e-12);
+    EXPECT_NEAR(measured("speed of the lower one", run.evaluate("v_l") / speed), -0.92, 0.03);
+  }
+
+  // energy: the same speed with steps of a half and a quarter
+
+  double change[2];
+  for (const int n : {1, 2}) {
+    Scene run(scene(5.0, dt / (2 * n), "faces yes") + "run 0\n");
+    const double e = run.evaluate("v_e");
+    run.commands(strprintf("run %d\n", 170 * n));
+    change[n - 1] = measured("energy", run.evaluate("v_e") / e - 1.0);
+  }
+  EXPECT_LT(std::fabs(change[1]), 0.003);
+  EXPECT_NEAR(change[0] / change[1], 4.0, 1.0);
+
+  // a stiffness that lets nodes go through by less than the distance and the skin: they come back, and all of the sheets is apart again, as is told
+
+  const std::string weak = scene(20.0, dt, "faces yes", 0.1);
+  EXPECT_EQ(lines_that_say(weak + "run 60\nrun 0\n", words).size(), 1u);
+  Scene run(weak + "run 60\n");
+  EXPECT_LT(run.evaluate("v_l"), 0.8 * -20.0);
+  EXPECT_EQ(run.evaluate("pe"), 0.0);
+
+  // flat sheets that are moved into each other: above and below, each contact has the energy of its distance on its side, and a little less next to rims
+
+  Scene moved(scene(1.0, dt, "faces yes") +
+              "unfix n\ncompute touch all pair mpm/sheet\nthermo_style custom step pe c_touch[1]\n"
+              "fix go up move linear 0 0 -1.0\n");
+  for (const double gap : {0.5 * D, -0.4 * D}) {
+    moved.commands(strprintf("run %d\n", (int) lround((gap > 0.0 ? h - gap : 0.9 * D) / dt)));
+    const double contacts = moved.evaluate("c_touch[1]");
+    EXPECT_GT(contacts, 100.0);
+    EXPECT_NEAR(moved.evaluate("pe") / (0.5 * k * contacts * (D - gap) * (D - gap)), 1.0, 0.05);
+  }
+
+  // and so far that they do not
+
+  EXPECT_EQ(lines_that_say(scene(20.0, dt, "faces yes", 0.01) + "run 60\nrun 0\n",
+                           "it stays on the wrong side")
+                .size(),
+            1u);
+
+  // nodes that touch nodes go through where these are not
+
+  Scene nodes(scene(5.0, dt, "faces no") + "run 80\n");
+  EXPECT_GT(nodes.evaluate("v_l"), -0.5 * 5.0);
+}
+
 SERIAL_TEST(Sheets, BadInput)
 {
   ScratchFile file("strip.msh", folded(3, 6, 3, 0.05, 0.045));
@@ -337,6 +445,14 @@ SERIAL_TEST(Sheets, BadInput)
   EXPECT_THAT(failure("pair_style mpm/sheet 0.045\npair_coeff 1 1\n"), HasSubstr("pair_coeff"));
   EXPECT_THAT(failure("pair_style mpm/sheet 0.045\npair_coeff 1 1 1 damping 1\n"),
               HasSubstr("comm_modify vel yes"));
+  EXPECT_THAT(failure("pair_style mpm/sheet 0.045 faces maybe\n"), HasSubstr("maybe"));
+  Scene no_newton;
+  EXPECT_THAT(no_newton.error("newton off\n" +
+                              free_body(3, -0.6, 0.6, 0.02, file.name, "thickness 0.001",
+                                        "neohookean 1e5 0.3") +
+                              "pair_style mpm/sheet 0.045 faces yes\npair_coeff 1 1 1.0\n"
+                              "fix n all nve\ntimestep 1e-5\nrun 1\n"),
+              HasSubstr("newton on"));
   EXPECT_THAT(failure(good, "fix n all mpm 0.05\n"), HasSubstr("move them with fix nve"));
   EXPECT_THAT(failure(good, "unfix e\nfix n all nve\n"), HasSubstr("needs a fix mpm/elements"));
   EXPECT_THAT(failure("", "fix n all nve\n", "1.0"), HasSubstr("above the limit"));
