@@ -185,6 +185,17 @@ TEST(EnergyWatch, IsSilentAtRest)
   EXPECT_EQ(told_by(scene).warnings, 0);
 }
 
+// In a bar at rest as much heat comes in as goes out: its energy changes by the round-off of its heat alone, which is the whole energy in
+// play, and more than that of a body that moves slowly
+TEST(EnergyWatch, RoundOffOfHeatIsNoGain)
+{
+  const std::string scene = space("si", "f f f", "0 1 0 0.1 0 0.1", 1, 0.05) +
+      body("block 0 1 0 0.1 0 0.1", "density 7800 eos linear 1e11 thermal conducting 500 300 50",
+           "0.05") +
+      "fix heat all mpm/heat xlo flux 1e6 xhi flux -1e6\ntimestep 1e-6\nrun 2000\n";
+  EXPECT_EQ(told_by(scene).warnings, 0);
+}
+
 // A load of five steps: a free block has the momentum of all of them, and no energy without work. With the velocities at the start of each
 // step alone, a fifth of its energy would be
 TEST(EnergyWatch, KnowsTheWorkOfAShortLoad)

@@ -164,6 +164,31 @@ TEST(RegionCut, LightPointsAreStable)
               0.02 * speed[false]);
 }
 
+// A surface that is a thousand times as large as the box, such as one in millimeters: its cells outside of the box, 1e9 of them, are not
+// looked at. In the box are its corner, or its oblique face, x + y + z = 1/2.
+TEST(RegionCut, OfALargeBodyOnlyThePartInTheBox)
+{
+  const std::array<double, 3> o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
+  const ScratchFile file("large.stl", text_of({{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}));
+  const std::string corner = "1000 0.3 0.2 0.1",
+                    oblique = "1000 -333.1666666666667 "
+                              "-333.1666666666667 -333.1666666666667";
+  const double t = 12.5 / 8.0;    // of the distribution of the sum of three even numbers
+  const struct {
+    const std::string &where;
+    double volume;
+  } cases[] = {{corner, 3.7 * 3.8 * 3.9},
+               {oblique, 512.0 * (((-2.0 * t + 9.0) * t - 9.0) * t + 3.0) / 6.0}};
+  for (const auto &c : cases) {
+    const std::string scene =
+        box_of_3d + "region body mpm/mesh " + file.name + " " + c.where + "\n";
+    Scene run(scene + cut(0.2, "cut yes outside ignore"));
+    EXPECT_NEAR(Sum(run).volume, c.volume, 1.0e-8 * c.volume);
+    Scene other;
+    EXPECT_THAT(other.error(scene + cut(0.2)), HasSubstr("reaches beyond the simulation box"));
+  }
+}
+
 TEST(RegionCut, RefusesMistakes)
 {
   const std::string region = "region body sphere 0 0 0 1\n",

@@ -94,6 +94,7 @@ void CreatePoints::command(int narg, char **arg)
     else
       parse(narg, arg);
     find_ranges();
+    if (cut) begin_cut();
     check_outside();
     check_overlap();
   }
@@ -332,9 +333,6 @@ void CreatePoints::place_sites(const Options &options)
   }
   find_split(options);
   cut = cut || relax;
-  if (cut)
-    region_cut = std::make_unique<MPMRegionCut>(lmp, region, origin, spacing,
-                                                fix && fix->options.axisymmetric);
 }
 
 /* ----------------------------------------------------------------------
@@ -553,23 +551,41 @@ void CreatePoints::for_sites(const Range *range, bigint first, bigint last,
   }
 }
 
+/** Can sites be counted that may be in the region, also outside of the box? */
+bool CreatePoints::is_countable() const
+{
+  return (double) search[0].n * search[1].n * search[2].n / comm->nprocs < MAX_COUNT;
+}
+
+/** Keyword cut: of a region that is much larger than the box only the part in the box matters. */
+void CreatePoints::begin_cut()
+{
+  bigint first[3], last[3];
+  for (int d = 0; d < 3; d++) {
+    const Range &range = is_countable() ? search[d] : box[d];
+    first[d] = range.first - 1;
+    last[d] = range.end();
+  }
+  region_cut = std::make_unique<MPMRegionCut>(lmp, region, origin, spacing,
+                                              fix && fix->options.axisymmetric, first, last);
+}
+
 /* ----------------------------------------------------------------------
    refuse, or report, parts of the region outside the box
 ------------------------------------------------------------------------- */
 
 void CreatePoints::check_outside()
 {
-  bool exceeds = false;
-  double nsearch = 1.0;
+  bool exceeds = false, empty = false;
   for (int d = 0; d < domain->dimension; d++) {
     exceeds = exceeds || search[d].first < box[d].first || search[d].end() > box[d].end();
-    nsearch *= search[d].n;
+    empty = empty || search[d].n == 0;
   }
-  if (!exceeds || nsearch == 0.0) return;
+  if (!exceeds || empty) return;
 
   const std::string what = image ? "image" : fmt::format("region {}", region->id);
   std::string count = "an unknown number of";
-  if (nsearch / comm->nprocs < MAX_COUNT) {
+  if (is_countable()) {
     const bigint n = search[0].n * search[1].n * search[2].n;
     bigint mine = 0, all = 0;
     for_sites(search, n * comm->me / comm->nprocs, n * (comm->me + 1) / comm->nprocs,

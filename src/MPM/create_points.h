@@ -158,6 +158,8 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void check_tags(tagint largest, bigint nmore) const;
   void find_lattice();
   void find_ranges();
+  bool is_countable() const;
+  void begin_cut();
   void check_outside();
   bool same_body(int i) const;
   void check_overlap();

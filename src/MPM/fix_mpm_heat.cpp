@@ -1107,6 +1107,14 @@ void FixMPMHeat::account(double *values) const
   for (int k = 0; k < NGIVER; k++) values[3 + k] += past.given[k] + past.booked[k];
 }
 
+double FixMPMHeat::energy_at_hand() const
+{
+  double heat = 0.0;
+  for (const auto &of : fields)
+    if (of->conducts()) heat += of->heat_of_points();
+  return heat;
+}
+
 /* ---------------------------------------------------------------------- */
 
 void FixMPMHeat::write_restart(FILE *fp)

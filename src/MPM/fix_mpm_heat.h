@@ -83,6 +83,7 @@ class FixMPMHeat :
   double stable_dt(const MPMField &field, tagint &tag) const override;
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
+  double energy_at_hand() const override;
 
   MPMConduction &of(const MPMField &) const;
 

@@ -306,7 +306,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     solids = std::make_unique<MPMFlowSolids>(lmp, cells, bits);
   }
   if (transfer == APIC || transfer == AFLIP)
-    state.declare(gradient, "mpm/incompressible:gradient", dim * dim);
+    state.declare(gradient, "mpm/incompressible:gradient", flow_slopes(dim));
 
   time_integrate = 1;
   dynamic_group_allow = 0;
@@ -560,7 +560,7 @@ void FixMPMIncompressible::note_filling()
 void FixMPMIncompressible::fit_gradients()
 {
   if (!gradient) return;
-  const int n = cells.lattice.dim * cells.lattice.dim;
+  const int n = flow_slopes(cells.lattice.dim);
   int mine = 0, any;
   for (int i = 0; i < atom->nlocal && !mine; i++)
     if (cells.is_point(i))

@@ -121,7 +121,7 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowGrains> grains;    // of fix mpm/immersed; null: none
   std::unique_ptr<MPMFlowInflow> inflow;    // of fix mpm/emit; null: none
   std::unique_ptr<MPMFlowSolids> solids;    // null: none
-  MPMRows gradient;                         // [n][dim*dim] dv_c/dx_d of points, with apic
+  MPMRows gradient;    // [n][flow_slopes(dim)] of velocities of points, with apic
   std::vector<int> liquid_bits;
   std::vector<double> lightness,
       face_volumes;               // of faces, see MPMFlowPressure; with several densities

@@ -214,6 +214,17 @@ double MPMConduction::capacity_of(int i) const
   return t ? atom->rmass[i] * t->at(i, room).capacity : 0.0;
 }
 
+double MPMConduction::heat_of_points() const
+{
+  double heat = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    const Thermal *const t = thermal(field.material_of(i));
+    if (t) heat += capacity_of(i) * fabs(t->fix->history[i][t->temperature]);
+  }
+  return heat;
+}
+
 double MPMConduction::crossing_rate() const
 {
   return slowest / (field.lattice.h * field.lattice.h);

@@ -109,6 +109,8 @@ class MPMConduction : protected Pointers {
 
   /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
   double capacity_of(int i) const;
+  /** Capacity times temperature of all points of this rank [energy]. */
+  double heat_of_points() const;
   /** The slowest at which heat crosses a cell [1/time]; that of all fields of a body, if it is one. */
   double crossing_rate() const;
   double slowest_crossing = 0.0;    ///< 0: its own

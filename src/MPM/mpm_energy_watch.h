@@ -100,6 +100,7 @@ class MPMEnergyWatch : protected Pointers {
   Sums sums() const;
   bool strain_follows() const;
   bool is_last_step() const;
+  bool is_round_off(double energy) const;
   void center_start();
   void begin(const Sums &);
   void check();

@@ -52,6 +52,12 @@ template <int dim> struct Places {
   }
 };
 
+/** Powers of the spacing in units of the rows of gradients. */
+template <int dim> double unit_of(int e, double h)
+{
+  return e < dim * dim ? h : h * h;
+}
+
 /** Factor for velocity gradients G [distance/time over a spacing] that are steeper than that in a step of duration dt. */
 template <int dim> double limit_of(const double *G, double inv_h, double dt)
 {
@@ -59,6 +65,7 @@ template <int dim> double limit_of(const double *G, double inv_h, double dt)
   for (int c = 0; c < dim; c++) {
     double sum = 0.0;
     for (int d = 0; d < dim; d++) sum += std::fabs(G[dim * c + d]);
+    if constexpr (dim == 3) sum += std::fabs(G[9 + c]);
     most = std::max(most, sum * inv_h * dt);
   }
   return most > STEEPEST ? STEEPEST / most : 1.0;
@@ -81,12 +88,13 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
       reach.find(cells.grid, block, w.base);
       const double m = points.mass[i], V = points.volume[i];
       const double *const f = points.f[i];
-      double v[dim], G[dim * dim] = {};
+      double v[dim], G[FLOW_SLOPES<dim>] = {};
       for (int c = 0; c < dim; c++) v[c] = points.v[i][c];
       if (points.gradient) {
-        for (int e = 0; e < dim * dim; e++) G[e] = points.gradient[i][e] * h;
+        for (int e = 0; e < FLOW_SLOPES<dim>; e++)
+          G[e] = points.gradient[i][e] * unit_of<dim>(e, h);
         const double limit = limit_of<dim>(G, places.inv_h, points.dt);
-        for (int e = 0; e < dim * dim; e++) G[e] *= limit;
+        for (double &g : G) g *= limit;
       }
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
         double *const to = sums.data() + number * width;
@@ -94,6 +102,10 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
           double value = v[c];
           for (int d = 0; d < dim; d++)
             value += G[dim * c + d] * (d == c ? w.to_face(d, k[d]) : w.to_middle(d, k[d]));
+          if constexpr (dim == 3) {
+            const int d = (c + 1) % 3, e = (c + 2) % 3;
+            value += G[9 + c] * w.to_middle(d, k[d]) * w.to_middle(e, k[e]);
+          }
           const double N = w.face<dim>(c, k);
           to[c] += m * N * value;
           to[dim + c] += m * N;
@@ -141,13 +153,13 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
   }
 }
 
-/** Velocities at a place, and their gradients times the spacing, if asked for. */
+/** Velocities at a place, and their gradients [FLOW_SLOPES] times the spacing (its square), if asked for. */
 template <int dim>
 void interpolate(const MPMFlowReach<dim> &reach, const StaggeredWeights &w, const double *values,
                  double *v, double *G)
 {
   std::fill_n(v, dim, 0.0);
-  if (G) std::fill_n(G, dim * dim, 0.0);
+  if (G) std::fill_n(G, FLOW_SLOPES<dim>, 0.0);
   double slope[3][3];
   for (int d = 0; d < dim; d++) {
     slope[d][0] = w.f[d] - 1.0;
@@ -166,8 +178,26 @@ void interpolate(const MPMFlowReach<dim> &reach, const StaggeredWeights &w, cons
           if (e != d) g *= e == c ? w.spline[e][k[e]] : w.hat[e][k[e]];
         G[dim * c + d] += g * from[c];
       }
+      if constexpr (dim == 3) {
+        const int d = (c + 1) % 3, e = (c + 2) % 3;
+        G[9 + c] += hat_slope[k[d]] * hat_slope[k[e]] * w.spline[c][k[c]] * from[c];
+      }
     }
   });
+}
+
+/** Velocity and gradients, G: [FLOW_SLOPES], at a place that is so far away. */
+template <int dim> void move_in_field(const double *shift, double *v, double *G)
+{
+  for (int c = 0; c < dim; c++) {
+    for (int d = 0; d < dim; d++) v[c] += G[dim * c + d] * shift[d];
+    if constexpr (dim == 3) {
+      const int d = (c + 1) % 3, e = (c + 2) % 3;
+      v[c] += G[9 + c] * shift[d] * shift[e];
+      G[3 * c + d] += G[9 + c] * shift[e];
+      G[3 * c + e] += G[9 + c] * shift[d];
+    }
+  }
 }
 
 template <int dim>
@@ -175,7 +205,6 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
          const MPMFlowUpdate &update, const double *pressure, MPMRows stress)
 {
   const Places<dim> places(cells.lattice);
-  const double inv_h = 1.0 / cells.lattice.h;
   StaggeredWeights w;
   MPMFlowReach<dim> reach;
   bool all_in_reach = true;
@@ -185,7 +214,8 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       double *const x = points.x[i], *const v = points.v[i];
       places.find(x, w);
       reach.find(cells.grid, block, w.base);
-      double now[dim], G[dim * dim], old[dim], more[dim] = {}, G_more[dim * dim];
+      constexpr int NSLOPE = FLOW_SLOPES<dim>;
+      double now[dim], G[NSLOPE], old[dim], more[dim] = {}, G_more[NSLOPE];
       interpolate<dim>(reach, w, velocity, now, points.gradient ? G : nullptr);
       double p = 0.0;
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
@@ -198,7 +228,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
 
       if (update.inflow && update.inflow->carry(x, v, points.dt)) {
-        if (points.gradient) std::fill_n(points.gradient[i], dim * dim, 0.0);
+        if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);
         places.keep_inside(x);
         places.find(x, w);
         all_in_reach = all_in_reach && cells.in_reach(run, w.base);
@@ -212,16 +242,16 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       if (update.more) {
         interpolate<dim>(reach, w, update.more, more, points.gradient ? G_more : nullptr);
         for (int c = 0; c < dim; c++) v[c] += more[c];
-        for (int e = 0; points.gradient && e < dim * dim; e++) G[e] += G_more[e];
+        for (int e = 0; points.gradient && e < NSLOPE; e++) G[e] += G_more[e];
       }
       if (points.gradient)
-        for (int e = 0; e < dim * dim; e++) points.gradient[i][e] = inv_h * G[e];
+        for (int e = 0; e < NSLOPE; e++)
+          points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
 
       double shift[dim] = {};
       if (update.shift && !solid) interpolate<dim>(reach, w, update.shift, shift, nullptr);
       if (update.shift && !solid && points.gradient)
-        for (int c = 0; c < dim; c++)
-          for (int d = 0; d < dim; d++) v[c] += points.gradient[i][dim * c + d] * shift[d];
+        move_in_field<dim>(shift, v, points.gradient[i]);
 
       // The midpoint rule in the field of velocities, where divergences are none. With all of the change once more,
       // velocities are those in the middle of the step where points have been at its start, and paths are straight
@@ -254,13 +284,14 @@ void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, cons
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
   MPMFlowReach<dim> reach;
-  double v[dim], G[dim * dim];
+  double v[dim], G[FLOW_SLOPES<dim>];
   for (const auto &run : cells.runs)
     for (int i = run.first; i < run.last; i++) {
       places.find(points.x[i], w);
       reach.find(cells.grid, cells.grid.blocks[run.slot], w.base);
       interpolate<dim>(reach, w, velocity, v, G);
-      for (int e = 0; e < dim * dim; e++) points.gradient[i][e] = G[e] / cells.lattice.h;
+      for (int e = 0; e < FLOW_SLOPES<dim>; e++)
+        points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
     }
 }
 }    // namespace

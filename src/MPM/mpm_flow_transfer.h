@@ -20,11 +20,20 @@ class MPMFlowInflow;
 class MPMFlowRegions;
 class MPMFlowSolids;
 
+/** Width of the rows of velocity gradients of points: dv_c/dx_d, at dim c + d, and in 3d d2v_c/dx_d dx_e with the two other axes d and e,
+ *  at 9 + c. Hats along these are all that the functions of faces have there, so that points at rest tell the lattice the very
+ *  velocities across c that it has told them; without the products it would lose some of them in each step. */
+template <int dim> constexpr int FLOW_SLOPES = dim *dim + (dim == 3 ? 3 : 0);
+inline int flow_slopes(int dim)
+{
+  return dim == 3 ? FLOW_SLOPES<3> : FLOW_SLOPES<2>;
+}
+
 /** What points and the staggered lattice of a flow tell each other. */
 struct MPMFlowPoints {
   double **x, **v, **f;
   const double *mass, *volume;
-  MPMRows gradient;    ///< [n][dim*dim] dv_c/dx_d, null: none
+  MPMRows gradient;    ///< [n][FLOW_SLOPES], null: none
   double dt;
 };
 
@@ -44,7 +53,7 @@ struct MPMFlowUpdate {
 };
 
 /** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a
- *  face normal to c its mass m N, and m N (v_c + grad v_c . (x_i - x)). Where the gradient is that of get(), momentum and
+ *  face normal to c its mass m N, and m N (v_c + grad v_c . (x_i - x)), and what the product of slopes adds. Where the gradient is that of get(), momentum and
  *  angular momentum of the faces are those of the points, with m g_ce D_e for the latter from their gradients, D_e =
  *  f (1 - f) h^2. */
 void give_to_cells(const MPMFlowLattice &, const MPMFlowPoints &, std::vector<double> &sums);

@@ -121,6 +121,8 @@ class MPMPhysics {
   };
   virtual std::vector<Account> accounts() const { return {}; }
   virtual void account(double * /*values*/) const {}    ///< adds to what is there
+  /** How much the points of this rank have of the energy whose changes are in the accounts, which have the round-off of it [energy]. */
+  virtual double energy_at_hand() const { return 0.0; }
 
  protected:
   ~MPMPhysics() = default;    // owned and deleted as a Fix

@@ -44,7 +44,7 @@ static std::vector<std::array<int, 3>> directions(int dim)
 }
 
 MPMRegionCut::MPMRegionCut(LAMMPS *lmp, Region *region, const double *origin, const double *spacing,
-                           bool axis) :
+                           bool axis, const bigint *first, const bigint *last) :
     Pointers(lmp),
     region(region), axis(axis), neighbors(directions(lmp->domain->dimension))
 {
@@ -53,8 +53,10 @@ MPMRegionCut::MPMRegionCut(LAMMPS *lmp, Region *region, const double *origin, co
   const auto *mesh = dynamic_cast<RegMPMMesh *>(region);
   if (!mesh || domain->dimension == 2 || region->dynamic_check() || mesh->surface_mesh().overlaps)
     return;
+  CellVolumes::Range ranges[3];
+  for (int d = 0; d < 3; d++) ranges[d] = {first[d], last[d]};
   try {
-    volumes = std::make_unique<CellVolumes>(mesh->surface_mesh().soup(), origin, spacing);
+    volumes = std::make_unique<CellVolumes>(mesh->surface_mesh().soup(), origin, spacing, ranges);
   } catch (const std::exception &problem) {
     error->all(FLERR, Error::NOLASTLINE, "Create_points cut, region {}: {}", region->id,
                problem.what());

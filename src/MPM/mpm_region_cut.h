@@ -44,8 +44,9 @@ class MPMRegionCut : protected Pointers {
   /** Parts of less than this share go to a neighbor. */
   static constexpr double LIGHT = 0.1;
 
-  /** axis: what is at negative x is left out. */
-  MPMRegionCut(LAMMPS *, class Region *, const double *origin, const double *spacing, bool axis);
+  /** axis: what is at negative x is left out. first, last [3]: sites that are asked for. */
+  MPMRegionCut(LAMMPS *, class Region *, const double *origin, const double *spacing, bool axis,
+               const bigint *first, const bigint *last);
   ~MPMRegionCut() override;
 
   /** What is in the cell. */

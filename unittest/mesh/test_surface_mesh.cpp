@@ -194,6 +194,13 @@ static std::string message(const std::string &bytes)
   return "";
 }
 
+TEST(SurfaceMesh, ReadsTextInUpperCase)
+{
+  std::string text = text_of(box({0, 0, 0}, {1, 2, 3}));
+  for (auto &c : text) c = (char) toupper(c);
+  EXPECT_NEAR(SurfaceMesh(text, "file.stl", 1.0, {0.0, 0.0, 0.0}).volume, 6.0, 1.0e-12);
+}
+
 TEST(SurfaceMesh, RefusesWhatIsNotClosed)
 {
   Soup open = box({0, 0, 0}, {1, 1, 1});
@@ -210,6 +217,8 @@ TEST(SurfaceMesh, RefusesWhatIsNotClosed)
   std::string cut = binary_of(box({0, 0, 0}, {1, 1, 1}));
   cut.resize(cut.size() - 7);
   EXPECT_THAT(message(cut), HasSubstr("no STL file"));
+  cut.replace(0, 5, "solid");    // as some programs begin the head of a binary file
+  EXPECT_THAT(message(cut), HasSubstr("684 bytes for the 12 triangles of its head, and not 677"));
   EXPECT_THAT(message(text_of({{{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}}})), HasSubstr("no triangles"));
 }
 

@@ -49,11 +49,12 @@ static void range(const Polygon &p, int d, int64_t &first, int64_t &last)
 /* ---------------------------------------------------------------------- */
 
 CellVolumes::CellVolumes(const std::vector<std::array<Point, 3>> &triangles, const double *origin,
-                         const double *size)
+                         const double *size, const Range *ranges)
 {
   constexpr double MOST = 1.0e9;
   std::copy_n(origin, 3, this->origin);
   std::copy_n(size, 3, this->size);
+  std::copy_n(ranges, 3, this->ranges);
   Polygon all, slab, rest, strip, above;
   for (const auto &t : triangles) {
     all.assign(t.begin(), t.end());
@@ -63,6 +64,11 @@ CellVolumes::CellVolumes(const std::vector<std::array<Point, 3>> &triangles, con
         if (!(std::fabs(x[d]) < MOST))
           throw std::runtime_error("the surface has more than 1e9 cells along an axis");
       }
+    for (int d = 1; d < 3; d++) {    // columns that nobody asks for
+      clip(all, d, (double) ranges[d].first, -1.0, rest);
+      clip(rest, d, (double) (ranges[d].last + 1), 1.0, all);
+    }
+    if (all.size() < 3) continue;
     int64_t j, jlast, k, klast;
     for (range(all, 1, j, jlast); j <= jlast; j++) {
       clip(all, 1, (double) (j + 1), 1.0, slab);
@@ -97,12 +103,24 @@ void CellVolumes::add(const Polygon &polygon, int64_t j, int64_t k)
     x[1] -= (double) j;
     x[2] -= (double) k;
   }
+  // what is below the cells that are asked for counts in none of them, and what is above is below no other
+
+  const int64_t above_all = ranges[0].last + 1;
+  clip(rest, 0, (double) ranges[0].first, -1.0, piece);
+  rest.swap(piece);
+  if (rest.size() < 3) return;
   Column &column = columns[key(j, k)];
   int64_t i, ilast;
   for (range(rest, 0, i, ilast); i <= ilast && rest.size() >= 3; i++) {
-    clip(rest, 0, (double) (i + 1), 1.0, piece);
-    clip(rest, 0, (double) (i + 1), -1.0, above);
-    rest.swap(above);
+    if (i >= above_all) {
+      i = above_all;
+      piece.swap(rest);
+      rest.clear();
+    } else {
+      clip(rest, 0, (double) (i + 1), 1.0, piece);
+      clip(rest, 0, (double) (i + 1), -1.0, above);
+      rest.swap(above);
+    }
     if (piece.size() < 3) continue;
     for (auto &x : piece) x[0] -= (double) i;
     auto there = std::find_if(column.begin(), column.end(), [i](const Entry &e) {

@@ -35,10 +35,15 @@ class CellVolumes {
     Point moment = {0.0, 0.0, 0.0};
   };
 
-  /** Cell i has its lower corner at origin + i size. Throws std::runtime_error if the surface has more than 1e9 cells along an
-   *  axis. */
+  /** Cells that are asked for along an axis, the last one included. */
+  struct Range {
+    int64_t first, last;
+  };
+
+  /** Cell i has its lower corner at origin + i size; what is known is that of the cells in the ranges [3], whose number bounds the
+   *  effort, however far the surface reaches. Throws std::runtime_error if that is more than 1e9 cells along an axis. */
   CellVolumes(const std::vector<std::array<Point, 3>> &triangles, const double *origin,
-              const double *size);
+              const double *size, const Range *ranges);
 
   Sums operator()(int64_t i, int64_t j, int64_t k) const;
 
@@ -51,6 +56,7 @@ class CellVolumes {
   using Column = std::vector<Entry>;    // in increasing order of the cells at last
 
   double origin[3], size[3];
+  Range ranges[3];
   std::unordered_map<uint64_t, Column> columns;
 
   static uint64_t key(int64_t j, int64_t k) { return (uint64_t) (uint32_t) j << 32 | (uint32_t) k; }

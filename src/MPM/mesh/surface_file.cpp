@@ -10,6 +10,7 @@
 
 #include "mesh/vector3.h"
 
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -24,6 +25,12 @@ using Point = std::array<double, 3>;
 [[noreturn]] static void fail(const std::string &name, const std::string &what)
 {
   throw std::runtime_error("File " + name + what);
+}
+
+static std::string lower_case(std::string text)
+{
+  for (auto &c : text) c = (char) tolower((unsigned char) c);
+  return text;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -45,19 +52,23 @@ static std::vector<Point> read_stl(const std::string &bytes, const std::string &
       }
     return soup;
   }
-  if (bytes.compare(0, 5, "solid") != 0) {
+  const bool is_text = lower_case(bytes.substr(0, 5)) == "solid";
+  const auto fail_as_binary = [&]() {
     std::ostringstream text;
-    text << " is no STL file: it does not begin with 'solid', and its length is not that of a "
-            "binary one";
+    text << " is no STL file: it "
+         << (is_text ? "begins with 'solid' but has no vertex" : "does not begin with 'solid'")
+         << ", and its length is not that of a binary one";
     if (has_head)
       text << ", which has " << HEAD + EACH * (uint64_t) n << " bytes for the " << n
            << " triangles of its head, and not " << bytes.size();
     fail(name, text.str());
-  }
+  };
+  if (!is_text) fail_as_binary();
   std::istringstream in(bytes);
   std::string word;
   bool ended = false;
   while (in >> word) {
+    word = lower_case(word);
     ended = ended || word == "endsolid";
     if (word != "vertex") continue;
     ended = false;
@@ -66,8 +77,9 @@ static std::vector<Point> read_stl(const std::string &bytes, const std::string &
       fail(name, ": vertex " + std::to_string(soup.size() + 1) + " has no three coordinates");
     soup.push_back(x);
   }
+  if (soup.empty() && !ended) fail_as_binary();
   if (soup.size() % 3 != 0) fail(name, ": the last triangle has no three corners");
-  if (!soup.empty() && !ended) fail(name, " ends without 'endsolid', it may have been cut short");
+  if (!ended) fail(name, " ends without 'endsolid', it may have been cut short");
   return soup;
 }
 
@@ -183,8 +195,7 @@ class ObjReader {
 
 std::vector<Point> MPM_NS::read_surface(const std::string &bytes, const std::string &name)
 {
-  std::string end = name.size() < 4 ? "" : name.substr(name.size() - 4);
-  for (auto &c : end) c = (char) tolower(c);
+  const std::string end = name.size() < 4 ? "" : lower_case(name.substr(name.size() - 4));
   if (bytes.empty()) fail(name, " is empty");
   auto soup = end == ".obj" ? ObjReader(bytes, name).read() : read_stl(bytes, name);
   if (soup.empty()) fail(name, " has no triangles");
