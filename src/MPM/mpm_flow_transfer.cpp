@@ -88,10 +88,10 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
       reach.find(cells.grid, block, w.base);
       const double m = points.mass[i], V = points.volume[i];
       const double *const f = points.f[i];
-      double v[dim], G[FLOW_SLOPES<dim>] = {};
+      double v[dim], G[flow_slopes(dim)] = {};
       for (int c = 0; c < dim; c++) v[c] = points.v[i][c];
       if (points.gradient) {
-        for (int e = 0; e < FLOW_SLOPES<dim>; e++)
+        for (int e = 0; e < flow_slopes(dim); e++)
           G[e] = points.gradient[i][e] * unit_of<dim>(e, h);
         const double limit = limit_of<dim>(G, places.inv_h, points.dt);
         for (double &g : G) g *= limit;
@@ -153,13 +153,13 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
   }
 }
 
-/** Velocities at a place, and their gradients [FLOW_SLOPES] times the spacing (its square), if asked for. */
+/** Velocities at a place, and their gradients [flow_slopes(dim)] times the spacing (its square), if asked for. */
 template <int dim>
 void interpolate(const MPMFlowReach<dim> &reach, const StaggeredWeights &w, const double *values,
                  double *v, double *G)
 {
   std::fill_n(v, dim, 0.0);
-  if (G) std::fill_n(G, FLOW_SLOPES<dim>, 0.0);
+  if (G) std::fill_n(G, flow_slopes(dim), 0.0);
   double slope[3][3];
   for (int d = 0; d < dim; d++) {
     slope[d][0] = w.f[d] - 1.0;
@@ -186,7 +186,7 @@ void interpolate(const MPMFlowReach<dim> &reach, const StaggeredWeights &w, cons
   });
 }
 
-/** Velocity and gradients, G: [FLOW_SLOPES], at a place that is so far away. */
+/** Velocity and gradients, G: [flow_slopes(dim)], at a place that is so far away. */
 template <int dim> void move_in_field(const double *shift, double *v, double *G)
 {
   for (int c = 0; c < dim; c++) {
@@ -214,7 +214,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       double *const x = points.x[i], *const v = points.v[i];
       places.find(x, w);
       reach.find(cells.grid, block, w.base);
-      constexpr int NSLOPE = FLOW_SLOPES<dim>;
+      constexpr int NSLOPE = flow_slopes(dim);
       double now[dim], G[NSLOPE], old[dim], more[dim] = {}, G_more[NSLOPE];
       interpolate<dim>(reach, w, velocity, now, points.gradient ? G : nullptr);
       double p = 0.0;
@@ -284,13 +284,13 @@ void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, cons
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
   MPMFlowReach<dim> reach;
-  double v[dim], G[FLOW_SLOPES<dim>];
+  double v[dim], G[flow_slopes(dim)];
   for (const auto &run : cells.runs)
     for (int i = run.first; i < run.last; i++) {
       places.find(points.x[i], w);
       reach.find(cells.grid, cells.grid.blocks[run.slot], w.base);
       interpolate<dim>(reach, w, velocity, v, G);
-      for (int e = 0; e < FLOW_SLOPES<dim>; e++)
+      for (int e = 0; e < flow_slopes(dim); e++)
         points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
     }
 }

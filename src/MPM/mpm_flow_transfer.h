@@ -23,17 +23,16 @@ class MPMFlowSolids;
 /** Width of the rows of velocity gradients of points: dv_c/dx_d, at dim c + d, and in 3d d2v_c/dx_d dx_e with the two other axes d and e,
  *  at 9 + c. Hats along these are all that the functions of faces have there, so that points at rest tell the lattice the very
  *  velocities across c that it has told them; without the products it would lose some of them in each step. */
-template <int dim> constexpr int FLOW_SLOPES = dim *dim + (dim == 3 ? 3 : 0);
-inline int flow_slopes(int dim)
+constexpr int flow_slopes(int dim)
 {
-  return dim == 3 ? FLOW_SLOPES<3> : FLOW_SLOPES<2>;
+  return dim * dim + (dim == 3 ? 3 : 0);
 }
 
 /** What points and the staggered lattice of a flow tell each other. */
 struct MPMFlowPoints {
   double **x, **v, **f;
   const double *mass, *volume;
-  MPMRows gradient;    ///< [n][FLOW_SLOPES], null: none
+  MPMRows gradient;    ///< [n][flow_slopes(dim)], null: none
   double dt;
 };
 
