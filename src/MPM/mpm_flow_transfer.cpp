@@ -71,6 +71,19 @@ template <int dim> double limit_of(const double *G, double inv_h, double dt)
   return most > STEEPEST ? STEEPEST / most : 1.0;
 }
 
+/** Numbers of the cells that visit() goes to. */
+template <int dim> struct Cells {
+  int64_t at[3][3][3];
+
+  explicit Cells(const MPMFlowReach<dim> &reach)
+  {
+    visit<dim>(reach, [&](int64_t number, const int k[3]) {
+      at[k[0]][k[1]][k[2]] = number;
+    });
+  }
+  int64_t operator()(const int k[3]) const { return at[k[0]][k[1]][k[2]]; }
+};
+
 template <int dim>
 void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<double> &sums)
 {
@@ -86,6 +99,7 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
     for (int i = run.first; i < run.last; i++) {
       places.find(points.x[i], w);
       reach.find(cells.grid, block, w.base);
+      const Cells<dim> near(reach);
       const double m = points.mass[i], V = points.volume[i];
       const double *const f = points.f[i];
       double v[dim], G[flow_slopes(dim)] = {};
@@ -96,22 +110,26 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
         const double limit = limit_of<dim>(G, places.inv_h, points.dt);
         for (double &g : G) g *= limit;
       }
-      visit<dim>(reach, [&](int64_t number, const int k[3]) {
-        double *const to = sums.data() + number * width;
-        for (int c = 0; c < dim; c++) {
-          double value = v[c];
-          for (int d = 0; d < dim; d++)
-            value += G[dim * c + d] * (d == c ? w.to_face(d, k[d]) : w.to_middle(d, k[d]));
-          if constexpr (dim == 3) {
-            const int d = (c + 1) % 3, e = (c + 2) % 3;
-            value += G[9 + c] * w.to_middle(d, k[d]) * w.to_middle(e, k[e]);
+      for (int c = 0; c < dim; c++) {
+        const int d = (c + 1) % dim, e = (c + 2) % 3;
+        int k[3] = {0, 0, 0};
+        for (k[d] = 0; k[d] < 2; k[d]++)
+          for (int ke = 0; ke < (dim == 3 ? 2 : 1); ke++) {
+            double hats = w.hat[d][k[d]], value = v[c] + G[dim * c + d] * w.to_middle(d, k[d]);
+            if constexpr (dim == 3) {
+              k[e] = ke;
+              hats *= w.hat[e][ke];
+              value += (G[3 * c + e] + G[9 + c] * w.to_middle(d, k[d])) * w.to_middle(e, ke);
+            }
+            for (k[c] = 0; k[c] < 3; k[c]++) {
+              double *const to = sums.data() + near(k) * width + c;
+              const double N = hats * w.spline[c][k[c]];
+              to[0] += m * N * (value + G[dim * c + c] * w.to_face(c, k[c]));
+              to[dim] += m * N;
+              to[2 * dim] += N * f[c];
+            }
           }
-          const double N = w.face<dim>(c, k);
-          to[c] += m * N * value;
-          to[dim + c] += m * N;
-          to[2 * dim + c] += N * f[c];
-        }
-      });
+      }
 
       if (V != volume) {
         volume = V;
@@ -153,37 +171,44 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
   }
 }
 
-/** Velocities at a place, and their gradients [flow_slopes(dim)] times the spacing (its square), if asked for. */
+/** Velocities at a place, and their gradients [flow_slopes(dim)] times the spacing (its square), if asked for: those of components c are linear along
+ *  each of the other axes between two layers of faces. */
 template <int dim>
-void interpolate(const MPMFlowReach<dim> &reach, const StaggeredWeights &w, const double *values,
-                 double *v, double *G)
+void interpolate(const Cells<dim> &near, const StaggeredWeights &w, const double *values, double *v,
+                 double *G)
 {
   std::fill_n(v, dim, 0.0);
   if (G) std::fill_n(G, flow_slopes(dim), 0.0);
-  double slope[3][3];
-  for (int d = 0; d < dim; d++) {
-    slope[d][0] = w.f[d] - 1.0;
-    slope[d][1] = 1.0 - 2.0 * w.f[d];
-    slope[d][2] = w.f[d];
-  }
-  constexpr double hat_slope[3] = {-1.0, 1.0, 0.0};
-  visit<dim>(reach, [&](int64_t number, const int k[3]) {
-    const double *const from = values + number * dim;
-    for (int c = 0; c < dim; c++) {
-      v[c] += w.face<dim>(c, k) * from[c];
-      if (!G) continue;
-      for (int d = 0; d < dim; d++) {
-        double g = d == c ? slope[d][k[d]] : hat_slope[k[d]];
-        for (int e = 0; e < dim; e++)
-          if (e != d) g *= e == c ? w.spline[e][k[e]] : w.hat[e][k[e]];
-        G[dim * c + d] += g * from[c];
+  for (int c = 0; c < dim; c++) {
+    const int d = (c + 1) % dim, e = (c + 2) % 3;
+    const double slope[3] = {w.f[c] - 1.0, 1.0 - 2.0 * w.f[c], w.f[c]};
+    int k[3] = {0, 0, 0};
+    const auto at = [&](int kd, int ke) {
+      k[d] = kd;
+      if (dim == 3) k[e] = ke;
+      return values[near(k) * dim + c];
+    };
+    for (k[c] = 0; k[c] < 3; k[c]++) {
+      const double spline = w.spline[c][k[c]];
+      double layer = at(0, 0), along_d = at(1, 0) - layer, along_e = 0.0, both = 0.0;
+      layer += w.f[d] * along_d;
+      if (dim == 3) {
+        const double next = at(0, 1), next_d = at(1, 1) - next;
+        both = next_d - along_d;
+        along_d += w.f[e] * both;
+        along_e = next + w.f[d] * next_d - layer;
+        layer += w.f[e] * along_e;
       }
+      v[c] += spline * layer;
+      if (!G) continue;
+      G[dim * c + c] += slope[k[c]] * layer;
+      G[dim * c + d] += spline * along_d;
       if constexpr (dim == 3) {
-        const int d = (c + 1) % 3, e = (c + 2) % 3;
-        G[9 + c] += hat_slope[k[d]] * hat_slope[k[e]] * w.spline[c][k[c]] * from[c];
+        G[3 * c + e] += spline * along_e;
+        G[9 + c] += spline * both;
       }
     }
-  });
+  }
 }
 
 /** Velocity and gradients, G: [flow_slopes(dim)], at a place that is so far away. */
@@ -214,9 +239,10 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       double *const x = points.x[i], *const v = points.v[i];
       places.find(x, w);
       reach.find(cells.grid, block, w.base);
+      const Cells<dim> near(reach);
       constexpr int NSLOPE = flow_slopes(dim);
       double now[dim], G[NSLOPE], old[dim], more[dim] = {}, G_more[NSLOPE];
-      interpolate<dim>(reach, w, velocity, now, points.gradient ? G : nullptr);
+      interpolate<dim>(near, w, velocity, now, points.gradient ? G : nullptr);
       double p = 0.0;
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
         p += w.cell<dim>(k) * pressure[number];
@@ -235,12 +261,12 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         continue;
       }
       if (update.old) {
-        interpolate<dim>(reach, w, update.old, old, nullptr);
+        interpolate<dim>(near, w, update.old, old, nullptr);
         for (int c = 0; c < dim; c++) v[c] = now[c] + update.flip * (v[c] - old[c]);
       } else
         std::copy_n(now, dim, v);
       if (update.more) {
-        interpolate<dim>(reach, w, update.more, more, points.gradient ? G_more : nullptr);
+        interpolate<dim>(near, w, update.more, more, points.gradient ? G_more : nullptr);
         for (int c = 0; c < dim; c++) v[c] += more[c];
         for (int e = 0; points.gradient && e < NSLOPE; e++) G[e] += G_more[e];
       }
@@ -249,7 +275,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
           points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
 
       double shift[dim] = {};
-      if (update.shift && !solid) interpolate<dim>(reach, w, update.shift, shift, nullptr);
+      if (update.shift && !solid) interpolate<dim>(near, w, update.shift, shift, nullptr);
       if (update.shift && !solid && points.gradient)
         move_in_field<dim>(shift, v, points.gradient[i]);
 
@@ -261,7 +287,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       places.keep_inside(middle);
       places.find(middle, w);
       reach.find(cells.grid, block, w.base);
-      interpolate<dim>(reach, w, velocity, at_middle, nullptr);
+      interpolate<dim>(Cells<dim>(reach), w, velocity, at_middle, nullptr);
       for (int d = 0; d < dim; d++) {
         const double u = at_middle[d] + update.reflect * (now[d] - at_middle[d]) + more[d];
         x[d] += points.dt * u + shift[d];
@@ -289,7 +315,7 @@ void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, cons
     for (int i = run.first; i < run.last; i++) {
       places.find(points.x[i], w);
       reach.find(cells.grid, cells.grid.blocks[run.slot], w.base);
-      interpolate<dim>(reach, w, velocity, v, G);
+      interpolate<dim>(Cells<dim>(reach), w, velocity, v, G);
       for (int e = 0; e < flow_slopes(dim); e++)
         points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
     }
