@@ -211,6 +211,42 @@ SERIAL_TEST(Block, SticksOnAnotherOne)
   }
 }
 
+// a block that slides on another one in 3d: iterations find the direction of friction of each line of nodes, also in short steps, and what sticks, slides, and parts
+SERIAL_TEST(Block, SlidesIn3d)
+{
+  struct Case {
+    const char *scheme, *transfer;
+    double mu, slope;
+  };
+  for (const Case &c : {Case{"newmark", " transfer flip 1.0", 0.1, 0.5},
+                        Case{"newmark", " transfer flip 1.0", 0.6, 1.2},
+                        Case{"euler", "", 0.1, 0.5}, Case{"euler", "", 0.6, 1.2}}) {
+    Scene run("units si\nboundary f f f\natom_style mpm\nregion box block 0 2 0 1 0 1.2\n"
+              "create_box 2 box\nneighbor 0.02 bin\n"
+              "region low block 0.1 1.7 0.1 0.9 0 0.2\nregion up block 0.3 1.1 0.2 0.8 0.2 0.8\n"
+              "group up type 2\ngroup low type 1\n" +
+              strprintf("fix a up mpm 0.1%s\nfix b low mpm 0.1%s\n", c.transfer, c.transfer) +
+              "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix a\n"
+              "group up type 2\ngroup low type 1\n"
+              "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
+              "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n" +
+              strprintf("fix touch all mpm/contact b a law coulomb %g\n", c.mu) +
+              "fix floor all mpm/boundary zlo stick\n" +
+              strprintf("fix g all gravity 10 vector %g 0 -1\n", c.slope) +
+              strprintf("fix solve all mpm/implicit %s parts 1\n", c.scheme) +
+              "timestep 0.01\nrun 3\n");
+    const std::string name = strprintf("%s, friction %g: ", c.scheme, c.mu);
+    EXPECT_LT(measured(name + "iterations in three steps", run.fix("solve")->compute_vector(5)),
+              45.0);
+    // the front of the block bears most where friction is large, and its rear sticks or parts
+    if (c.mu < 0.5) {
+      EXPECT_NEAR(measured(name + "of what slides", touch(run, 0) / -touch(run, 2)), c.mu,
+                  0.02 * c.mu);
+    }
+    EXPECT_NEAR(measured(name + "force across", touch(run, 1) / touch(run, 2)), 0.0, 1e-6);
+  }
+}
+
 // a block that slides on another one comes to rest after v^2/(2 mu g), and friction has its energy
 SERIAL_TEST(Block, SlidesToRest)
 {

@@ -205,6 +205,7 @@ class FixMPMContact :
     double stop[3];             // of rows, impulse at the end of the step
     // of what slides: slip of a on b in the step, its direction in the iteration before, force on a
     double slip[3], way[3], rubs[3];
+    double turns;    // length d by which that direction counts [distance]
   };
 
   struct Account {        // of two bodies, this rank's share
@@ -332,7 +333,7 @@ class FixMPMContact :
   void change_of_way(const Tie &, const double *slip, double *way, double *change) const;
   double wrong_friction(const Tie &, double largest) const;
   void change_friction(Tie &) const;
-  void begin_touch(Tie &, const double *u) const;
+  void begin_touch(Tie &, const double *u, double approach) const;
   void rub(const Tie &, const double *on_a, double *force) const;
   void add_force(const Tie &, const Link &, const double *rows, double *force) const;
   void act_after_trials();
@@ -355,6 +356,7 @@ class FixMPMContact :
   bool touches() const override;
   void find_approach(const double *v, bool with_gaps, double *rows) const override;
   void add_squares(const double *rows, const double *v, double *sums) const override;
+  void add_friction_turn(const double *du, double *dforce) override;
   void push(double factor, const double *rows) override;
 
   // MPMTrialContact

@@ -49,6 +49,8 @@ static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
 static constexpr double TOUCHED = 1.0e-6;    // node spacings: no gap
 static constexpr double TURNS =
     1.0e-2;    // node spacings of slip that turn friction into its direction
+static constexpr double MOST_TURN = 0.5;    // cosine of the angle by which friction turns at once
+static constexpr double SOONER = 0.3;       // of that length, in each iteration
 static constexpr double WRONG =
     1.0e-9;    // of the largest push, a pull that is let go; node spacings
 static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;    // see fix_mpm_contact.cpp
@@ -551,7 +553,8 @@ void FixMPMContact::take_stop()
       w = (s + d w0)/|s + d w0|
 
    where w0 is the direction of the iteration before, or of the force with which it stuck: friction does not jump when a tie begins to slide, and w is that of s
-   in the end. In 2d, w is w0, and friction changes with N alone. N may be negative until it is decided what parts: as long as sets stay, forces have no kinks
+   in the end. As d becomes a small part of s, iterations come to that direction fast, also where steps are short: with the same d, each one would leave d/(d + |s|)
+   of the error. In 2d, w is w0, and friction changes with N alone. N may be negative until it is decided what parts: as long as sets stay, forces have no kinks
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::rubs() const
@@ -573,18 +576,29 @@ void FixMPMContact::find_slip(const Tie &tie, const double *u, double *slip) con
   for (int d = 0; d < 3; d++) slip[d] -= along * tie.n[d];
 }
 
-/** w of tie.slip, a unit vector; returns |s + d w0|. What goes back keeps its direction until it sticks. */
+/** w of tie.slip, a unit vector; returns |s + d w0|, or 0 where it is not that of the slip. What goes back keeps its direction until it sticks. */
 double FixMPMContact::find_way(const Tie &tie, double *way) const
 {
-  const double turns = TURNS * bodies[0].field->lattice.h;
-  for (int d = 0; d < 3; d++) way[d] = tie.slip[d] + turns * tie.way[d];
-  const double length = MathExtra::len3(way);
-  if (bodies[0].field->lattice.dim == 2 || !(MathExtra::dot3(way, tie.way) > 0.5 * length)) {
+  if (bodies[0].field->lattice.dim == 2) {
     MathExtra::copy3(tie.way, way);
     return 0.0;
   }
-  MathExtra::scale3(1.0 / length, way);
-  return length;
+  for (int d = 0; d < 3; d++) way[d] = tie.slip[d] + tie.turns * tie.way[d];
+  const double length = MathExtra::len3(way), ahead = MathExtra::dot3(way, tie.way);
+  if (ahead > MOST_TURN * length) {
+    MathExtra::scale3(1.0 / length, way);
+    return length;
+  }
+  if (ahead > 0.0) {
+    // as far round as one iteration turns
+    const double across = std::sqrt(length * length - ahead * ahead),
+                 sine = std::sqrt(1.0 - MOST_TURN * MOST_TURN);
+    for (int d = 0; d < 3; d++)
+      way[d] = MOST_TURN * tie.way[d] + sine * (way[d] - ahead * tie.way[d]) / across;
+  } else {
+    MathExtra::copy3(tie.way, way);
+  }
+  return 0.0;
 }
 
 /** Adds a force on a, and its reaction. */
@@ -633,11 +647,27 @@ void FixMPMContact::add_friction_change(const double *du, double scale, double *
   }
 }
 
+void FixMPMContact::add_friction_turn(const double *du, double *dforce)
+{
+  for (auto &tie : ties) {
+    if (!slides(tie) || !(tie.force[0] > 0.0)) continue;
+    double slip[3], way[3], turn[3];
+    find_slip(tie, du, slip);
+    change_of_way(tie, slip, way, turn);
+    for (double &t : turn) t *= -kinetic_friction * tie.force[0];
+    rub(tie, turn, dforce);
+  }
+}
+
 void FixMPMContact::correct(const double *)
 {
   for (auto &tie : ties) {
+    if (!slides(tie)) continue;
     double way[3];
-    if (slides(tie) && find_way(tie, way) > 0.0) MathExtra::copy3(way, tie.way);
+    const double length = find_way(tie, way);
+    MathExtra::copy3(way, tie.way);
+    const double slip = MathExtra::len3(tie.slip);
+    if (slip > 0.0 && length > 0.0) tie.turns = SOONER * std::min(tie.turns, slip);
   }
 }
 
@@ -681,12 +711,14 @@ void FixMPMContact::change_friction(Tie &tie) const
     for (int d = 0; d < 3; d++)
       tie.way[d] = tie.force[1] * tie.along[0][d] + tie.force[2] * tie.along[1][d];
     MathExtra::norm3(tie.way);
+    tie.turns = TURNS * bodies[0].field->lattice.h;
   }
   tie.sticks = !tie.sticks;
 }
 
-/** A tie touches from now on. What has slid until then goes on to slide. */
-void FixMPMContact::begin_touch(Tie &tie, const double *u) const
+/** A tie touches from now on, after it has gone into the other body by this. What has slid by more than friction could hold at the same stiffness goes on to slide: if it
+ *  stuck first, its shear forces could pull it off again along an inclined normal, and so on without end. */
+void FixMPMContact::begin_touch(Tie &tie, const double *u, double approach) const
 {
   tie.active = true;
   tie.sticks = has_friction();
@@ -694,8 +726,9 @@ void FixMPMContact::begin_touch(Tie &tie, const double *u) const
   if (!tie.sticks || !can_slide(tie)) return;
   find_slip(tie, u, tie.slip);
   const double length = MathExtra::len3(tie.slip);
-  if (length < TURNS * bodies[0].field->lattice.h) return;
+  if (length < kinetic_friction * approach || length == 0.0) return;
   tie.sticks = false;
+  tie.turns = TURNS * bodies[0].field->lattice.h;
   for (int d = 0; d < 3; d++) tie.way[d] = tie.slip[d] / length;
 }
 
@@ -752,7 +785,7 @@ bool FixMPMContact::decide(const double *u, double unbalanced)
       ties[k].active = false;
       MathExtra::zero3(ties[k].rubs);
     } else {
-      begin_touch(ties[k], u);
+      begin_touch(ties[k], u, wrong[k] * h);
     }
   }
   return changed;

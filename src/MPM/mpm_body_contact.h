@@ -44,6 +44,8 @@ class MPMBodyContact : public MPMTrialContact {
   /** Of rows r that count on this rank: sums[0] r . D^-1 r, with D the diagonal of C P_w M^-1 C^T, and, with v, sums[1] the same of the speeds
    *  at their nodes. */
   virtual void add_squares(const double *rows, const double *v, double *sums) const = 0;
+  /** The part of add_friction_change() that is symmetric: friction turns, and the forces that press stay as they are. */
+  virtual void add_friction_turn(const double *du, double *dforce) = 0;
   /** Impulses of rows, which are summed up, see MPMTrialContact. */
   virtual void push(double factor, const double *rows) = 0;
 

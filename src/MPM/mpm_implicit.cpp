@@ -365,6 +365,13 @@ void MPMImplicit::find_friction(const std::vector<double> &u)
   }
 }
 
+/** Are systems those in which the forces that press stay as they are, so that bodies that slide leave them symmetric? The balance of forces has friction by the
+ *  present ones, to which iterations come as soon as friction changes them by less than they change friction. */
+bool MPMImplicit::holds_bounds() const
+{
+  return tied && now.asymmetry <= SYMMETRIC;
+}
+
 /** u becomes what walls allow that have gone this share of their way. Where that is far, u is left as it is, and held gets the way in
  *  addition: true, on all ranks. */
 bool MPMImplicit::meet_walls(std::vector<double> &u, double share)
@@ -501,7 +508,11 @@ void MPMImplicit::apply(const double *x, double *y)
   for (int64_t n = 0, k = 0; n < (int64_t) mass.size(); n++)
     for (int d = 0; d < width; d++, k++)
       y[k] = mass[n] > 0.0 ? inertia * mass[n] * x[k] - late * part * y[k] : 0.0;
-  if (rubs) {
+  if (rubs && holds_bounds()) {
+    friction.assign(nreals(), 0.0);
+    tied->add_friction_turn(x, friction.data());
+    for (int64_t k = 0; k < nreals(); k++) y[k] -= rub_share * friction[k];
+  } else if (rubs) {
     friction.assign(nreals(), 0.0);
     for (int round = 0; round < ROUNDS; round++) {
       for (int64_t k = 0; k < nreals(); k++) room[k] = friction[k] - y[k];
@@ -828,8 +839,8 @@ SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal
 {
   const auto attempt = [&]() {
     std::fill_n(x, nreals(), 0.0);
-    return now.asymmetry <= SYMMETRIC && !rubs ? solver.solve(*this, b, x, goal)
-                                               : solve_general(b, x, goal);
+    return now.asymmetry <= SYMMETRIC && (!rubs || holds_bounds()) ? solver.solve(*this, b, x, goal)
+                                                                   : solve_general(b, x, goal);
   };
   for (int again = 0; multigrid && again < 2; again++) {
     const bool made = !by_levels;

@@ -276,6 +276,7 @@ class MPMImplicit : private MPMNodeSystem {
   void find_touching();
   void project(double *x);
   void find_friction(const std::vector<double> &u);
+  bool holds_bounds() const;
   bool find_carried();
   void bear_carried();
   bool decide_contact(std::vector<double> &u, double unbalanced);
