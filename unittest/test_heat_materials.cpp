@@ -347,6 +347,55 @@ SERIAL_TEST(Neumann, WaterFreezes)
   EXPECT_LT(error[1], 1.0);
 }
 
+// The same in both directions, with the jump of the conductivity on either side of the temperature of melting: what is partly molten
+// belongs to neither phase. Where the liquid grows it is 12.823 mm thick (a root of Neumann's equation by bisection)
+SERIAL_TEST(Neumann, DoesNotSeeTheSideOfTheJump)
+{
+  const int n = 50;
+  const double h = 0.1 / n, limit = 0.98 * 2.0 / 6.0 * h * h * 1000.0 * 2050.0 / 2.22;
+  for (const bool melts : {false, true}) {
+    double front[2];
+    for (const bool above : {false, true}) {
+      Scene run(
+          plane("si", "f p", strprintf("0 0.1 0 %.17g", 4 * h), 1, 0.1 * h) +
+          body("box",
+               strprintf("density 1000 eos linear 1e-3 thermal conducting 2050 %d 2.22 melt 0 "
+                         "333400 vary CP table 0 1 1e-3 2.0614634146341464 vary thermal.K "
+                         "table %g 1 %g 0.2504504504504505",
+                         melts ? -10 : 10, above ? 0.0 : -1e-3, above ? 1e-3 : 0.0),
+               strprintf("%.17g", h)) +
+          strprintf("fix heat all mpm/heat xlo temperature %d\n", melts ? 20 : -20));
+      Warm warm(run);
+      run_to(run, 3600.0, 0.9 * limit);
+      const int molten = warm.material->find_history("molten");
+      double sum = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double f = warm.material->history[i][molten];
+        sum += (melts ? f : 1.0 - f) / run.n();
+      }
+      front[above] = measured(strprintf("%s, jump %s, front [m]", melts ? "melts" : "freezes",
+                                        above ? "above" : "below"),
+                              0.1 * sum);
+      EXPECT_NEAR(front[above] / (melts ? 0.0128229 : 0.0277650), 1.0, 0.02);
+    }
+    EXPECT_NEAR(front[1] / front[0], 1.0, 2e-3);
+  }
+}
+
+// long steps, at whose end the heat of fusion is taken, are told of
+SERIAL_TEST(Neumann, LongStepsWarn)
+{
+  const int n = 20;
+  for (const double limits : {0.9, 3.0, 5.0})
+    EXPECT_EQ(lines_that_say(bar_of("conducting 1.0 0.1 1.0 melt 0.0 10.0", n,
+                                    "xlo temperature -1.0 stages 20") +
+                                 strprintf("timestep %.17g\nrun 40\n", limits * 0.3267 / (n * n)),
+                             "material melts or freezes")
+                  .size(),
+              limits > 4.0 ? 1u : 0u)
+        << limits;
+}
+
 // plastic work with a specific heat that depends on the temperature, and melting over a range: the same heat
 TEST(Adiabatic, TakesTheSameHeat)
 {

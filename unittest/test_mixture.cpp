@@ -669,6 +669,28 @@ SERIAL_TEST(Plug, SinksAsTheWaterLetsIt)
   }
 }
 
+// Apic slows fast water down in each step, of which a warning tells
+SERIAL_TEST(Plug, SlowedByTheTransferIsTold)
+{
+  const auto told = [](double k, const std::string &options) {
+    Column c;
+    c.h = 0.05;
+    c.height = 1.0;
+    c.soil[0] = 0.4;
+    c.soil[1] = 0.6;
+    c.water[1] = 1.0;
+    c.K = 4.0e6;
+    c.E = 1.0e6;
+    c.drag = strprintf("darcy %.17g", k * 1.0e-3 / (WATER * G));
+    c.options = options;
+    return lines_that_say(c.text() + "fix step all mpm/dt 0.4\nrun 2\n", "slows the water down")
+        .size();
+  };
+  EXPECT_EQ(told(5.0e-2, ""), 1u);
+  EXPECT_EQ(told(5.0e-2, "transfer aflip 1.0"), 0u);
+  EXPECT_EQ(told(1.0e-3, ""), 0u);
+}
+
 // A pond sinks into a dry bed. Behind a front without suction pores are full: n dL/dt = k (H - n L + L)/L with the depth H
 // of the pond at first, and L of the front.
 SERIAL_TEST(Pond, SinksIntoADryBed)

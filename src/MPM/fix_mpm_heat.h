@@ -138,7 +138,9 @@ class FixMPMHeat :
   } waited = {};
   bool each_step = false;    // conduction cannot wait, with every auto
   bool power_known = true;
-  bool leaks_known = false;    // has look_for_leaks() been done?
+  bool leaks_known = false;     // has look_for_leaks() been done?
+  bool fronts_known = false;    // has warn_of_fronts() said what it had to?
+  void warn_of_fronts();
   int source_index = -1;
   std::vector<double> source_values;    // [n] of an atom-style variable
 

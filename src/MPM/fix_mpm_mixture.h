@@ -152,6 +152,8 @@ class FixMPMMixture :
   bool may_meet = false;      // on any rank
   bool meets = false;         // in this step
   double dt_last = 0.0;
+  bool slow_told = false;    // has warn_of_slow_flow() said what it had to?
+  void warn_of_slow_flow();
   double dissipated = 0.0;    // by drag so far, this rank's share
 
   bool stale() const;

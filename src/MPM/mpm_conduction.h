@@ -109,6 +109,8 @@ class MPMConduction : protected Pointers {
 
   /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
   double capacity_of(int i) const;
+  /** Points of this rank are partly molten: a front is on its way. */
+  bool has_front() const;
   /** Capacity times temperature of all points of this rank [energy]. */
   double heat_of_points() const;
   /** The slowest at which heat crosses a cell [1/time]; that of all fields of a body, if it is one. */
@@ -134,6 +136,7 @@ class MPMConduction : protected Pointers {
     const FixMPMMaterial *fix;
     int temperature, molten;    // columns of history
     bool varies;
+    bool jumps;                // its conductivity depends on the temperature, and it melts
     MPM_NS::Conduction all;    // or the mean
     /** Of a point, which may be in the room. */
     const MPM_NS::Conduction &at(int i, MPM_NS::Conduction &room) const
@@ -167,6 +170,12 @@ class MPMConduction : protected Pointers {
   bool simple = false,
        keeps = false;    // are rates those of capacities and volumes; before = value
   bool told_of_orthotropic = false;
+  struct Range {
+    double low, high;
+  };
+  // [n] temperatures of a node spacing around points of materials whose conductivity jumps, from the nodes' in a step to the
+  // points'; empty: there are none
+  std::vector<Range> ranges;
   std::vector<double>
       shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
 
@@ -176,6 +185,8 @@ class MPMConduction : protected Pointers {
   bool is_present(const Thermal &) const;
   void keep_present(const std::vector<signed char> &mine);
   double volume_of(int i) const;
+  const MPM_NS::Conduction &conduction_of(const Thermal &, int i, MPM_NS::Conduction &room) const;
+  void find_ranges();
   void tensor(const Thermal &, int i, double k[3][3]) const;
   bool is_plain() const;
   void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q) const;

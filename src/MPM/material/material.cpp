@@ -14,6 +14,7 @@
 #include "law/heat_curve.h"
 #include "material/elastic_motion.h"
 #include "material/heat.h"
+#include "material/mean_conduction.h"
 #include "material/melting_solid.h"
 #include "material/parts.h"
 #include "material/random_field.h"
@@ -137,6 +138,15 @@ class ComposedMaterial : public Material {
     }
     for (const auto &k : conducting) k.of(c) *= k.factor.at(T);
     if (is_curved()) c.capacity = heat_curve().capacity(T);
+    return c;
+  }
+  /** For mean_conduction(). */
+  bool conductivity_varies() const { return conducts() && !conducting.empty(); }
+  Conduction conduction(const double *history, double low, double high) const
+  {
+    Conduction c = conduction(history);
+    const double T = history[thermal->history];
+    for (const auto &k : conducting) k.of(c) *= k.factor.mean(low, high) / k.factor.at(T);
     return c;
   }
   void warm(double *history, double heat) const override
@@ -1329,6 +1339,17 @@ class ComposedMaterial : public Material {
 double MPM_NS::heat_since_start(const Material &material, const double *history)
 {
   return static_cast<const ComposedMaterial &>(material).heat_of(history);
+}
+
+bool MPM_NS::conductivity_varies_with_temperature(const Material &material)
+{
+  return static_cast<const ComposedMaterial &>(material).conductivity_varies();
+}
+
+Conduction MPM_NS::mean_conduction(const Material &material, const double *history, double low,
+                                   double high)
+{
+  return static_cast<const ComposedMaterial &>(material).conduction(history, low, high);
 }
 
 std::unique_ptr<Material> MPM_NS::compose(const MaterialDefinition &definition,

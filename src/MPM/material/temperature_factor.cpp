@@ -37,3 +37,20 @@ double TemperatureFactor::at(double temperature) const
   const std::size_t k = std::upper_bound(T.begin(), T.end(), t) - T.begin() - 1;
   return factor[k] + (factor[k + 1] - factor[k]) * ((t - T[k]) / (T[k + 1] - T[k]));
 }
+
+double TemperatureFactor::mean(double low, double high) const
+{
+  if (!(high > low)) return at(low);
+  if (!is_table()) return (at(low) + 4.0 * at(0.5 * (low + high)) + at(high)) / 6.0;
+  double sum = 0.0, t = low, f = at(low);
+  const auto add = [&](double next) {
+    const double there = at(next);
+    sum += 0.5 * (f + there) * (next - t);
+    t = next;
+    f = there;
+  };
+  for (const double knot : T)
+    if (knot > low && knot < high) add(knot);
+  add(high);
+  return sum / (high - low);
+}

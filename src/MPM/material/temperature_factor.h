@@ -36,6 +36,8 @@ class TemperatureFactor {
   TemperatureFactor(Formula formula, double c, double reference, double low, double high);
 
   double at(double temperature) const;
+  /** Its mean over these temperatures, low <= high; of a formula by Simpson's rule. */
+  double mean(double low, double high) const;
   bool is_table() const { return !factor.empty(); }
 
   /** Temperatures between which it has no extremes. */

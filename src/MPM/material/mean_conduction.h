@@ -1,0 +1,23 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef MPM_MATERIAL_MEAN_CONDUCTION_H
+#define MPM_MATERIAL_MEAN_CONDUCTION_H
+
+#include "material/material.h"
+
+namespace MPM_NS {
+
+/** Does a conductivity of this material depend on the temperature? */
+bool conductivity_varies_with_temperature(const Material &);
+
+/** As Material::conduction(), but with the means of the conductivities over these temperatures. */
+Conduction mean_conduction(const Material &, const double *history, double low, double high);
+
+}    // namespace MPM_NS
+#endif
