@@ -206,6 +206,32 @@ SERIAL_TEST(Plates, CouetteAndPoiseuille)
   EXPECT_NEAR(measured("Poiseuille", at_half(poiseuille)), 0.615353, 0.004 * 0.615353);
 }
 
+// a film on an inclined floor with explicit viscosity: the layer of points at its surface, whose outer faces viscosity does not act on, flows
+// with the water below it and does not fall freely, wherever the surface is in a cell
+SERIAL_TEST(Film, SurfaceAnywhere)
+{
+  for (const int dim : {2, 3})
+    for (const double H : {0.5, 0.5125, 0.525, 0.5375}) {
+      Scene run(box(dim, "si", dim == 3 ? "p f p" : "p f",
+                    dim == 3 ? "0 0.1 0 0.7 0 0.1" : "0 0.1 0 0.7", 1, 0.02) +
+                strprintf("region w block INF INF 0 %.17g INF INF\n", H) +
+                "create_points 1 region w spacing 0.025 cut yes\n"
+                "fix w all mpm/incompressible 0.05 1 viscosity 1 wall ylo stick\n" +
+                strprintf("fix g all gravity %.17g vector 1 -3 0\n", std::sqrt(10.0)) +
+                "fix dt all mpm/dt 1 every 1 until 1\nrun 100000\n");
+      double sum = 0.0, exact = 0.0, fastest = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        const double y = run.x()[i][1];
+        sum += run.v()[i][0];
+        exact += y * H - 0.5 * y * y;
+        fastest = std::max(fastest, run.v()[i][0]);
+      }
+      const std::string what = strprintf("%dd, depth %g: ", dim, H);
+      EXPECT_NEAR(measured(what + "flow over that of theory", sum / exact), 1.0, 0.025);
+      EXPECT_NEAR(measured(what + "at the surface", fastest / (0.5 * H * H)), 1.0, 0.03);
+    }
+}
+
 /** Mean velocity of points in a square duct of the width 1 with n x n cells, 2 x 2 points in each, after so many steps from rest under the force 1 with the viscosity
  *  1: velocities in the middle of cells obey the difference equation of second order in space and first order in time, with walls half a cell away from
  *  the first ones, and modes are sines. Points have their linear interpolation. */
@@ -597,6 +623,18 @@ SERIAL_TEST(Incompressible, BadInput)
           fix + "0.1 1000",
       "requires material points");
   expect_error(plane("si", "s f", "0 1 0 1", 1, 0.02) + fix + "0.1 1000", "shrink-wrapped");
+}
+
+// what hits a floor flat is several times faster after that step, which fix mpm/dt cannot know before
+SERIAL_TEST(Impact, TellsFraction)
+{
+  const auto scene = plane("si", "f f", "0 3 0 1.5", 1, 0.02) +
+      "region w block 1 2 0.1 1.1 INF INF\ncreate_points 1 region w spacing 0.015625\n"
+      "velocity all set 0 -1 0\nfix w all mpm/incompressible 0.03125 1000\n";
+  expect_error(scene + "fix dt all mpm/dt 1 every 1 until 0.4\nrun 100000\n",
+               "give fix mpm/dt a smaller fraction");
+  Scene run(scene + "fix dt all mpm/dt 0.4 every 1 until 0.15\nrun 100000\n");
+  EXPECT_GT(run.fix("w")->compute_vector(FASTEST), 1.5);
 }
 
 // the velocity of what falls is that of the elapsed time, however long its steps were: of fix mpm/dt, and of runs with others

@@ -844,8 +844,8 @@ void FixMPMIncompressible::add_viscosity(double dt)
   shift.assign(star.size(), 0.0);
   viscous->add(dt * nu, star, shift);
   cells.publish(shift.data(), dim);
-  for (std::size_t k = 0; k < star.size(); k++)
-    star[k] += several ? lightness[k] * shift[k] : shift[k];
+  for (std::size_t k = 0; k < shift.size() && several; k++) shift[k] *= lightness[k];
+  for (std::size_t k = 0; k < star.size(); k++) star[k] += shift[k];
   cells.reflect_velocities(star.data());
 }
 
@@ -897,6 +897,8 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
 void FixMPMIncompressible::go_on_into_air()
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
+  if (viscous)    // what viscosity changes goes on, too: else the layer of points at a surface would fall freely
+    for (std::size_t k = 0; k < star.size(); k++) star[k] -= shift[k];
   for (std::size_t k = 0; k < velocity.size(); k++)
     if (known[k] > 0.0) velocity[k] -= star[k];
   air->extend(AIR_LAYERS, velocity, known);
@@ -969,11 +971,16 @@ void FixMPMIncompressible::check_speed()
     if (neighbor->includegroup && domain->periodicity[d] && gone > 0.25 * domain->prd[d])
       next_reneighbor = update->ntimestep;
   if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * h) return;
+  // what hits a wall flat is several times faster after the step: no limit by the speeds before can see that
+
+  const bool is_set = !modify->get_fix_by_style("^mpm/dt$").empty();
   error->all(FLERR, Error::NOLASTLINE,
              "Fix {} {}: at step {} the velocity {:.6g} is more than {} node spacings in a time "
-             "step; reduce "
-             "it, or let fix mpm/dt set it",
-             style, id, update->ntimestep, all[0], MPMFlowLattice::MOST_MOTION);
+             "step of {:.6g}; {}",
+             style, id, update->ntimestep, all[0], MPMFlowLattice::MOST_MOTION, update->dt,
+             is_set ? "where water hits a wall or water it is several times faster after one step: "
+                      "give fix mpm/dt a smaller fraction, such as 0.4, or a smaller max"
+                    : "reduce it, or let fix mpm/dt set it");
 }
 
 void FixMPMIncompressible::check_density(double of_fluid, const std::string &who) const

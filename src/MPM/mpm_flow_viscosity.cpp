@@ -12,8 +12,13 @@
 
 using namespace LAMMPS_NS;
 
-// nearest place of the surface that forces are made for, in spacings
+// nearest place of the surface that forces across it are made for, in spacings
 static constexpr double NEAREST = 0.25;
+// wet cells of the four around an edge that is in the fluid: where a surface goes from one layer of cells to the next there are three, and
+// without the shear at that edge what is above it would slide freely
+static constexpr int LEAST_AT_EDGE = 3;
+// least height of what shear acts on, in spacings: that of half a cell, as where a surface is in the middle of one
+static constexpr double LEAST_HEIGHT = 0.5;
 
 void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
                            std::vector<double> &sum) const
@@ -33,7 +38,7 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
     };
     // from the middle of a wet cell to a side of it or the surface before that, beyond one half of a spacing
     const auto reach = [&](int offset, int to) {
-      return wet(offset) && !wet(to) ? std::max(NEAREST, water.distance(at[offset], at[to])) : 0.5;
+      return wet(offset) && !wet(to) ? std::max(0.0, water.distance(at[offset], at[to])) : 0.5;
     };
     for (int c = 0; c < dim; c++) {
       if (cell.walls >> 2 * c & 1) continue;
@@ -42,18 +47,22 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
       double normal = 0.0, length = 1.0;
       if (wet(0)) normal += v(c, e) - v(c, 0);
       if (wet(-e)) normal -= v(c, 0) - v(c, -e);
-      if (!wet(0)) length = reach(-e, 0);
-      if (!wet(-e)) length = reach(0, -e);
+      if (!wet(0)) length = std::max(NEAREST, reach(-e, 0));
+      if (!wet(-e)) length = std::max(NEAREST, reach(0, -e));
       double force = 2.0 * normal / length;
       for (int d = 0; d < dim; d++) {
         if (d == c) continue;
         const int n = stride[d];
-        const bool both = wet(0) && wet(-e);
-        double shear = 0.0;
-        if (both && wet(n) && wet(n - e)) shear += v(c, n) - v(c, 0) + v(d, n) - v(d, n - e);
-        if (both && wet(-n) && wet(-n - e)) shear -= v(c, 0) - v(c, -n) + v(d, 0) - v(d, -e);
-        const double height =
-            both ? 0.5 * (reach(0, n) + reach(-e, n - e) + reach(0, -n) + reach(-e, -n - e)) : 1.0;
+        const auto in_fluid = [&](int side) {
+          return wet(0) + wet(-e) + wet(side) + wet(side - e) >= LEAST_AT_EDGE;
+        };
+        double shear = 0.0, height = 0.0;
+        if (in_fluid(n)) shear += v(c, n) - v(c, 0) + v(d, n) - v(d, n - e);
+        if (in_fluid(-n)) shear -= v(c, 0) - v(c, -n) + v(d, 0) - v(d, -e);
+        if (shear == 0.0) continue;
+        for (const int from : {0, -e})
+          if (wet(from)) height += reach(from, from + n) + reach(from, from - n);
+        height = std::max(LEAST_HEIGHT, height / (wet(0) + wet(-e)));
         force += shear / height;
       }
       sum[(int64_t) cell.number * dim + c] += scale * force;

@@ -16,7 +16,7 @@
 namespace LAMMPS_NS {
 
 /** Stress of a viscous fluid, 2 mu times the rate of strain, on a staggered lattice: normal stresses are in the middle of
- *  cells, shear stresses at edges. There is none in dry cells, and at edges that have one around them: a free surface has no
+ *  cells, shear stresses at edges. There is none in dry cells, and at edges with two or more of them around: a free surface has no
  *  traction. What it acts on reaches up to the surface, as for the pressure. */
 class MPMFlowViscosity {
  public:
