@@ -430,12 +430,11 @@ void FixMPMMesh::warn_of_locking()
   });
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   if (all > LOCKS && comm->me == 0)
-    error->warning(
-        FLERR,
-        "Fix mpm/mesh {}: a Poisson ratio of {:.4g}: linear cells lock, and the body is "
-        "too stiff: use quadrangles or hexahedra with one point "
-        "each, or fix mpm with locking",
-        id, all);
+    error->warning(FLERR,
+                   "Fix mpm/mesh {}: a Poisson ratio of {:.4g}: linear cells lock, and the body is "
+                   "too stiff: use quadrangles or hexahedra with one point "
+                   "each, or fix mpm with locking",
+                   id, all);
 }
 
 /* ----------------------------------------------------------------------

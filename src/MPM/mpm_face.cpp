@@ -102,7 +102,7 @@ double MPMFace::stress_share_cut(double depth)
 
 double MPMFace::of_parts(const MPMField &field, int groupbit, const MPMRegionSurface &surface) const
 {
-  constexpr int NBIN = 512;                     // for edges within a factor of 16
+  constexpr int NBIN = 512;                       // for edges within a factor of 16
   constexpr double SAME = 0.005, PARTS = 0.05;    // edges that differ by less are the same
   const int dim = field.lattice.dim;
   struct Found {
