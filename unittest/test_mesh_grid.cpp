@@ -354,3 +354,22 @@ SERIAL_TEST(MeshGrid, BadInput)
   EXPECT_EQ(lines_that_say(good + fix + "transfer apic frame total\nrun 1\n", "gain energy").size(),
             0u);
 }
+
+// Linear cells lock when the material keeps its volume, which is said: but of none that keep it without more, and of no fluids
+SERIAL_TEST(MeshGrid, Locking)
+{
+  const ScratchFile triangles("triangles.msh", tube(TRIANGLES, 4)),
+      quads("quads.msh", tube(QUADS, 4));
+  const auto warnings = [](const ScratchFile &file, const std::string &material, int halve,
+                           const std::string &options = "frame total") {
+    return lines_that_say(scene(2, file.name, material, options, halve) + "timestep 1e-4\nrun 1\n",
+                          "linear cells lock")
+        .size();
+  };
+  EXPECT_EQ(warnings(triangles, "neohookean 1 0.49", 0), 1u);
+  EXPECT_EQ(warnings(quads, "linear 1 0.49", 1), 1u);
+  EXPECT_EQ(warnings(quads, "linear 1 0.49", 1, "frame updated"), 1u);
+  EXPECT_EQ(warnings(quads, "linear 1 0.49", 0), 0u);
+  EXPECT_EQ(warnings(triangles, "linear 1 0.45", 0), 0u);
+  EXPECT_EQ(warnings(triangles, "eos linear 1 viscosity newtonian 0.01", 0, "frame updated"), 0u);
+}

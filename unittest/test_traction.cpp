@@ -85,6 +85,26 @@ TEST(Face, SharesOfLayers)
   }
 }
 
+// The same of a part of a point, which is at its center, and of whole ones below it.
+TEST(Face, SharesOfParts)
+{
+  for (double part = 0.01; part <= 1.1; part += 0.01) {
+    double force = part * MPMFace::force_share_cut(0.5 * part);
+    double place = 0.5 * part * force;
+    for (int j = 0; j < 5; j++) {
+      const double depth = part + 0.5 + j;
+      force += MPMFace::force_share_cut(depth);
+      place += MPMFace::force_share_cut(depth) * depth;
+    }
+    EXPECT_NEAR(force, 1.0, 1e-2 * std::max(0.0, part - 1.0) + 1e-14) << part;
+    EXPECT_LT(std::fabs(place), 0.1) << part;
+  }
+  for (double depth = 0.0; depth < 3.5; depth += 0.01)
+    EXPECT_NEAR(MPMFace::stress_share_cut(depth + 1e-6) - MPMFace::stress_share_cut(depth),
+                -1e-6 * MPMFace::force_share_cut(depth), 1e-11)
+        << depth;
+}
+
 // dead and following loads on the end of a bar, to 0.5 %
 struct Load {
   const char *options;
@@ -209,6 +229,35 @@ SERIAL_TEST(Face, OtherSurfaces)
                "fix load tip mpm/traction points 0.24 2 0 0 traction 0 3 0 pressure -5\nrun 0\n");
   EXPECT_NEAR(tagged.fix_vector("load", 7)[0], 5.0 * 0.24, 1e-12);
   EXPECT_NEAR(tagged.fix_vector("load", 7)[1], 3.0 * 0.24, 1e-12);
+}
+
+// points at the surface that are parts of cells, at any place of a plane: area, resultant, and moment
+SERIAL_TEST(Face, PartsOfCells)
+{
+  for (double part = 0.15; part < 1.1; part += 0.1) {
+    Scene run(space("si", "f f f", "-1 2 -1 2 -1 2", 1, 0.03) +
+              strprintf("region body block 0 0.8 -0.1 %.17g 0.3 0.7\n", 0.5 + 0.05 * part) +
+              "fix grid all mpm 0.1\ncreate_points 1 region body ppc 2 cut yes\n"
+              "fix m all mpm/material density 1 linear 1 0.3\n" +
+              strprintf("region top plane 0 %.17g 0 0 -1 0\n", 0.5 + 0.05 * part) +
+              "fix load all mpm/traction region top traction 0 0 7 pressure 11\n"
+              "fix far all mpm/dashpot region top 2 1\ntimestep 1e-6\nrun 0\n");
+    const double A = 0.32, *const values = run.fix_vector("load", 7);
+    EXPECT_NEAR(values[1], -11.0 * A, 1e-3 * 11.0 * A) << part;
+    EXPECT_NEAR(values[3], A, 1e-3 * A) << part;
+    EXPECT_NEAR(values[4], A * ((0.5 + 0.05 * part) * 7.0 + 0.5 * 11.0), 0.01 * A * 7.0) << part;
+    EXPECT_NEAR(values[6], -A * 0.4 * 11.0, 1e-3 * A * 4.4) << part;
+  }
+  for (const double radius : {0.6, 0.63}) {
+    Scene run(space("si", "f f f", "-1 1 -1 1 -1 1", 1, 0.03) +
+              strprintf("region ball sphere 0 0 0 %g\n", radius) +
+              "fix grid all mpm 0.1\ncreate_points 1 region ball ppc 2 cut yes\n"
+              "fix m all mpm/material density 1 linear 1 0.3\n"
+              "fix load all mpm/traction region ball pressure 3\ntimestep 1e-6\nrun 0\n");
+    const double area = 4.0 * PI * radius * radius;
+    EXPECT_LT(std::fabs(measured("area over exact - 1", run.fix_vector("load", 7)[3] / area - 1.0)),
+              0.02);
+  }
 }
 
 // planes that are inclined to the lattice of points, and what is told where layers are closer together than points

@@ -41,6 +41,9 @@ using namespace MPM_NS;
 
 static constexpr double OUTSIDE = 0.1;
 
+static constexpr double LOCKS =
+    0.48;    // Poisson ratio from which on linear cells are far too stiff
+
 static constexpr int CHECK_EVERY = 10;    // steps between looks at the time step
 
 /* ----------------------------------------------------------------------
@@ -395,6 +398,43 @@ void FixMPMMesh::setup(int)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh requires a positive time step: {}",
                update->dt);
   steps = 0;
+  warn_of_locking();
+}
+
+/* ----------------------------------------------------------------------
+   of cells with one quadrangle or hexahedron a point each, points keep their volume without more; fluids are not asked, as flows of
+   few points in a cell are near to what they should be
+------------------------------------------------------------------------- */
+
+void FixMPMMesh::warn_of_locking()
+{
+  const bool simplices = std::any_of(mesh->cells.begin(), mesh->cells.end(), [this](const auto &c) {
+    return c.nnode == mesh->dim + 1;
+  });
+  if (!simplices && compute_scalar() <= (double) mesh->cells.size()) return;
+  double mine = 0.0, all;
+  auto tangent = std::make_unique<Tangent>();
+  for_batches(order, [&](const int *list, int n, const FixMPMMaterial *material) {
+    if (!material->material->is_solid() || !material->material->has_tangent()) return;
+    load_state(list, n, material);
+    Batch &b = *batch;
+    b.time = elapsed_time(*update);
+    std::copy_n(b.J, n, b.Jold);
+    for (auto &row : b.A) std::fill_n(row, n, 0.0);
+    for (auto *row : {b.heat, b.plastic, b.speed}) std::fill_n(row, n, 0.0);
+    material->material->update_with_tangent(b, *tangent);
+    for (int p = 0; p < n; p++) {
+      const double lambda = tangent->stress[0][4][p], shear = tangent->stress[3][1][p];
+      if (lambda > 0.0 && shear > 0.0) mine = std::max(mine, 0.5 * lambda / (lambda + shear));
+    }
+  });
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (all > LOCKS && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/mesh {}: a Poisson ratio of {:.4g}: linear cells lock, and the body is "
+                   "too stiff: use quadrangles or hexahedra with one point "
+                   "each, or fix mpm with locking",
+                   id, all);
 }
 
 /* ----------------------------------------------------------------------

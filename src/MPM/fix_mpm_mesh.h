@@ -127,6 +127,7 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   MPMMeshBodies bodies();
   FixMPMMaterial *material_of(int i) const;
   void check_points();
+  void warn_of_locking();
   void find_places();
   void find_ranks();
   bool lacks_nodes() const;

@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -73,6 +74,89 @@ double MPMFace::stress_share(double depth)
   return 1.0 - 2.0 * area(1.0) + area(2.0);
 }
 
+/** One down to this depth, and a spacing below it zero. */
+static double down_to(double bottom, double depth)
+{
+  return std::clamp(bottom + 1.0 - depth, 0.0, 1.0);
+}
+
+double MPMFace::force_share_cut(double depth)
+{
+  return (19.0 * down_to(1.0, depth) - 7.0 * down_to(2.0, depth)) / 11.0;
+}
+
+double MPMFace::stress_share_cut(double depth)
+{
+  if (depth < 0.0 || depth > DEEPEST) return 0.0;
+  const auto sum = [depth](double bottom) {    // of the above, from the surface on
+    const double below = std::clamp(depth - bottom, 0.0, 1.0);
+    return std::min(depth, bottom) + below - 0.5 * below * below;
+  };
+  return 1.0 - (19.0 * sum(1.0) - 7.0 * sum(2.0)) / 11.0;
+}
+
+/* ----------------------------------------------------------------------
+   Whole points have all the same volume, or the same over that of a division of their edges (split). The spacing of whole points, if
+   at the surface others have more than a share PARTS of the volume, else 0
+------------------------------------------------------------------------- */
+
+double MPMFace::of_parts(const MPMField &field, int groupbit, const MPMRegionSurface &surface) const
+{
+  constexpr int NBIN = 512;                       // for edges within a factor of 16
+  constexpr double SAME = 0.005, PARTS = 0.05;    // edges that differ by less are the same
+  const int dim = field.lattice.dim;
+  struct Found {
+    double edge, volume, distance;
+  };
+  std::vector<Found> found;
+  double mine = 0.0, longest;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || !field.is_point(i) || field.is_element_node(i)) continue;
+    const double *const x = atom->x[i];
+    if (!is_inside(x)) continue;
+    const double now = atom->vfrac[i] * field.points->jacobian(i) / field.frame->circle(x[0]);
+    const double apart = std::pow(now, 1.0 / dim), far = 1.01 * DEEPEST * apart;
+    const double distance = std::fabs(surface.distance(x, far));
+    if (distance >= DEEPEST * apart) continue;
+    const double stretched =    // around an axis, by as much as the circle
+        field.options.axisymmetric ? field.points->F[i][8] : 1.0;
+    const double edge = std::pow(atom->vfrac[i] * stretched / field.frame->circle(x[0]), 1.0 / dim);
+    found.push_back({edge, now, distance});
+    mine = std::max(mine, edge);
+  }
+  MPI_Allreduce(&mine, &longest, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (!(longest > 0.0)) return 0.0;
+
+  // the edge that most of the volume has
+
+  std::vector<double> bins(2 * NBIN, 0.0), all(2 * NBIN);
+  for (const auto &one : found) {
+    const int bin =
+        std::min(NBIN - 1, (int) (NBIN * std::log(longest / one.edge) / std::log(16.0)));
+    bins[2 * bin] += one.volume;
+    bins[2 * bin + 1] += one.volume * one.edge;
+  }
+  MPI_Allreduce(bins.data(), all.data(), 2 * NBIN, MPI_DOUBLE, MPI_SUM, world);
+  int fullest = 0;
+  for (int bin = 0; bin < NBIN; bin++)
+    if (all[2 * bin] > all[2 * fullest]) fullest = bin;
+  const double whole = all[2 * fullest + 1] / all[2 * fullest];
+
+  double outer[3] = {0.0, 0.0, 0.0}, outer_of_all[3];    // volume: of parts, and all; present edges
+  for (const auto &one : found) {
+    const double n = whole / one.edge;
+    const bool part = std::fabs(n - std::max(1.0, std::round(n))) > SAME * n;
+    if (!part) outer[2] = std::max(outer[2], std::pow(one.volume, 1.0 / dim) / one.edge);
+    if (one.distance > whole) continue;
+    outer[0] += part ? one.volume : 0.0;
+    outer[1] += one.volume;
+  }
+  MPI_Allreduce(outer, outer_of_all, 2, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(outer + 2, outer_of_all + 2, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (!(outer_of_all[0] > PARTS * outer_of_all[1])) return 0.0;
+  return spacing > 0.0 ? spacing : whole * outer_of_all[2];
+}
+
 /** A region with open faces matches all of space. */
 bool MPMFace::is_inside(const double *x) const
 {
@@ -86,31 +170,36 @@ void MPMFace::find(const MPMField &field, int groupbit,
   const int dim = field.lattice.dim;
   const MPMRegionSurface surface(region, dim);
   region->prematch();
+  const double of_whole = of_parts(field, groupbit, surface);
+  const bool parts = of_whole > 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || !field.is_point(i) || field.is_element_node(i)) continue;
     const double *const x = atom->x[i];
     if (!is_inside(x)) continue;
     const double volume = atom->vfrac[i] * field.points->jacobian(i);
-    const double apart = spacing > 0.0 ? spacing
-                                       : std::pow(volume / field.frame->circle(x[0]), 1.0 / dim);
+    const double apart = parts ? of_whole
+        : spacing > 0.0        ? spacing
+                               : std::pow(volume / field.frame->circle(x[0]), 1.0 / dim);
     const double far = 1.01 * DEEPEST * apart, depth = std::fabs(surface.distance(x, far)) / apart;
     if (depth >= DEEPEST) continue;
     Share share;
     surface.normal(x, far, 1.0e-4 * apart, share.normal);
-    share.area = force_share(depth) * volume / apart;
-    share.stress = stress_share(depth);
+    share.area = (parts ? force_share_cut(depth) : force_share(depth)) * volume / apart;
+    share.stress = parts ? stress_share_cut(depth) : stress_share(depth);
     share.depth = depth * apart;
     share.layer = depth;
     // deeper layers of a straight side around an axis are rings of another length: take that at the surface
     const double ring = field.options.axisymmetric
         ? field.frame->circle(x[0] + share.normal[0] * share.depth) / field.frame->circle(x[0])
         : 1.0;
-    share.covered = ring * hat(depth - 1.0) * volume / apart;
+    const double layers[2] = {parts ? down_to(1.0, depth) / 1.5 : hat(depth - 1.0),
+                              parts ? down_to(2.0, depth) / 2.5 : hat(depth - 2.0)};
+    share.covered = ring * layers[0] * volume / apart;
     sums[0] += share.area;
     sums[1] += ring * share.area * depth;
     sums[2] += volume;
     for (int d = 0; d < 3; d++) sums[3 + d] += volume * share.normal[d];
-    for (int k = 0; k < 2; k++) sums[6 + k] += ring * hat(depth - 1 - k) * volume / apart;
+    for (int k = 0; k < 2; k++) sums[6 + k] += ring * layers[k] * volume / apart;
     sums[8] += ring * share.area;
     f(i, share);
   }
