@@ -14,34 +14,54 @@
 
 using namespace MPM_NS;
 
-// nodes along a side of a chunk, as a power of 2, by dimension, and how far chunks reach into the next ones
-static constexpr int CHUNK_BITS[] = {0, 0, 6, 4};
+// a chunk is divided where factors of it would take more operations than this, for one value of a node; halves reach so many nodes into each other
+static constexpr double MOST_OPERATIONS = 3.0e7;
 static constexpr int OVERLAP = 2;
-// chunks do not end at index 0, where bodies often do
-static constexpr int CHUNK_SHIFT = 4;
 
-std::unordered_set<uint64_t> MPM_NS::rim_of(const std::vector<LatticeIndex> &nodes, int dim,
-                                            int reach, const int *period)
+// stiffnesses that differ by more, so near, are those of an interface
+static constexpr double INTERFACE_RATIO = 10.0;
+static constexpr int INTERFACE_REACH = 2;
+
+// no place of a node is as far
+static constexpr int FAR = 1 << 30;
+
+/** Calls f(number of the other one) for the nodes that are up to reach away along an axis, itself among them; -1: there is none. */
+template <class F>
+static void each_along(const LatticeNodes &all, int node, int d, int reach, const int *period,
+                       const F &f)
 {
-  std::unordered_set<uint64_t> inner, rim;
-  for (const auto &index : nodes) inner.insert(lattice_key(index));
-  // along one axis after the other: nodes whose neighbors are all there
-  for (int d = 0; d < dim; d++) {
-    std::unordered_set<uint64_t> next;
-    for (const auto &index : nodes) {
-      bool all = inner.count(lattice_key(index));
-      for (int k = -reach; all && k <= reach; k++) {
-        LatticeIndex at = index;
-        at[d] += k;
-        if (period[d] > 0) at[d] = ((at[d] % period[d]) + period[d]) % period[d];
-        all = inner.count(lattice_key(at));
-      }
-      if (all) next.insert(lattice_key(index));
-    }
-    inner.swap(next);
+  for (int k = -reach; k <= reach; k++) {
+    LatticeIndex at = all.index[node];
+    at[d] += k;
+    if (period[d] > 0) at[d] = ((at[d] % period[d]) + period[d]) % period[d];
+    f(all.find(at));
   }
-  for (const auto &index : nodes)
-    if (!inner.count(lattice_key(index))) rim.insert(lattice_key(index));
+}
+
+std::vector<char> MPM_NS::rim_of(const LatticeNodes &all, const std::vector<double> &stiffness,
+                                 int dim, int reach, const int *period)
+{
+  // along one axis after the other: nodes whose neighbors are all there, and the range of stiffnesses around them
+
+  const int n = all.index.size();
+  std::vector<char> inner(n, 1);
+  auto least = stiffness, most = stiffness;
+  for (int d = 0; d < dim; d++) {
+    const auto inner_before = inner;
+    const auto least_before = least, most_before = most;
+    for (int i = 0; i < n; i++) {
+      each_along(all, i, d, reach, period, [&](int j) {
+        if (j < 0 || !inner_before[j]) inner[i] = 0;
+      });
+      each_along(all, i, d, INTERFACE_REACH, period, [&](int j) {
+        if (j < 0) return;
+        least[i] = std::min(least[i], least_before[j]);
+        most[i] = std::max(most[i], most_before[j]);
+      });
+    }
+  }
+  std::vector<char> rim(n);
+  for (int i = 0; i < n; i++) rim[i] = !inner[i] || most[i] > INTERFACE_RATIO * least[i];
   return rim;
 }
 
@@ -77,22 +97,44 @@ bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &factors, 
 
 /* ---------------------------------------------------------------------- */
 
+/** Half of a chunk with too many operations, and so on. The envelope of a layer is as many nodes as there are in the layer. */
 void RimFactors::start(const std::vector<LatticeIndex> &nodes, int dim, int width_in)
 {
   width = width_in;
+  std::vector<std::vector<int>> parts(1);    // nodes of each
+  for (std::size_t i = 0; i < nodes.size(); i++) parts[0].push_back((int) i);
+  std::vector<std::vector<int>> chunks_of(nodes.size());
+  for (int count = 0; !parts.empty();) {
+    const std::vector<int> part = std::move(parts.back());
+    parts.pop_back();
+    LatticeIndex low{FAR, FAR, FAR}, high{-FAR, -FAR, -FAR};
+    for (const int i : part)
+      for (int d = 0; d < dim; d++) {
+        low[d] = std::min(low[d], nodes[i][d]);
+        high[d] = std::max(high[d], nodes[i][d]);
+      }
+    int along = 0;
+    for (int d = 1; d < dim; d++)
+      if (high[d] - low[d] > high[along] - low[along]) along = d;
+    const int length = high[along] - low[along] + 1;
+    const double layer = (double) part.size() / length;
+    if (part.size() * layer * layer <= MOST_OPERATIONS || length <= 4 * OVERLAP + 2) {
+      for (const int i : part) chunks_of[i].push_back(count);
+      count++;
+      continue;
+    }
+    const int middle = low[along] + length / 2;
+    const int from[] = {low[along], middle - OVERLAP}, to[] = {middle - 1 + OVERLAP, high[along]};
+    for (int half = 0; half < 2; half++) {
+      parts.emplace_back();
+      for (const int i : part)
+        if (nodes[i][along] >= from[half] && nodes[i][along] <= to[half]) parts.back().push_back(i);
+    }
+  }
   first.assign(1, 0);
   chunk.clear();
-  LatticeNodes chunks;
-  for (const auto &index : nodes) {
-    int low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-    for (int d = 0; d < dim; d++) {
-      low[d] = (index[d] + CHUNK_SHIFT - OVERLAP) >> CHUNK_BITS[dim];
-      high[d] = (index[d] + CHUNK_SHIFT + OVERLAP) >> CHUNK_BITS[dim];
-    }
-    for (int i = low[0]; i <= high[0]; i++)
-      for (int j = low[1]; j <= high[1]; j++)
-        for (int k = low[2]; k <= high[2]; k++) chunk.push_back(chunks.add({i, j, k}));
-    std::sort(chunk.begin() + first.back(), chunk.end());
+  for (const auto &of : chunks_of) {    // in ascending order
+    chunk.insert(chunk.end(), of.begin(), of.end());
     first.push_back(chunk.size());
   }
 }

@@ -14,31 +14,30 @@
 
 #include <Eigen/SparseCore>
 
-#include <cstdint>
-#include <unordered_set>
 #include <vector>
 
 namespace MPM_NS {
 
-/** Keys of the nodes at the surface of a body: of those around them, up to reach along each axis, some do not exist.
- *  period: in nodes, 0: none. */
-std::unordered_set<uint64_t> rim_of(const std::vector<LatticeIndex> &nodes, int dim, int reach,
-                                    const int *period);
+/** [node] Is it in the rim: at the surface of a body, as of those around it, up to reach along each axis, some do not exist, or at an
+ *  interface, as stiffnesses (more than zero) around it differ much? period: in nodes, 0: none. */
+std::vector<char> rim_of(const LatticeNodes &, const std::vector<double> &stiffness, int dim,
+                         int reach, const int *period);
 
 /** Factors of a symmetric matrix with a shift of its diagonal: functions that points cannot tell apart, and free bodies, make it
  *  singular, and more than that where a tangent is not positive definite.  Factors are.  False: no shift makes it so, or it is
  *  not finite; the factors are of no use then.  again: entries stand where those of the last matrix were. */
 bool factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &, bool again = false);
 
-/** An approximate inverse for nodes at the surface of a body.
+/** An approximate inverse for nodes at the surface of a body, or of what is much stiffer than what is next to it.
  *
  *  There B-splines have little of the body in their support, and those of a corner are nearly dependent: the blocks of
- *  single nodes are no smoother.  Chunks of the surface, which overlap, are factorized, and their solutions added. */
+ *  single nodes are no smoother.  Chunks of the surface, which overlap, are factorized, and their solutions added.  They are as large as
+ *  factors of them are cheap, and none is much smaller than others: a thin one at an edge would be no smoother either. */
 class RimFactors {
  public:
   /** ranks: which share the work, and all call each function with the same. Null: this one does it. */
   explicit RimFactors(LatticeRanks *ranks = nullptr) : factors(ranks) {}
-  /** Nodes at the surface; width: values of each. */
+  /** Nodes at the surface, the same on all ranks but for their order; width: values of each. */
   void start(const std::vector<LatticeIndex> &nodes, int dim, int width);
   int size() const { return first.empty() ? 0 : first.size() - 1; }
   /** Have two nodes a chunk together? Only then their block of the matrix is wanted. */

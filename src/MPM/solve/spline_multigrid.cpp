@@ -176,7 +176,7 @@ struct SplineMultigrid::Levels {
   bool usable = true;    // all factors are there
   std::vector<double> work[3], rest;
 
-  // nodes at the surface, whose functions are nearly dependent: chunks of them are factorized, on all ranks
+  // nodes at surfaces and interfaces, whose functions are nearly dependent: chunks of them are factorized, on all ranks
   LatticeNodes rim;
   std::vector<int> rim_number;       // [node] in the rim, -1: not in it
   std::vector<int64_t> rim_owned;    // nodes of the rim that this rank owns
@@ -329,23 +329,31 @@ bool SplineMultigrid::begin_again()
 void SplineMultigrid::Levels::find_rim(const double *given)
 {
   const int w = width;
-  const auto exists = [&](int64_t node) {
+  const auto stiffness = [&](int64_t node) {
     double trace = 0.0;
     for (int a = 0; a < w; a++) trace += given[(node * w + a) * w + a];
-    return trace > 0.0;
+    return trace;
+  };
+  const auto exists = [&](int64_t node) {
+    return stiffness(node) > 0.0;
   };
   std::vector<LatticeIndex> owned;
+  std::vector<double> owned_stiffness;
   for (int64_t node = 0; node < grid.nnodes(); node++)
-    if (grid.owns(node) && exists(node)) owned.push_back(index_of(node));
-  const auto everywhere = ranks.gather(owned);
+    if (grid.owns(node) && exists(node)) {
+      owned.push_back(index_of(node));
+      owned_stiffness.push_back(stiffness(node));
+    }
+  LatticeNodes everywhere;
+  for (const auto &index : ranks.gather(owned)) everywhere.add(index);
   rim_number.assign(grid.nnodes(), -1);
-  whole = everywhere.size() * w <= (std::size_t) all;
+  whole = everywhere.index.size() * w <= (std::size_t) all;
   if (whole) return;
   int cells[3] = {0, 0, 0};
   for (int d = 0; d < dim; d++) cells[d] = grid.lattice.periodic[d] ? grid.lattice.ncell[d] : 0;
-  const auto at_surface = rim_of(everywhere, dim, order + 1, cells);
-  for (const auto &index : everywhere)
-    if (at_surface.count(lattice_key(index))) rim.add(index);
+  const auto in_rim = rim_of(everywhere, ranks.gather(owned_stiffness), dim, order + 1, cells);
+  for (std::size_t k = 0; k < in_rim.size(); k++)
+    if (in_rim[k]) rim.add(everywhere.index[k]);
   rim_factors.start(rim.index, dim, width);
   std::vector<int> list;
   for (int64_t node = 0; node < grid.nnodes(); node++) {
@@ -687,12 +695,14 @@ void SplineMultigrid::Levels::coarsen(LatticeNodes level)
 void SplineMultigrid::Levels::smoother_of(Level &level, const LatticeNodes &nodes, const int *cells)
 {
   const int w = width, nnodes = nodes.index.size();
-  const auto at_surface = rim_of(nodes.index, dim, order + 1, cells);
+  std::vector<double> stiffness(nnodes, 0.0);
+  for (int i = 0; i < nnodes * w; i++) stiffness[i / w] += level.A.coeff(i, i);
+  const auto in_rim = rim_of(nodes, stiffness, dim, order + 1, cells);
   std::vector<int> number(nnodes, -1);
   std::vector<LatticeIndex> rim_nodes;
   level.inverse.assign((std::size_t) nnodes * w * w, 0.0);
   for (int node = 0; node < nnodes; node++) {
-    if (at_surface.count(lattice_key(nodes.index[node]))) {
+    if (in_rim[node]) {
       number[node] = rim_nodes.size();
       rim_nodes.push_back(nodes.index[node]);
       for (int a = 0; a < w; a++) level.rim.push_back(node * w + a);
