@@ -610,6 +610,22 @@ SERIAL_TEST(Drag, OfDarcyDependsOnPorosity)
 
 namespace {
 
+/** A plug of soil in the middle of a column of water, of the permeability k [m/s]. */
+Column plug(double k, const std::string &options)
+{
+  Column c;
+  c.h = 0.05;
+  c.height = 1.0;
+  c.soil[0] = 0.4;
+  c.soil[1] = 0.6;
+  c.water[1] = 1.0;
+  c.K = 4.0e6;
+  c.E = 1.0e6;
+  c.drag = strprintf("darcy %.17g", k * 1.0e-3 / (WATER * G));
+  c.options = options;
+  return c;
+}
+
 /** Mean velocity of the soil up to the end, from a time on. */
 double velocity_of_soil(Scene &run, double from, double to)
 {
@@ -643,16 +659,7 @@ SERIAL_TEST(Plug, SinksAsTheWaterLetsIt)
 {
   const double k = 5.0e-3;
   for (const double grains : {GRAINS, 500.0}) {
-    Column c;
-    c.h = 0.05;
-    c.height = 1.0;
-    c.soil[0] = 0.4;
-    c.soil[1] = 0.6;
-    c.water[1] = 1.0;
-    c.K = 4.0e6;
-    c.E = 1.0e6;
-    c.drag = strprintf("darcy %.17g", k * 1.0e-3 / (WATER * G));
-    c.options = "transfer aflip 1.0 smooth 0.5";
+    const Column c = plug(k, "transfer aflip 1.0 smooth 0.5");
     std::string text = replaced(c.text(), strprintf("density %.17g linear", DRY),
                                 strprintf("density %.17g linear", (1.0 - POROSITY) * grains));
     text = replaced(text, strprintf("s w %.17g", GRAINS), strprintf("s w %.17g", grains));
@@ -673,16 +680,7 @@ SERIAL_TEST(Plug, SinksAsTheWaterLetsIt)
 SERIAL_TEST(Plug, SlowedByTheTransferIsTold)
 {
   const auto told = [](double k, const std::string &options) {
-    Column c;
-    c.h = 0.05;
-    c.height = 1.0;
-    c.soil[0] = 0.4;
-    c.soil[1] = 0.6;
-    c.water[1] = 1.0;
-    c.K = 4.0e6;
-    c.E = 1.0e6;
-    c.drag = strprintf("darcy %.17g", k * 1.0e-3 / (WATER * G));
-    c.options = options;
+    const Column c = plug(k, options);
     return lines_that_say(c.text() + "fix step all mpm/dt 0.4\nrun 2\n", "slows the water down")
         .size();
   };

@@ -1056,6 +1056,10 @@ void FixMPMHeat::warn_of_fronts()
   static constexpr double LONG = 4.0;    // explicit limits
   const double limits = dt_last / MPMSuperStep::explicit_limit(fastest);
   if (fronts_known || !(limits > LONG)) return;
+  const bool melts = std::any_of(fields.begin(), fields.end(), [](const auto &field) {
+    return field->conducts() && field->melts();
+  });
+  if (!melts) return;
   int mine = 0, any;
   for (const auto &field : fields) mine |= field->conducts() && field->has_front();
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);

@@ -41,8 +41,8 @@ using namespace MPM_NS;
 
 static constexpr double OUTSIDE = 0.1;
 
-static constexpr double LOCKS =
-    0.48;    // Poisson ratio from which on linear cells are far too stiff
+// Poisson ratio from which on linear cells are far too stiff
+static constexpr double LOCKS = 0.48;
 
 static constexpr int CHECK_EVERY = 10;    // steps between looks at the time step
 

@@ -236,6 +236,13 @@ double MPMConduction::heat_of_points() const
   return heat;
 }
 
+bool MPMConduction::melts() const
+{
+  return std::any_of(thermals.begin(), thermals.end(), [](const Thermal &t) {
+    return t.molten >= 0;
+  });
+}
+
 bool MPMConduction::has_front() const
 {
   for (int i = 0; i < atom->nlocal; i++) {

@@ -109,6 +109,8 @@ class MPMConduction : protected Pointers {
 
   /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
   double capacity_of(int i) const;
+  /** Has it a material that melts? The same on all ranks. */
+  bool melts() const;
   /** Points of this rank are partly molten: a front is on its way. */
   bool has_front() const;
   /** Capacity times temperature of all points of this rank [energy]. */

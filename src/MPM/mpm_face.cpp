@@ -97,13 +97,15 @@ double MPMFace::stress_share_cut(double depth)
 
 /* ----------------------------------------------------------------------
    Whole points have all the same volume, or the same over that of a division of their edges (split). The spacing of whole points, if
-   at the surface others have more than a share PARTS of the volume, else 0
+   at the surface others have more than a share PARTS of the volume, else 0: also where those below it have more than UNLIKE of theirs (relaxed points,
+   elements of a mesh), as their volumes tell nothing of the surface
 ------------------------------------------------------------------------- */
 
 double MPMFace::of_parts(const MPMField &field, int groupbit, const MPMRegionSurface &surface) const
 {
-  constexpr int NBIN = 512;                       // for edges within a factor of 16
-  constexpr double SAME = 0.005, PARTS = 0.05;    // edges that differ by less are the same
+  constexpr int NBIN = 512;         // for edges within a factor of 16
+  constexpr double SAME = 0.005;    // edges that differ by less are the same
+  constexpr double PARTS = 0.05, UNLIKE = 0.2;
   const int dim = field.lattice.dim;
   struct Found {
     double edge, volume, distance;
@@ -142,19 +144,21 @@ double MPMFace::of_parts(const MPMField &field, int groupbit, const MPMRegionSur
     if (all[2 * bin] > all[2 * fullest]) fullest = bin;
   const double whole = all[2 * fullest + 1] / all[2 * fullest];
 
-  double outer[3] = {0.0, 0.0, 0.0}, outer_of_all[3];    // volume: of parts, and all; present edges
+  // volume: of parts, and all, at the surface and below; present edges
+  double volume[4] = {0.0, 0.0, 0.0, 0.0}, volume_of_all[4], present = 0.0, present_of_all;
   for (const auto &one : found) {
     const double n = whole / one.edge;
     const bool part = std::fabs(n - std::max(1.0, std::round(n))) > SAME * n;
-    if (!part) outer[2] = std::max(outer[2], std::pow(one.volume, 1.0 / dim) / one.edge);
-    if (one.distance > whole) continue;
-    outer[0] += part ? one.volume : 0.0;
-    outer[1] += one.volume;
+    if (!part) present = std::max(present, std::pow(one.volume, 1.0 / dim) / one.edge);
+    double *const sum = volume + (one.distance > whole ? 2 : 0);
+    sum[0] += part ? one.volume : 0.0;
+    sum[1] += one.volume;
   }
-  MPI_Allreduce(outer, outer_of_all, 2, MPI_DOUBLE, MPI_SUM, world);
-  MPI_Allreduce(outer + 2, outer_of_all + 2, 1, MPI_DOUBLE, MPI_MAX, world);
-  if (!(outer_of_all[0] > PARTS * outer_of_all[1])) return 0.0;
-  return spacing > 0.0 ? spacing : whole * outer_of_all[2];
+  MPI_Allreduce(volume, volume_of_all, 4, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(&present, &present_of_all, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double *const below = volume_of_all + 2;
+  if (!(volume_of_all[0] > PARTS * volume_of_all[1]) || below[0] > UNLIKE * below[1]) return 0.0;
+  return spacing > 0.0 ? spacing : whole * present_of_all;
 }
 
 /** A region with open faces matches all of space. */
