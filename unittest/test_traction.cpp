@@ -260,19 +260,12 @@ SERIAL_TEST(Face, PartsOfCells)
   }
   // relaxed points are in layers, though their volumes differ a little
   Scene run(plane("si", "f f", "-1 1 -1 1", 1, 0.03) +
-            "region disk sphere 0.013 0.007 0 0.63
-fix grid all mpm 0.1
-"
-            "create_points 1 region disk ppc 2 relax 50
-"
-            "fix m all mpm/material density 1 linear 1 0.3
-"
-            "fix load all mpm/traction region disk pressure 3
-timestep 1e-6
-run 0
-");
-  EXPECT_NEAR(measured("relaxed: area over exact", run.fix_vector("load", 7)[3] / (2.0 * PI * 0.63)),
-              1.0, 0.015);
+            "region disk sphere 0.013 0.007 0 0.63\nfix grid all mpm 0.1\n"
+            "create_points 1 region disk ppc 2 relax 50\n"
+            "fix m all mpm/material density 1 linear 1 0.3\n"
+            "fix load all mpm/traction region disk pressure 3\ntimestep 1e-6\nrun 0\n");
+  const double area = run.fix_vector("load", 7)[3] / (2.0 * PI * 0.63);
+  EXPECT_NEAR(measured("relaxed: area over exact", area), 1.0, 0.015);
 }
 
 // planes that are inclined to the lattice of points, and what is told where layers are closer together than points
