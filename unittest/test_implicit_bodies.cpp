@@ -247,6 +247,27 @@ SERIAL_TEST(Block, SlidesIn3d)
   }
 }
 
+// the same without inertia: a wall holds a block, under which the base is drawn away. What bears the block is its weight, and what holds it is the friction
+// of its interface, whose normals are inclined at its edges
+SERIAL_TEST(Block, IsHeldWhileItsBaseSlidesIn3d)
+{
+  Scene run("units si\nboundary f f f\natom_style mpm\nregion box block 0 1 0 1 0 1\n"
+            "create_box 2 box\nneighbor 0.02 bin\n"
+            "region low block 0.1 0.8 0.1 0.9 0 0.2\nregion up block 0 0.4 0.3 0.7 0.2 0.6\n"
+            "group up type 2\ngroup low type 1\nfix a up mpm 0.1\nfix b low mpm 0.1\n"
+            "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix a\n"
+            "group up type 2\ngroup low type 1\n"
+            "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
+            "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n"
+            "fix touch all mpm/contact b a law coulomb 0.6\n"
+            "fix floor all mpm/boundary zlo stick velocity -0.02 0 0\n"
+            "fix wall all mpm/boundary xlo slip\nfix g all gravity 10 vector 0 0 -1\n"
+            "fix solve all mpm/implicit static parts 1\ntimestep 1\nrun 1\n");
+  EXPECT_NEAR(measured("weight", std::fabs(touch(run, 2))), 640.0, 1e-3);
+  EXPECT_NEAR(measured("friction over mu N", std::fabs(touch(run, 0) / touch(run, 2)) / 0.6), 1.0,
+              0.1);
+}
+
 // a block that slides on another one comes to rest after v^2/(2 mu g), and friction has its energy
 SERIAL_TEST(Block, SlidesToRest)
 {
