@@ -44,6 +44,7 @@ static constexpr double STEEPER = 1.0e-6;    // of normals, by which the axis of
 static constexpr int AROUND =
     2;    // nodes of a line that are looked at beyond those that both bodies reach
 static constexpr double COVERED = 1.0e-3;    // share of the cross-section of a line, least
+static constexpr double SAME = 1.0e-6;       // relative difference of shares that are equal
 // node spacings at which bodies touch as they are if others do, and at which statics tries whether they touch
 static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
 static constexpr double TOUCHED = 1.0e-6;    // node spacings: no gap
@@ -212,17 +213,25 @@ bool FixMPMContact::measure_gap(Tie &tie, int axis, const int *index, int low, i
     covers[k] = std::min(covers[k], 1.0);
     if (covers[k] < COVERED) return false;
   }
-  // from where one body fills most to where the other one does: behind are other surfaces of these
-  const auto fullest = [&](int k) {
-    return std::max_element(shares.begin(), shares.end(), [k](const auto &s, const auto &t) {
-      return s[k] < t[k];
-    });
+  // from where one body fills most to where the other one does: behind are other surfaces of these. Of places that are equally full the nearest ones, as rounding
+  // would choose otherwise on each number of ranks
+  double most[2] = {0.0, 0.0};
+  for (const auto &share : shares)
+    for (int k = 0; k < 2; k++) most[k] = std::max(most[k], share[k]);
+  const int n = (int) shares.size();
+  const auto is_fullest = [&](int i, int k) {
+    return shares[i][k] >= (1.0 - SAME) * most[k];
   };
-  auto from = fullest(0), to = fullest(1);
-  if (to < from) std::swap(from, to);
+  int from = 0, to = n;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      if (is_fullest(i, 0) && is_fullest(j, 1) && std::abs(i - j) < to - from) {
+        from = std::min(i, j);
+        to = std::max(i, j);
+      }
   double missing = 0.0;
-  for (auto share = from; share <= to; ++share)
-    missing += 1.0 - (*share)[0] / covers[0] - (*share)[1] / covers[1];
+  for (int i = from; i <= to; i++)
+    missing += 1.0 - shares[i][0] / covers[0] - shares[i][1] / covers[1];
   gap = h * (slope * missing - (1.0 - full));
   return true;
 }
