@@ -797,6 +797,8 @@ SERIAL_TEST(BadInput, IsRefused)
        {water + soil + "xlo head 1.0", "needs a fix gravity"},
        {water + soil + "xlo pressure v_none", "does not exist"},
        {water + soil + "initial v_none", "does not exist"},
+       {"variable p atom sqrt(-1-x)\n" + water + soil + "initial v_p", "Sqrt of negative"},
+       {"variable p atom exp(800)*exp(800+x)\n" + water + soil + "initial v_p", "at point"},
        {water + soil + "stages 0", "stages"},
        {water + soil + "bodies shut", "must be one of open closed"},
        {water + soil + "bodies closed", "needs a free surface that is open elsewhere"},

@@ -360,6 +360,7 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
     state.declare(warmth, "mpm/pore:temperature", [](int, double *row) {
       row[0] = MPMPore::UNKNOWN;
     });
+  const auto at_first = initial_pressures();    // may end with an error: before there are callbacks
   keep_arrays();
   scalar_flag = vector_flag = 1;
   size_vector = MPMPoreSurface::NPART;
@@ -368,7 +369,8 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
-  set_initial_pressure();
+  for (std::size_t i = 0; i < at_first.size(); i++) pressure[i][0] = at_first[i];
+  if (initial_index >= 0) gradients_known = false;
   for (const auto &soil : soils)
     if (auto *fix = dynamic_cast<FixMPMMaterial *>(modify->get_fix_by_id(soil.material)))
       fix->mass_varies = true;
@@ -385,18 +387,17 @@ FixMPMPore::~FixMPMPore()
    of the points that there are now; a restart file has others
 ------------------------------------------------------------------------- */
 
-void FixMPMPore::set_initial_pressure()
+std::vector<double> FixMPMPore::initial_pressures() const
 {
-  if (initial_index < 0) return;
+  if (initial_index < 0) return {};
   std::vector<double> values(atom->nmax);
   input->variable->compute_atom(initial_index, igroup, values.data(), 1, 0);
-  for (int i = 0; i < atom->nlocal; i++) {
+  values.resize(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; i++)
     if (!std::isfinite(values[i]))
       error->one(FLERR, "Variable {} for fix mpm/pore initial is {} at point {}", initial.substr(2),
                  values[i], atom->tag[i]);
-    pressure[i][0] = values[i];
-  }
-  gradients_known = false;
+  return values;
 }
 
 /* ---------------------------------------------------------------------- */

@@ -177,7 +177,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void init_implicit() const;
   bool can_dry() const;
   bool warms() const;
-  void set_initial_pressure();
+  std::vector<double> initial_pressures() const;
   void weigh_points();
   void evaluate_variables();
   void look_for_leaks();
