@@ -408,6 +408,8 @@ SERIAL_TEST(PML, BadInput)
                   {fix + "xhi 5 thickness 3", "thickness"},
                   {fix + "xlo 3\nfix more all mpm/pml xhi 3", "more than one fix mpm/pml"},
                   {"group some id 1\nfix far some mpm/pml xhi 3", "no point of its group"},
+                  {"fix water all mpm/pore 10 1 1 soil m 0.4 constant 1\n" + fix + "xhi 5",
+                   "use faces further away, or soil without water"},
                   {"unfix m\nunfix grid\n" + fix + "xhi 5", "needs a fix mpm"}},
                  "timestep 0.1\nrun 1\n");
   for (const char *options : {"scheme usf", "scheme usavg", "shape cpdi transfer pic",

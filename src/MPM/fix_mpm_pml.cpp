@@ -119,14 +119,19 @@ void FixMPMPML::init()
 {
   require_field(lmp, *this);
   refuse_second(lmp, *this, "one of them can have layers at all faces");
-  static const char *const OTHERS[] = {"pore", "mixture", "incompressible", "deform", "heat"};
-  for (const char *style : OTHERS)
+  static const struct {
+    const char *style, *remedy;
+  } OTHERS[] = {{"pore", "faces further away, or soil without water"},
+                {"mixture", "faces further away, or soil without water"},
+                {"incompressible", "faces further away"},
+                {"deform", "fix mpm/dashpot, or faces further away"},
+                {"heat", "fix mpm/dashpot, or faces further away"}};
+  for (const auto &[style, remedy] : OTHERS)
     if (!modify->get_fix_by_style(std::string("^mpm/") + style + "$").empty())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/pml {} has layers of one elastic material, and there is a fix mpm/{}: use "
-          "fix mpm/dashpot, or faces further away",
-          id, style);
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/pml {} has layers of one elastic material, and there is a fix mpm/{}: "
+                 "use {}",
+                 id, style, remedy);
   for (int face = 0; face < NFACE; face++)
     if (cells[face] > 0 && domain->periodicity[face / 2])
       error->all(FLERR, Error::NOLASTLINE,
