@@ -90,6 +90,39 @@ SERIAL_TEST(Geostatic, SoilsAndUnits)
   }
 }
 
+// points that go with nodes off the face do not end there, and forces on nodes are then balanced by a stress next to the face that is not
+// the weight above, on any lattice: this is told, and nothing of ground that ends at the face
+SERIAL_TEST(Geostatic, GapsAreTold)
+{
+  for (const int n : {10, 20})
+    for (const double offset : {0.0, 0.1, 0.3, 0.5}) {
+      auto scene = ground(2, n, SOIL, offset);
+      for (const bool after : {false, true}) {
+        if (after) {
+          const std::string points =
+              strprintf("create_points 1 region soil spacing %.17g\n", 0.5 / n);
+          scene = replaced(replaced(scene, points, ""), "fix m all", points + "fix m all");
+        }
+        const auto name = strprintf("%d cells, %g %d", n, offset, after);
+        const bool off = after && offset != 0.0 && offset != 0.5;
+        EXPECT_EQ(
+            lines_that_say(scene + "mpm_geostatic grid 0.4\nrun 0\n", "the ground ends").size(),
+            off ? 1u : 0u)
+            << name;
+        Scene run(scene + "mpm_geostatic grid 0.4\nrun 0\n");
+        double most = 0.0, top = 0.0;
+        for (int i = 0; i < run.n(); i++) top = std::max(top, run.x()[i][1] + 0.25 / n);
+        for (int i = 0; i < run.n(); i++) {
+          double sigma[6];
+          run.points().cauchy(i, sigma);
+          most = std::max(most, std::fabs(sigma[1] / (DENSITY * G) + top - run.x()[i][1]));
+        }
+        measured(name + ": error of the stress over that of the floor", most);
+        if (!off) EXPECT_LT(most, 0.012);
+      }
+    }
+}
+
 // a wall in the ground is removed: the sand behind it moves, what is far away does not
 SERIAL_TEST(Geostatic, PartIsTakenAway)
 {

@@ -60,6 +60,7 @@ MPMGeostatic::MPMGeostatic(LAMMPS *lmp, MPMField &field, const double *gravity,
 {
   find_ground(gravity);
   check_level();
+  warn_of_gap();
 }
 
 double MPMGeostatic::height(int i) const
@@ -147,6 +148,35 @@ void MPMGeostatic::check_level()
         "{} needs level ground that stands on a face of the box: the surface is at most {:.6g} "
         "above that face, but in the mean {:.6g}; let other ground come to rest under its weight",
         who, high, low);
+}
+
+/* ----------------------------------------------------------------------
+   nodes see where the rows of points end: with these off the face, forces on nodes are balanced by a stress next to it that is not the
+   weight above, by a share that does not become less with the spacing
+------------------------------------------------------------------------- */
+
+void MPMGeostatic::warn_of_gap() const
+{
+  constexpr double CLOSE = 0.02, ROW = 0.1;    // in node spacings
+  const double h = field.lattice.h;
+  double mine = 1.0e300, lowest, next;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (field.is_point(i)) mine = std::min(mine, height(i));
+  MPI_Allreduce(&mine, &lowest, 1, MPI_DOUBLE, MPI_MIN, world);
+  mine = 1.0e300;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (field.is_point(i) && height(i) > lowest + 1.0e-3 * h) mine = std::min(mine, height(i));
+  MPI_Allreduce(&mine, &next, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (next > where.top || next - lowest < ROW * h) return;    // points are not in rows
+  const double gap = (lowest - 0.5 * (next - lowest) - where.floor) / h;
+  if (comm->me == 0 && fabs(gap) > CLOSE)
+    error->warning(
+        FLERR,
+        "{}: the ground ends {:.2g} node spacings {} the face of the box on which it stands, where "
+        "its stress "
+        "is not the weight above then, by 10 to 40 % with 0.1 to 0.2: make the points before fix "
+        "mpm, or give this an origin with which they end at the face",
+        who, fabs(gap), gap > 0.0 ? "above" : "below");
 }
 
 /* ---------------------------------------------------------------------- */

@@ -71,6 +71,7 @@ class MPMGeostatic : protected Pointers {
   int parts(int i, Part list[BAND]) const;
   void find_ground(const double *gravity);
   void check_level();
+  void warn_of_gap() const;
   std::vector<double> solve(std::vector<double> &matrix, std::vector<double> right) const;
   void load(const std::vector<int> &list, const FixMPMMaterial *) const;
   void strain(const std::vector<int> &list, const FixMPMMaterial *, int first) const;
