@@ -173,9 +173,8 @@ void MPMGeostatic::warn_of_gap() const
     error->warning(
         FLERR,
         "{}: the ground ends {:.2g} node spacings {} the face of the box on which it stands, where "
-        "its stress "
-        "is not the weight above then, by 10 to 40 % with 0.1 to 0.2: make the points before fix "
-        "mpm, or give this an origin with which they end at the face",
+        "its stress is not the weight above then, by 10 to 40 % with 0.1 to 0.2: make the points "
+        "before fix mpm, or give this an origin with which they end at the face",
         who, fabs(gap), gap > 0.0 ? "above" : "below");
 }
 
