@@ -241,13 +241,15 @@ SERIAL_TEST(Axisymmetric, Tube)
 }
 
 // Friction at a wall below coarse and fine cells: what it takes from the motion warms the body
-SERIAL_TEST(Friction, WarmsAllLattices)
+PARAMETER_TEST(Friction, WarmsAllLattices, const char *, Values("", "every auto"))
 {
   Scene run(plane("lj", "p f", "0 16 0 10", 2, 0.3) +
             lattices(2, "quadratic", "", {"block 0 16 0 6 INF INF", "block 4 10 0 6 INF INF"}) +
             "fix m all mpm/material density 1 linear 100 0.3 thermal conducting 1 0 0.2\n"
             "velocity all set 1 0 0\nfix g all gravity 1 vector 0 -1 0\n"
-            "fix w all mpm/boundary ylo separate friction 0.3 heat yes\nfix heat all mpm/heat\n"
+            "fix w all mpm/boundary ylo separate friction 0.3 heat yes\nfix heat all mpm/heat " +
+            GetParam() +
+            "\n"
             "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.02\nrun 100\n");
   EXPECT_NEAR(measured("heat of points over what came",
                        Warm(run).heat() / run.fix("heat")->compute_scalar()),
@@ -308,7 +310,10 @@ SERIAL_TEST(BadInput, IsRefused)
       {{"fix h all mpm/heat time euler\nrun 0\n", "use time explicit"},
        {"fix h all mpm/heat transfer xpic 2\nrun 0\n", "use relax, affine, or pic"},
        {"fix h all mpm/heat surface flux 1\nrun 0\n", "use conditions on faces of the box"},
-       {"fix h all mpm/heat region l flux 1\nrun 0\n", "use conditions on faces of the box"}});
+       {"fix h all mpm/heat region l flux 1\nrun 0\n", "use conditions on faces of the box"},
+       {"fix w all mpm/boundary ylo separate friction 0.3 heat yes\nfix h all mpm/heat every "
+        "4\nrun 0\n",
+        "use every 1"}});
   // the skin of the body is one coarse cell deep
   const std::string skin = plane("lj", "f f", "0 8 0 8", 2, 0.2) +
       lattices(2, "quadratic", "", {"block 0 8 0 8 INF INF", "block 0 8 0 1 INF INF"}) + solid;

@@ -266,10 +266,6 @@ void FixMPMHeat::init()
         FLERR, Error::NOLASTLINE,
         "Fix mpm/heat: atoms have heat flows, of which material points would know nothing: say "
         "grains yes, or grains no if they exchange none with points");
-  const auto all = find_fixes<MPMRubbing>(lmp);
-  rubs = std::any_of(all.begin(), all.end(), [](const auto *fix) {
-    return fix->gives_heat();
-  });
   find_rubbers();
   warn_of_friction();
   const auto materials = find_fixes<FixMPMMaterial>(lmp);
@@ -436,6 +432,11 @@ void FixMPMHeat::check(MPMHeatCondition &c, const std::string &name)
 
 void FixMPMHeat::init_physics(MPMPlan &plan)
 {
+  // fix mpm comes here before init() of this fix
+  const auto all = find_fixes<MPMRubbing>(lmp);
+  rubs = std::any_of(all.begin(), all.end(), [](const auto *fix) {
+    return fix->gives_heat();
+  });
   fields.clear();
   steps.clear();
   solver.reset();
