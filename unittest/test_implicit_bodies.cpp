@@ -259,6 +259,26 @@ SERIAL_TEST(Block, SlidesIn3d)
   }
 }
 
+// with law stick, lines of nodes at the edges would be pulled while they stick, and go into the other body when they are let go: they slip, in long
+// steps and in statics, where the block is in balance
+SERIAL_TEST(Block, SticksIn3d)
+{
+  for (const char *scheme : {"euler", "static"}) {
+    Scene run(replaced(block_on_base("", 2.0, 0.5, strprintf("%s parts 1", scheme)),
+                       "law coulomb 2", "law stick") +
+              "timestep 0.1\nrun 3\n");
+    const std::string name = strprintf("%s: ", scheme);
+    EXPECT_LT(measured(name + "iterations in three steps", run.fix("solve")->compute_vector(5)),
+              60.0);
+    if (*scheme == 'e') continue;    // still in motion
+    // gravity of 10 m/s^2 is inclined by 1:2
+    const double weight = 0.8 * 0.6 * 0.6 * 1000.0 * 10.0;
+    EXPECT_NEAR(measured(name + "force up", touch(run, 2) / weight), std::sqrt(0.8), 1e-3);
+    EXPECT_NEAR(measured(name + "force along", touch(run, 0) / weight), -std::sqrt(0.2), 1e-3);
+    EXPECT_NEAR(measured(name + "force across", touch(run, 1) / weight), 0.0, 1e-6);
+  }
+}
+
 // the same without inertia: a wall holds a block, under which the base is drawn away. What bears the block is its weight, and what holds it is the friction
 // of its interface, whose normals are inclined at its edges
 SERIAL_TEST(Block, IsHeldWhileItsBaseSlidesIn3d)

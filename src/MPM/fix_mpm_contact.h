@@ -194,7 +194,8 @@ class FixMPMContact :
     bool owned;            // in sums
     Key key;               // of the same tie on all ranks
     bool active;           // it touches
-    bool sticks;           // by friction
+    bool sticks;           // by friction or law stick
+    int parted;            // times in the step that it was let go while it stuck
     double n[3];           // mean normal from a to b
     double along[2][3];    // unit vectors along the interface, or zero
     double gap;            // that is to be closed [distance]
@@ -316,7 +317,7 @@ class FixMPMContact :
   /** Does this row hold? */
   bool acts(const Tie &tie, int row) const
   {
-    return tie.active && tie.diagonal[row] > 0.0 && (row == 0 || law == STICK || tie.sticks);
+    return tie.active && tie.diagonal[row] > 0.0 && (row == 0 || tie.sticks);
   }
   bool slides(const Tie &tie) const
   {

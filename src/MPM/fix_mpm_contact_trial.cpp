@@ -62,6 +62,7 @@ static constexpr double ERRORS =
     10.0;    // of single forces, in the share of all that is not in balance
 static constexpr double ALONG_AXIS = 0.99;    // cosine between a normal and an axis
 static constexpr double HELD = 1.0e-12;       // of what rows would move without walls
+static constexpr int MOST_PARTED = 3;         // of a tie that sticks, before it slips instead
 // times that all is changed, and half of the worst; then, only the worst is
 static constexpr int AT_ONCE = 6, HALF = 18;
 
@@ -438,7 +439,7 @@ void FixMPMContact::begin_trials(MPMField &, double dt, double, double, bool res
   for (auto &tie : ties) {
     if (any && tie.gap <= NEXT_TO * h) tie.gap = 0.0;
     tie.active = any ? tie.gap == 0.0 : rests && tie.gap < NEARBY * h;
-    tie.sticks = has_friction();
+    tie.sticks = law == STICK || has_friction();
   }
 }
 
@@ -725,14 +726,15 @@ void FixMPMContact::change_friction(Tie &tie) const
   tie.sticks = !tie.sticks;
 }
 
-/** A tie touches from now on, after it has gone into the other body by this. What has slid by more than friction could hold at the same stiffness goes on to slide: if it
+/** A tie touches from now on, after it has gone into the other body by this. With law stick, one with an inclined normal may be pulled while it sticks, by the shear
+ *  that it bears, and go into the other body when it is let go, so that neither is a solution: after some times it slips instead. With friction, what has slid by more than friction could hold at the same stiffness goes on to slide: if it
  *  stuck first, its shear forces could pull it off again along an inclined normal, and so on without end. */
 void FixMPMContact::begin_touch(Tie &tie, const double *u, double approach) const
 {
   tie.active = true;
-  tie.sticks = has_friction();
+  tie.sticks = has_friction() || (law == STICK && tie.parted < MOST_PARTED);
   MathExtra::zero3(tie.rubs);
-  if (!tie.sticks || !can_slide(tie)) return;
+  if (!has_friction() || !can_slide(tie)) return;
   find_slip(tie, u, tie.slip);
   const double length = MathExtra::len3(tie.slip);
   if (length < kinetic_friction * approach || length == 0.0) return;
@@ -792,6 +794,7 @@ bool FixMPMContact::decide(const double *u, double unbalanced)
       change_friction(ties[k]);
     } else if (ties[k].active) {
       ties[k].active = false;
+      ties[k].parted += ties[k].sticks;
       MathExtra::zero3(ties[k].rubs);
     } else {
       begin_touch(ties[k], u, wrong[k] * h);
