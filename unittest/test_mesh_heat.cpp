@@ -210,6 +210,7 @@ SERIAL_TEST(MeshHeat, BadInput)
        {fix + "g flux body 1\nrun 1", "is not the side of a cell"},
        {fix + "g flux xlo v_none\nrun 1", "Variable none for fix mpm/mesh/heat h does not exist"},
        {fix + "g convection xlo 1", "convection"},
+       {fix + "g flux xlo 1 flux ylo 1 flux xlo 2", "twice for group xlo: give it once"},
        {fix + "g cooling xlo 1", "cooling"},
        {fix + "g\nfix more all mpm/mesh/heat g\nrun 1", "are of the same fix mpm/mesh"},
        {fix + "g\nunfix g\nfix g all mpm/mesh " + file.name + "\nrun 1", "use frame total"},

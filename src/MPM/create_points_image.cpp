@@ -209,6 +209,25 @@ static void set_types(LAMMPS *lmp, const CreatePointsImageOptions &given, const 
   }
 }
 
+/** What is wrong when no pixel is of a body; else empty. */
+static std::string without_body(const ImageBody &body)
+{
+  const auto &n = body.image.n;
+  const int64_t all = n[0] * n[1] * n[2];
+  double least = body.image.gray(0), most = least;
+  for (int64_t k = 0; k < all; k++) {
+    if (body.type_of(k)) return "";
+    least = std::min(least, body.image.gray(k));
+    most = std::max(most, body.image.gray(k));
+  }
+  if (body.steps.empty()) return "no pixel has one of the colors of the keyword color";
+  return fmt::format(
+      "no pixel is of a body: gray values are {:.8g} to {:.8g}, and the body has {} {:.8g}: "
+      "use another threshold{}",
+      least, most, body.below ? "less than" : "at least", body.steps.front().from,
+      body.below ? "" : ", or invert");
+}
+
 /** Size and place of pixels. */
 static void place(LAMMPS *lmp, const CreatePointsImageOptions &given, const Options &options,
                   ImageBody &body, const char *file)
@@ -282,6 +301,10 @@ std::unique_ptr<ImageBody> LAMMPS_NS::read_image_body(LAMMPS *lmp,
         file);
   place(lmp, given, options, *body, file);
   set_types(lmp, given, options, type, *body);
+  if (mine) message = without_body(*body);
+  broadcast(message, lmp->world);
+  if (!message.empty())
+    error->all(FLERR, Error::NOPOINTER, "Create_points image {}: {}", file, message);
 
   const bool smooth = options.given("smooth");
   if (mine && !smooth) body->crop();

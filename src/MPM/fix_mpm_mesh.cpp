@@ -105,6 +105,23 @@ Options MPMMeshOptions::declare(int dim)
             1, false);
   condition("traction", MPMMeshCondition::TRACTION, dim == 3 ? "tx ty tz" : "tx ty", "pressure",
             "on sides of the mesh, as they are in the file", dim, false);
+  o.refuse([this, dim] {
+    OptionRules rules;
+    const std::pair<MPMMeshCondition::Kind, const char *> kinds[] = {
+        {MPMMeshCondition::VELOCITY, "velocity"},
+        {MPMMeshCondition::SLIP, "slip"},
+        {MPMMeshCondition::PRESSURE, "pressure"},
+        {MPMMeshCondition::TRACTION, "traction"}};
+    for (const auto &[kind, keyword] : kinds) {
+      const std::string group =
+          group_given_twice(conditions, kind, kind == MPMMeshCondition::VELOCITY ? dim : 1);
+      const bool loads = kind == MPMMeshCondition::PRESSURE || kind == MPMMeshCondition::TRACTION;
+      rules.push_back({!group.empty(), keyword,
+                       "is given twice for group " + group +
+                           (loads ? ": give the sum once" : ": give it once")});
+    }
+    return rules;
+  });
   return o;
 }
 

@@ -24,6 +24,7 @@
 #include "fix_mpm_mesh_contact.h"
 #include "math/matrix.h"
 #include "mpm_conduction.h"
+#include "mpm_mesh_conditions.h"
 #include "mpm_mesh_ranks.h"
 #include "mpm_options.h"
 #include "mpm_physics.h"
@@ -76,6 +77,19 @@ Options MPMMeshHeatOptions::declare()
             "energy/(time area temperature), temperature",
             "heat H times the difference to the temperature T outside flows through these sides",
             2);
+  o.refuse([this] {
+    OptionRules rules;
+    const std::pair<MPMMeshHeatCondition::Kind, const char *> kinds[] = {
+        {MPMMeshHeatCondition::TEMPERATURE, "temperature"},
+        {MPMMeshHeatCondition::FLUX, "flux"},
+        {MPMMeshHeatCondition::CONVECTION, "convection"}};
+    for (const auto &[kind, keyword] : kinds) {
+      const std::string group = group_given_twice(conditions, kind);
+      rules.push_back(
+          {!group.empty(), keyword, "is given twice for group " + group + ": give it once"});
+    }
+    return rules;
+  });
   return o;
 }
 

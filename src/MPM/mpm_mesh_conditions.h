@@ -35,6 +35,20 @@ struct MPMMeshCondition {
   MPM_NS::NumberOrVariable value[3];
 };
 
+/** The group for which conditions of this kind are given twice, with one of the first n values in both; else empty. */
+template <class Condition>
+std::string group_given_twice(const std::vector<Condition> &all, int kind, int n = 1)
+{
+  for (std::size_t k = 0; k < all.size(); k++)
+    for (std::size_t j = 0; j < k; j++) {
+      if (all[j].kind != kind || all[k].kind != kind || all[j].group != all[k].group) continue;
+      bool same = false;
+      for (int d = 0; d < n; d++) same = same || (all[j].value[d].given && all[k].value[d].given);
+      if (same) return all[k].group;
+    }
+  return "";
+}
+
 /** Conditions on nodes and loads on sides of a mesh. */
 class MPMMeshForces : protected Pointers {
  public:

@@ -117,6 +117,7 @@ TEST(Mesh, Format41)
 TEST(Mesh, Refused)
 {
   EXPECT_THAT(failure("solid cube\n"), HasSubstr("not a mesh file of Gmsh"));
+  EXPECT_THAT(failure("solid cube\n"), HasSubstr("Abaqus"));
   EXPECT_THAT(failure("$MeshFormat\n4 0 8\n$EndMeshFormat\n"), HasSubstr("2.2 or 4.1"));
   EXPECT_THAT(failure("$MeshFormat\n2.2 1 8\n"), HasSubstr("binary"));
   EXPECT_THAT(failure(FORMAT_2 + "$Nodes\n2\n1 0 0 0\n1 0 0 1\n"), HasSubstr("test.msh:7: node 1"));

@@ -314,7 +314,9 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
   std::string word;
 
   if (!in.next(word) || word != "$MeshFormat")
-    in.fail("this is not a mesh file of Gmsh, which begins with $MeshFormat");
+    in.fail("this is not a mesh file of Gmsh, which begins with $MeshFormat, nor one of VTK "
+            "(legacy, # vtk "
+            "DataFile) or Abaqus (*)");
   in.next(word);
   const bool old = word == "2.2" || word == "2";
   if (!old && word != "4.1")
