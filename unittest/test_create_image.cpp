@@ -654,6 +654,8 @@ PARAMETER_TEST(
           "needs keyword threshold"},
          {"Empty", "1 image GRAY pixel 0.1 threshold 1000",
           "no pixel is of a body: gray values are .* to .*at least 1000: use another threshold"},
+         {"EmptyInverted", "1 image GRAY pixel 0.1 threshold 0 invert yes",
+          "no pixel is of a body: gray values are .* the body has less than 0: use another"},
          {"Outside", "1 image GRAY pixel 0.2", "image reaches beyond the simulation box"},
          {"TinyPixel", "1 image GRAY pixel 1e-30 origin 1 1", "cannot be told apart"},
          {"Region", "1 image GRAY pixel 0.1 in nowhere", "region nowhere does not exist"},

@@ -258,7 +258,7 @@ void FixMPMContact::init()
   look = true;
   steps = 0;
   unsolved.begin();
-  told_of_water = false;
+  told_of_water = told_of_torn = false;
   std::fill_n(water_sums, 2, 0.0);
 }
 

@@ -255,6 +255,7 @@ class FixMPMContact :
   double of_forces = 1.0;    // of their impulse in a step, what the momentum changes by
   bool closes = false;
   int rounds = 0;    // of decisions in this step
+  bool told_of_torn = false;
   double shared_at_start =
       0.0;    // largest share of the volume of a node that two bodies overlap at, see check_overlap()
 
@@ -328,6 +329,7 @@ class FixMPMContact :
     return row == 0 ? link.n : tie.along[row - 1];
   }
   void find_ties();
+  void warn_of_torn();
   void check_overlap();
   void find_slip(const Tie &, const double *u, double *slip) const;
   double find_way(const Tie &, double *way) const;

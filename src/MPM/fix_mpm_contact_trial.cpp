@@ -32,6 +32,7 @@
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_options.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -803,12 +804,35 @@ bool FixMPMContact::decide(const double *u, double unbalanced)
   return changed;
 }
 
+/** Lines that slip with law stick, once in a run. Collective. */
+void FixMPMContact::warn_of_torn()
+{
+  if (law != STICK || told_of_torn) return;
+  bigint mine[2] = {0, 0}, all[2];
+  for (const auto &tie : ties) {
+    if (!tie.owned || !tie.active) continue;
+    mine[0]++;
+    mine[1] += !tie.sticks;
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[1] == 0) return;
+  told_of_torn = true;
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/contact {} law stick: {} of {} lines of nodes between bodies slip in step {}: "
+        "they would be pulled while they stick, and go into the other body when they "
+        "are let go, as lines with inclined normals at edges may; this is said only once in a run",
+        id, all[1], all[0], update->ntimestep);
+}
+
 /* ----------------------------------------------------------------------
    Nodes have what they need besides the forces of contact, and walls, which act after this
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::act_after_trials()
 {
+  warn_of_torn();
   const int dim = bodies[0].field->lattice.dim;
   std::vector<Velocities> before(nodes.size());
   for (std::size_t n = 0; n < nodes.size(); n++)
