@@ -5,7 +5,8 @@
 # sanitize: no
 """All C++ files are as clang-format 14 writes them with .clang-format. Other versions of the program
 break lines differently, so that the test is left out where there is no version 14. Messages have the types of what
-they carry with any size of IDs."""
+they carry with any size of IDs. Files include the headers of LAMMPS's classes that they use: what another header
+brings along is not the same in all versions of LAMMPS."""
 
 import glob
 import os
@@ -42,6 +43,29 @@ def test_ids_have_their_own_mpi_types():
              for line in open(path)
              if re.search(r"MPI_INT[^0-9_].*(tag|image)|(tagint|imageint|bigint).*MPI_INT[^0-9_]", line)]
     assert not wrong, "".join(wrong)
+
+
+def all_includes(name, texts, found):
+    """Headers that a file of the package includes, itself or through headers of the package."""
+    for header in re.findall(r'^#include "(\S+\.h)"', texts[name], re.M):
+        if header not in found:
+            found.add(header)
+            if header in texts:
+                all_includes(header, texts, found)
+    return found
+
+
+def test_classes_of_lammps_are_included():
+    texts = {os.path.basename(path): open(path).read()
+             for path in glob.glob(os.path.join(mt.ROOT, "src", "MPM", "*.[hc]*"))}
+    classes = ("atom", "comm", "domain", "error", "force", "group", "input", "memory", "modify", "neighbor",
+               "output", "update")
+    missing = [name + " uses " + used + ", but does not include " + used + ".h"
+               for name in sorted(texts) if name.endswith(".cpp")
+               for included in [all_includes(name, texts, set())]
+               for used in classes
+               if re.search(r"\b" + used + "->", texts[name]) and used + ".h" not in included]
+    assert texts and not missing, "\n".join(missing)
 
 
 mt.main(globals())

@@ -27,6 +27,7 @@
 
 #include "fix_mpm_contact.h"
 
+#include "comm.h"
 #include "error.h"
 #include "math_extra.h"
 #include "mpm_field.h"
