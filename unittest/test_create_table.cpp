@@ -80,6 +80,27 @@ TEST(Dump, CompressedAndInPieces)
       1e-11);
 }
 
+// points that have left the box since the last neighbor list, and are put back into it, keep the places that they have without periods
+TEST(Dump, PointsOnTheirWayThroughAPeriodicFace)
+{
+  const ScratchFile file("state.vtp");
+  const std::string scene = plane("si", "p f", "0 1 0 1") + "neighbor 0.5 bin\n" +
+      "fix grid all mpm 0.1 transfer flip 1.0\n"
+      "fix m all mpm/material density 1000 neohookean 1e6 0.3\ntimestep 1e-3\n";
+  Scene whole(scene +
+              "region b block 0.6 0.9 0.3 0.6 -0.3 0.2\ncreate_points 1 region b ppc 2\n"
+              "velocity all set 4 0 NULL\nrun 60\nwrite_dump all mpm/vtk " +
+              file.name + " velocity stress F mass volume0 image\n");
+  double outside = 0.0;
+  for (int i = 0; i < whole.lmp->atom->nlocal; i++) outside += whole.lmp->atom->x[i][0] >= 1.0;
+  EXPECT_GT(over_ranks(outside), 0.0);
+  Scene again(scene + "reset_timestep 60 time 0.06\ncreate_points 1 table " + file.name + "\n");
+  EXPECT_LT(difference(whole.gather(), again.gather(), 1e3), 1e-13);
+  whole.commands("run 20\n");
+  again.commands("run 20\n");
+  EXPECT_LT(difference(whole.gather(), again.gather(), 1e3), 1e-11);
+}
+
 // in single precision the state is that of six digits
 TEST(Dump, SinglePrecision)
 {

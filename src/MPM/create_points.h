@@ -89,9 +89,10 @@ class CreatePoints : public Command, private CreatePointsOptions {
   ~CreatePoints() override;
   void command(int, char **) override;
 
- private:
   static constexpr imageint NO_IMAGE =
       ((imageint) IMGMAX << IMG2BITS) | ((imageint) IMGMAX << IMGBITS) | IMGMAX;
+
+ private:
   struct Site {    // a point to be made
     double x[3];
     double volume;

@@ -50,7 +50,7 @@ void CreatePointsImageOptions::add_to(Options &o, int dim)
   std::vector<OptionValue> words = {
       text(axes[0], "C", "axis of the box that columns go along: x, y, z, -x, -y, or -z"),
       text(axes[1], "R", "the same of rows, from the first one of the file on")};
-  if (dim == 3) words.push_back(text(axes[2], "S", "the same of slices"));
+  if (dim == 3) words.push_back(text(axes[2], "S", "the same of slices, in 3d only"));
   o.add("axes", words).standard("x -y z for pictures and x y z for NRRD and raw");
   o.add("threshold",
         {number(threshold, "T", ANY_NUMBER, "", "what has at least this gray value is the body")})

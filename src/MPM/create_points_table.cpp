@@ -262,7 +262,11 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
         fail(
             fmt::format("row {} has {} = {:.8g}, which {}", row + 1, table.names[c], at(c), wrong));
     }
-    Point point = {{0.0, 0.0, 0.0}, given.volume, id_column < 0 ? 0 : (bigint) at(id_column), mine};
+    Point point = {{0.0, 0.0, 0.0},
+                   given.volume,
+                   id_column < 0 ? 0 : (bigint) at(id_column),
+                   mine,
+                   CreatePoints::NO_IMAGE};
     for (int d = 0; d < dim; d++) point.x[d] = given.move[d] + given.scale * at(place[d]);
     double J = 1.0;
     if (nF) {
@@ -302,7 +306,7 @@ void CreatePointsTable::check_points(const std::string &file)
           inside && point.x[d] >= domain->boxlo[d] - reach && point.x[d] < domain->boxhi[d] + reach;
     }
     if (inside)
-      domain->remap(point.x);
+      domain->remap(point.x, point.image);
     else
       outside++;
   }
@@ -364,6 +368,7 @@ bigint CreatePoints::make_table_points()
     if (first == 0 && some[0].tag == 0) check_tags(maxtag, n);
     for (int k = 0; k < count; k++) {
       Site site = {{some[k].x[0], some[k].x[1], some[k].x[2]}, some[k].volume, 0, some[k].type};
+      site.image = some[k].image;
       if (atom->tag_enable)
         site.tag = some[k].tag ? (tagint) some[k].tag : (tagint) (maxtag + first + k + 1);
       same += taken.count(site.tag);

@@ -58,6 +58,7 @@ class CreatePointsTable : protected Pointers {
     double volume;    ///< initial
     bigint tag;       ///< of the file, 0: a new one
     int type;
+    imageint image;    ///< where the file has the point, from where it is in the box
   };
   MPMPointColumns columns;
   bigint npoint = 0;    ///< of all ranks

@@ -246,10 +246,16 @@ void MPMPointColumns::set_one(MPMPoints &points, const std::vector<FixMPMMateria
     const double J = points.jacobian(i);
     for (int k = 0; k < 6; k++) points.tau[i][k] = J * sigma[k];
   }
-  if (has_image)
+  if (has_image) {
+    // the place of the file may have been outside of the box, as between two neighbor lists, and was wrapped
+    const imageint wrapped = atom->image[i];
+    image[0] += (int) (wrapped & IMGMASK) - IMGMAX;
+    image[1] += (int) (wrapped >> IMGBITS & IMGMASK) - IMGMAX;
+    image[2] += (int) (wrapped >> IMG2BITS) - IMGMAX;
     atom->image[i] = ((imageint) (image[0] + IMGMAX) & IMGMASK) |
         (((imageint) (image[1] + IMGMAX) & IMGMASK) << IMGBITS) |
         (((imageint) (image[2] + IMGMAX) & IMGMASK) << IMG2BITS);
+  }
 }
 
 /* ---------------------------------------------------------------------- */
