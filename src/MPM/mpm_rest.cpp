@@ -8,6 +8,7 @@
 
 #include "mpm_rest.h"
 
+#include "fix_mpm_elements.h"
 #include "mpm_affine.h"
 #include "mpm_field.h"
 #include "transfer/kernels.h"
@@ -29,7 +30,10 @@ void LAMMPS_NS::put_to_rest(MPMField &field, double taken[2])
             nQ = field.affine && field.affine->Q ? MPM_NS::poly_size(field.lattice.dim) : 0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
-    for (int d = 0; d < 3; d++) power += atom->f[i][d] * atom->v[i][d];
+    double f[3] = {atom->f[i][0], atom->f[i][1], atom->f[i][2]};
+    for (const auto *ifix : field.elements)
+      for (int d = 0; d < 3; d++) f[d] -= ifix->forces()[3 * (bigint) i + d];
+    for (int d = 0; d < 3; d++) power += f[d] * atom->v[i][d];
     std::fill_n(atom->v[i], 3, 0.0);
     if (nC) std::fill_n(field.affine->C[i], nC, 0.0);
     if (nQ) std::fill_n(field.affine->Q[i], nQ, 0.0);

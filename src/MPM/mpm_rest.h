@@ -13,7 +13,7 @@ namespace LAMMPS_NS {
 class MPMField;
 
 /** All points of a field stop, with their affine parts. What they lose is not lost by transfers: it is taken from the ledger,
- *  and added to taken[0]. taken[1] gets minus half of the work of the forces of this step: the stress of points follows from the whole
+ *  and added to taken[0]. taken[1] gets minus half of the work of the forces of this step but for those of elements: the stress of points follows from the whole
  *  displacement, while the work of forces is counted with the mean of the velocities before and after it, of which the next step
  *  would add the other half. [energy] */
 void put_to_rest(MPMField &, double taken[2]);
