@@ -41,6 +41,7 @@ static constexpr int CHECK_EVERY = 7 << MOST_BITS;
 static constexpr int SHORTEST = 200;    // run in which the work is known well enough
 static constexpr double AT_REST =
     1.0e-9;    // cells per step: with less than that nothing is in play
+static constexpr double UNSTRAINED = 1.0e-6;    // stored energy over that after the first step
 static constexpr double ROUND_OFF = 1.0e-13;    // of a sum of the heat of all points in a step
 
 /** The step of 2^bits in which a point is looked at. Multiples of the golden ratio are spread evenly for any range of
@@ -223,13 +224,16 @@ bool MPMEnergyWatch::is_last_step() const
 }
 
 /** A run may begin in the middle of a vibration: the step before it had about as much as the first one, in proportion to the
- *  velocities. What was at rest is strained by a first step that has a jump of strain or load, and was not before. */
+ *  velocities. What was at rest is strained by a first step that has a jump of strain or load, and was not before. Bodies that
+ *  start with velocities and without strain are in the middle of their vibration, where stored energy is least: it was as
+ *  much a step before as it is a step later. */
 void MPMEnergyWatch::center_start()
 {
   const Sums now = sums();
+  const bool least = fabs(run.start.elastic) < UNSTRAINED * fabs(now.elastic);
   const double share = now.kinetic > 0.0 ? sqrt(std::min(1.0, run.start.kinetic / now.kinetic))
                                          : 0.0,
-               change = 0.5 * share * (now.elastic - run.start.elastic);
+               change = (least ? -0.5 : 0.5) * share * (now.elastic - run.start.elastic);
   run.start.stored -= change;
   run.lowest -= change;
 }
