@@ -437,10 +437,12 @@ void FixMPMElements::make_elements(const Mesh &mesh)
     if (atom->mask[i] & groupbit) volume[1] += atom->vfrac[i];
   MPI_Allreduce(volume, volumes, 2, MPI_DOUBLE, MPI_SUM, world);
   if (!modify->nfix_restart_peratom && !(fabs(volumes[0] - volumes[1]) <= 1.0e-6 * volumes[0]))
-    error->all(FLERR,
-               "Fix mpm/elements {}: the elements have a volume of {:.8g}, their nodes of {:.8g}: "
-               "points that create_points ... mesh made must not be deformed before",
-               id, volumes[0], volumes[1]);
+    error->all(
+        FLERR,
+        "Fix mpm/elements {}: the elements have a volume of {:.8g}, their nodes of {:.8g}: "
+        "points that create_points ... mesh made must not be deformed before, and thickness or "
+        "section must be the same",
+        id, volumes[0], volumes[1]);
 
   keep_arrays();
   for (std::size_t k = 0; k < here.size(); k++)

@@ -787,7 +787,8 @@ SERIAL_TEST(ThinElements, BadInput)
   EXPECT_THAT(failure(open.name, thick, "", gas), HasSubstr("has a rim"));
   EXPECT_THAT(failure(line.name, "section 1e-5", "", gas), HasSubstr("has no surface"));
   EXPECT_THAT(failure(ball.name, "section 1e-5", "", ""), HasSubstr("no elements of dimension 1"));
-  EXPECT_THAT(failure(ball.name, "", "", ""), HasSubstr("no elements of dimension 3"));
+  EXPECT_THAT(failure(ball.name, "", "", ""),
+              HasSubstr("no elements of dimension 3, but 128 of dimension 2 (keywords thickness"));
   EXPECT_THAT(failure(ball.name, thick + " section 1", "", ""), HasSubstr("use one of them"));
   EXPECT_THAT(failure(ball.name, thick, "locking fbar", ""), HasSubstr("is for solids"));
   EXPECT_THAT(failure(ball.name, thick, "compression no", "", "eos linear 1e5 strength j2 4e4 100"),

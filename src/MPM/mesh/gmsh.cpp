@@ -446,15 +446,25 @@ void Mesh::keep(int dim, const std::string &group)
   }
   std::vector<int> element_place(elements.size(), -1);
   std::size_t n = 0;
+  int others[4] = {0, 0, 0, 0};
+  for (std::size_t k = 0; k < elements.size(); k++)
+    if (wanted[k]) others[element_dimension(elements[k].type)]++;
   for (std::size_t k = 0; k < elements.size(); k++)
     if (element_dimension(elements[k].type) == dim && wanted[k]) {
       element_place[k] = (int) n;
       elements[n++] = elements[k];
     }
   elements.resize(n);
-  if (n == 0)
-    throw std::runtime_error("the mesh has no elements of dimension " + std::to_string(dim) +
-                             (group.empty() ? "" : " in the physical group " + group));
+  if (n == 0) {
+    std::string text = "the mesh has no elements of dimension " + std::to_string(dim) +
+        (group.empty() ? "" : " in the physical group " + group);
+    const int other = others[2] > 0 ? 2 : 1;
+    if (others[other] > 0)
+      text += ", but " + std::to_string(others[other]) + " of dimension " + std::to_string(other) +
+          " (keywords thickness and section of create_points mesh and fix mpm/elements make bodies "
+          "of surfaces and lines)";
+    throw std::runtime_error(text);
+  }
   for (auto &set : sets) {
     std::vector<int> left;
     for (const int k : set.elements)
