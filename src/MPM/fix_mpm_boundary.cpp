@@ -225,6 +225,14 @@ bool FixMPMBoundary::region_moves() const
   return region && region->dynamic_check();
 }
 
+bool FixMPMBoundary::moves() const
+{
+  const bool driven = std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
+    return v.value != 0.0 || !v.variable.empty();
+  });
+  return driven || rotating() || region_moves();
+}
+
 /* ----------------------------------------------------------------------
    Nodes inside hold only those points of a body in front of the surface that they reach: it creeps into the wall, and stresses next to
    it are wrong, by how much depends on where the surface is in a cell. Lines hold the surface. Material that is inside of a region, as in a

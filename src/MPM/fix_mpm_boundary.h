@@ -94,6 +94,8 @@ class FixMPMBoundary :
   bool loses_heat() const override { return friction > 0.0 && !heat.said; }
   bool gives_heat() const override { return heat.heats(); }
   bool is_region() const { return !region_id.empty(); }
+  /** Have its walls a velocity, now or later? */
+  bool moves() const;
   /** Of a place from the surface of the region, negative inside; far where it is more. During a run. */
   double distance(const double *x, double far) const { return surface->distance(x, far); }
   /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */

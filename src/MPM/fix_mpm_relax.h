@@ -65,13 +65,21 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   double ratio = 0.0;         // of these; UNKNOWN before the first look
   double nrests = 0.0;        // how often velocities were set to zero
   double nsteps = 0.0;        // of the cycle
+  double rested = 0.0;        // at which of these was the last rest
+  double interval = 0.0;      // steps from the one before to this
+  double peak = 0.0;          // kinetic energy before it fell in this step; 0: it did not
+  double least;               // of those where rests come soon
+  double grows = 0.0;         // 1: they have grown
   // energy so far, this rank's share, in restart files that of all ranks: kinetic, and work in a step
   double taken[2] = {0.0, 0.0};
   bool falls = false;    // the kinetic energy, in this step
   std::vector<MPMField *> fields;
+  bool may_start_by_half = false;
 
   void look();
   void rest();
+  bool can_start_by_half(const MPMPlan &) const;
+  void start_by_half();
   double force_of_stress() const;
 };
 
