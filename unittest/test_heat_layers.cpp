@@ -228,6 +228,26 @@ SERIAL_TEST(Orthotropic, IsWarnedOf)
   }
 }
 
+// nor with functions that are not smooth, or in the total frame, for any pair of materials in one field
+SERIAL_TEST(Shapes, WithoutMeansAreWarnedOf)
+{
+  const std::string scene =
+      plate(12, {{"block 0 0.5 INF INF INF INF", 1.0}, {"block 0.5 1 INF INF INF INF", 0.1}},
+            4.0 / 12, 0.0) +
+      "timestep 1e-3\nrun 1\nrun 1\n";
+  for (const std::string options :
+       {"", " shape cubic", " shape linear", " shape gimp", " frame total"}) {
+    const auto warnings = lines_that_say(replaced(scene, " 0\nfix m1", " 0" + options + "\nfix m1"),
+                                         "no means across");
+    EXPECT_EQ(warnings.size(), options.empty() || options == " shape cubic" ? 0u : 1u) << options;
+    EXPECT_EQ(lines_that_say(replaced(replaced(scene, " 0\nfix m1", " 0" + options + "\nfix m1"),
+                                      "0.5 0.1\n", "0.5 0.7\n"),
+                             "no means across")
+                  .size(),
+              0u);
+  }
+}
+
 TEST(Ranks, Agree)
 {
   const std::string scene =

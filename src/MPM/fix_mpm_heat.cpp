@@ -465,7 +465,7 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
                    "frame updated"}});
     if (gradients) field->slopes.push_back(&gradients);
     fields.push_back(std::make_unique<MPMConduction>(lmp, *field, transfer, conditions));
-    fields.back()->init(sigma(), !surfaces.empty() || !pairs.empty());
+    fields.back()->init(sigma(), !surfaces.empty() || !pairs.empty(), told_of_layers);
     if (solver) fields.back()->faces.hold_exactly();
     if (fields.back()->conducts()) steps.add(fields.back()->temperature, fields.back()->rate);
   }

@@ -105,7 +105,8 @@ class FixMPMHeat :
   bool rubs = false;                                 // is there a fix that gives heat of friction?
   bool losses_known = false;                         // has warn_of_friction() been done?
   std::vector<std::unique_ptr<MPMConduction>> fields;
-  struct Past {    // so far, this rank's share; in restart files that of all ranks
+  bool told_of_layers = false;    // without means across interfaces
+  struct Past {                   // so far, this rank's share; in restart files that of all ranks
     double through_faces, of_sources;
     double got;                              // by points
     double given[NGIVER], booked[NGIVER];    // up to the last conduction, and since

@@ -98,6 +98,8 @@ using namespace MPM_NS;
 static constexpr double MOST_AT_LIGHT_NODES = 4.0;
 // of the means of a conductivity that jumps at melting, on either side, in node spacings
 static constexpr double HALF_RANGE = 0.25;
+static constexpr double SAME =
+    2.0;    // ratio of conductivities for which means across interfaces matter little
 
 /* ---------------------------------------------------------------------- */
 
@@ -110,8 +112,9 @@ MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer
 
 /* ---------------------------------------------------------------------- */
 
-void MPMConduction::init(double sigma, bool surfaces)
+void MPMConduction::init(double sigma, bool surfaces, bool &told_of_layers)
 {
+  told = &told_of_layers;
   thermals.clear();
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;
@@ -270,9 +273,9 @@ void MPMConduction::init_layers()
 {
   layers.reset();
   greatest = 0.0;
-  if (total || steepest == 0.0) return;
+  const bool can = !total && steepest != 0.0;
   bool differ = false, orthotropic = false;
-  double fastest = 0.0;
+  double fastest = 0.0, least = 0.0;
   const Thermal *first = nullptr;
   for (const auto &t : thermals) {
     if (!is_present(t)) continue;
@@ -284,10 +287,26 @@ void MPMConduction::init_layers()
           t.all.conductivity != first->all.conductivity;
     const double capacity = t.fix->material->density() * t.all.capacity;
     greatest = std::max(greatest, t.all.conductivity);
+    least = &t == first ? t.all.conductivity : std::min(least, t.all.conductivity);
     fastest = std::max(fastest, t.all.conductivity / capacity);
   }
-  if (orthotropic && differ && !told_of_orthotropic) {
-    told_of_orthotropic = true;
+  if (!can && differ && greatest > SAME * least && !*told) {
+    *told = true;
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix mpm/heat: conductivities of materials in fix mpm {} are {:.3g} to {:.3g}, "
+          "and with {} there are no means across their interfaces, through which too "
+          "much heat goes: use shape quadratic or cubic{}",
+          field.id(), least, greatest, total ? "frame total" : "this shape",
+          total ? " with frame updated" : "");
+  }
+  if (!can) {
+    greatest = 0.0;
+    return;
+  }
+  if (orthotropic && differ && !*told) {
+    *told = true;
     if (comm->me == 0)
       error->warning(FLERR,
                      "Fix mpm/heat: materials of different conductivity share fix mpm {}, and one "

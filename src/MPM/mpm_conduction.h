@@ -54,8 +54,9 @@ class MPMConduction : protected Pointers {
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
-  /** Start of a run. surfaces: heat comes through surfaces other than faces of the box, too. */
-  void init(double sigma, bool surfaces);
+  /** Start of a run. surfaces: heat comes through surfaces other than faces of the box, too. told_of_layers: has a warning told of
+   *  interfaces that have no means? */
+  void init(double sigma, bool surfaces, bool &told_of_layers);
 
   /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
    *  the transfers pic and xpic. starts: the first call of find_rates() will be for these temperatures, but for those that faces hold.
@@ -167,11 +168,12 @@ class MPMConduction : protected Pointers {
   std::unique_ptr<MPMLayerMean>
       layers;               // of materials that conduct differently; null: points have their own
   double greatest = 0.0;    // of all conductivities, with layers
+  bool *told =
+      nullptr;    // of interfaces without means: of the fix, as this is made anew for each run
   double fastest_point =
       0.0;    // of this step: the greatest rate, but for the factor of the functions
   bool simple = false,
        keeps = false;    // are rates those of capacities and volumes; before = value
-  bool told_of_orthotropic = false;
   struct Range {
     double low, high;
   };
