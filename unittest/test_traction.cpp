@@ -641,6 +641,29 @@ SERIAL_TEST(Plane, ThroughABodyIsTold)
   EXPECT_EQ(told(step, 0.5, below), 0u);
 }
 
+// nodes of finite elements do not bear loads of this fix, on all of the surface neither
+SERIAL_TEST(Traction, TellsOfNodesOfElements)
+{
+  const ScratchFile mesh(
+      "square.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 3 3 0\n2 3.5 3 0\n3 3.5 3.5 "
+      "0\n4 3 3.5 0\n$EndNodes\n$Elements\n1\n1 3 2 1 1 1 2 3 4\n$EndElements\n");
+  const std::string start = plane("lj", "p p", "0 8 0 8", 2) + "fix grid all mpm 0.5\n",
+                    nodes = "create_points 2 mesh " + mesh.name + "\n",
+                    end =
+                        "group nodes type 2\nfix m all mpm/material density 1 neohookean 100 0.3\n"
+                        "fix e nodes mpm/elements " +
+      mesh.name + "\nfix load all mpm/traction free pressure 1\ntimestep 1e-3\nrun 1\nrun 1\n";
+  EXPECT_EQ(lines_that_say(start + nodes +
+                               "region b block 0 2 0 2 INF INF\ncreate_points 1 region b ppc 2\n" +
+                               end,
+                           "4 points of group all are nodes of fix mpm/elements")
+                .size(),
+            1u);
+  Scene run;
+  EXPECT_THAT(run.error(start + nodes + end), HasSubstr("all points of group all are nodes"));
+}
+
 SERIAL_TEST(Traction, BadInput)
 {
   const auto plain = bar("", 0.4, "", "");

@@ -226,9 +226,36 @@ void FixMPMTraction::find_growth(MPMField &field)
 
 void FixMPMTraction::setup(int vflag)
 {
+  if (!told_of_nodes) note_nodes();
   if (surface != FREE && !defined) define();
   post_run();
   post_force(vflag);
+}
+
+/** Nodes of finite elements have no surface of their own, and their F is no deformation of it. */
+void FixMPMTraction::note_nodes()
+{
+  bigint mine[2] = {0, 0}, all[2];    // nodes, and other points of the group
+  for (const auto *field : fields)
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & groupbit) || !field->is_point(i)) continue;
+      mine[field->is_element_node(i) ? 0 : 1]++;
+    }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0] == 0) return;
+  static const std::string remedy =
+      "loads on these are fix mpm/airbag pressure, for surfaces, and fix addforce";
+  if (all[1] == 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/traction {}: all points of group {} are nodes of fix mpm/elements, which "
+               "have no surface: {}",
+               id, group->names[igroup], remedy);
+  told_of_nodes = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/traction {}: {} points of group {} are nodes of fix mpm/elements, and "
+                   "do not bear its load: {}",
+                   id, all[0], group->names[igroup], remedy);
 }
 
 /** Have points of the surface been deleted? */

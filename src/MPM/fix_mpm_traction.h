@@ -106,6 +106,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   static constexpr int NSUM = 7;                  // force [3], present area, torque [3]
   double sums[NSUM] = {}, all_sums[NSUM] = {};    // of compute_vector(): this rank's share, and all
   bool sums_known = true;
+  bool told_of_nodes = false;    // of finite elements
   double work[2] = {
       0.0, 0.0};    // so far, of forces on points and of stress, this rank's share [energy]
 
@@ -129,6 +130,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   }
   void find_load(int k);
   void evaluate_loads();
+  void note_nodes();
   void define();
   void add_forces();
   void find_gradient(std::vector<double> &gradient);
