@@ -29,6 +29,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -188,14 +189,34 @@ class FixMPMContact :
     double *ra, *rb;       // records
     double share, n[3];    // of the interface; normal there
   };
-  struct Tie {             // two bodies at a line of nodes through their interface
+  struct Covers {       // what is seen of a body along a line of nodes
+    double g[3];        // sum of the gradients of its surface there, over the cross-section
+    double alone[3];    // the same without images
+    double share;       // of the cross-section of the line
+  };
+  struct Line {                                 // of nodes through an interface
+    std::array<int, 6> key;                     // bodies, axis and direction, index across
+    std::vector<std::pair<int, int>> places;    // index along the axis (of the first one) and pair
+    int axis, index[3];                         // any node of it
+    double sign;                                // of the normal along the axis
+    int joins;                                  // line of which it is a part, -1: none
+    Covers seen[2];                             // of both bodies
+    double n[3];                                // its direction, from a to b
+
+    int low() const { return places.front().first; }
+    int high() const { return low() + (int) places.size() - 1; }
+  };
+  using LinesByKey = std::map<std::array<int, 6>, std::vector<int>>;    // places of lines
+  static constexpr int AROUND = 2;    // nodes of a line beyond those that both bodies reach
+  struct Tie {    // two bodies at a line of nodes through their interface, and those that join it
     int first, last;       // range in links
     int a, b;              // places in bodies
     bool owned;            // in sums
     Key key;               // of the same tie on all ranks
     bool active;           // it touches
     bool sticks;           // by friction or law stick
-    int parted;            // times in the step that it was let go while it stuck
+    int parted;            // times in the step that it was let go, with law stick while it stuck
+    int changes;           // times in the step that it began to slide or stick
     double n[3];           // mean normal from a to b
     double along[2][3];    // unit vectors along the interface, or zero
     double gap;            // that is to be closed [distance]
@@ -307,9 +328,20 @@ class FixMPMContact :
   bool is_beyond_walls(Pair &);
   double share_of(const Body &, const int *index) const;
   bool is_known(const Body &, const int *index) const;
-  bool measure_gap(Tie &, int axis, const int *index, int low, int high, double &gap) const;
-  void add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first, std::size_t last,
-               int axis, const std::array<int, 6> &line);
+  int64_t node_at(const Body &, const int *index) const;
+  void interface_at(int a, int b, const int *index, double *area) const;
+  int axis_at(const Pair &, int *index, double &sign) const;
+  void find_lines(std::vector<Line> &);
+  Covers look_along(const Body &, const Line &, double sign) const;
+  double turn_to_wider(Line &) const;
+  void for_lines_around(const std::vector<Line> &, const LinesByKey &, const Line &,
+                        const std::function<void(int k)> &use) const;
+  double follows_others(const Line &, double turned, const double *around) const;
+  void turn(Pair &, const Line &, double turned, double follows, const double *around) const;
+  void join_lines(std::vector<Line> &, const LinesByKey &) const;
+  void find_edges(std::vector<Line> &);
+  bool measure_gap(const Tie &, const Line &, double &gap) const;
+  void add_tie(const std::vector<Line> &, const std::vector<int> &parts);
   void find_tangents(Tie &, int held) const;
   static bool can_slide(const Tie &tie)
   {
@@ -328,6 +360,8 @@ class FixMPMContact :
   {
     return row == 0 ? link.n : tie.along[row - 1];
   }
+  bool is_torn(const Tie &) const;
+  double friction_of(const Tie &) const;
   void find_ties();
   void warn_of_torn();
   void check_overlap();

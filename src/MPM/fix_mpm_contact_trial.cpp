@@ -18,7 +18,7 @@
 // between nodes, and whatever the direction of the plane.
 //
 // The gap g is what is missing in the volumes of both bodies along the line, over the area of the interface. Where a body covers the share c of the
-// cross-section of the line, next to its edge, its volumes are divided by c:
+// cross-section of the line, next to its edge, its volumes are divided by c (fix_mpm_contact_edges.cpp):
 //
 //    g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
 //
@@ -37,14 +37,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double STEEPER = 1.0e-6;    // of normals, by which the axis of a line is told
-static constexpr int AROUND =
-    2;    // nodes of a line that are looked at beyond those that both bodies reach
 static constexpr double COVERED = 1.0e-3;    // share of the cross-section of a line, least
 static constexpr double SAME = 1.0e-6;       // relative difference of shares that are equal
 // node spacings at which bodies touch as they are if others do, and at which statics tries whether they touch
@@ -64,7 +60,11 @@ static constexpr double ERRORS =
     10.0;    // of single forces, in the share of all that is not in balance
 static constexpr double ALONG_AXIS = 0.99;    // cosine between a normal and an axis
 static constexpr double HELD = 1.0e-12;       // of what rows would move without walls
-static constexpr int MOST_PARTED = 3;         // of a tie that sticks, before it slips instead
+// times that a tie slides and sticks in a step before it may bear more friction, over the largest force, by each time after that, and in all
+static constexpr int FREE_CHANGES = 2;
+static constexpr double MORE_EACH = 1.0e-2, MOST_MORE = 0.05;
+static constexpr int MOST_PARTED = 3,
+                     MOST_PARTED_RUBBING = 6;    // of a tie in a step, before it slips instead
 // times that all is changed, and half of the worst; then, only the worst is
 static constexpr int AT_ONCE = 6, HALF = 18;
 
@@ -106,29 +106,13 @@ int FixMPMContact::rows_of_tie() const
    ties
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Two bodies at a node, with the integral A of the gradient of its function over their interface as area and normal. The integrals over the
-   bodies are g_a = A + L_a and g_b = -A + L_b with those of their free sides, which are in proportion to the volumes that they have at the node where one side
-   is the continuation of the other, also at walls (with images, as explicit steps have them, an inclined interface would not be in balance next to a
-   wall, where nodes and images move along it each for itself). L_a + L_b is g_a + g_b, so that
-
-      A = [g_a - g_b - (g_a + g_b) (V_a - V_b)/(V_a + V_b)]/2
-------------------------------------------------------------------------- */
-
 bool FixMPMContact::make_trial_pair(const Common &c, int n, int a, int b, Pair &pair)
 {
   constexpr double SMALL = 1.0e-10;
   const MPMField &field = *bodies[a].field;
-  const double *const ga = bodies[a].gradient_of(c.slot[a], n),
-                      *const gb = bodies[b].gradient_of(c.slot[b], n);
   int index[3];
   field.grid.node_index(field.grid.blocks[c.slot[a]], n, index);
-  const double Va = share_of(bodies[a], index), Vb = share_of(bodies[b], index);
-  if (!(Va + Vb > 0.0)) return false;
-  const double r = (Va - Vb) / (Va + Vb);
-  MathExtra::zero3(pair.n);
-  for (int d = 0; d < field.lattice.dim; d++)
-    pair.n[d] = 0.5 * (ga[d] - gb[d] - r * (ga[d] + gb[d]));
+  interface_at(a, b, index, pair.n);
   pair.area = MathExtra::len3(pair.n);
   if (!(pair.area > SMALL * field.lattice.cell_volume() / field.lattice.h)) return false;
   MathExtra::scale3(1.0 / pair.area, pair.n);
@@ -154,11 +138,11 @@ bool FixMPMContact::is_beyond_walls(Pair &pair)
 }
 
 /** Node of a body by its index, -1: it has none there. */
-static int64_t node_at(const MPMField &field, const int *index)
+int64_t FixMPMContact::node_at(const Body &body, const int *index) const
 {
   int at[3];
-  for (int d = 0; d < 3; d++) at[d] = field.lattice.wrap(d, index[d]);
-  return field.grid.locate(at);
+  for (int d = 0; d < 3; d++) at[d] = body.field->lattice.wrap(d, index[d]);
+  return body.field->grid.locate(at);
 }
 
 /** Share of the volume of a node, as far as it is inside of the box, that a body fills. */
@@ -167,7 +151,7 @@ double FixMPMContact::share_of(const Body &body, const int *index) const
   int at[3] = {index[0], index[1], index[2]};
   bool image = false;
   const double most = room.at(at, body.field->lattice.dim, image);
-  const int64_t node = node_at(*body.field, at);
+  const int64_t node = node_at(body, at);
   return node >= 0 && most > 0.0 ? body.share[node] / most : 0.0;
 }
 
@@ -175,7 +159,7 @@ double FixMPMContact::share_of(const Body &body, const int *index) const
 bool FixMPMContact::is_known(const Body &body, const int *index) const
 {
   const Grid &grid = body.field->grid;
-  if (node_at(*body.field, index) >= 0) return true;
+  if (node_at(body, index) >= 0) return true;
   bool inside = true;
   for (int d = 0; d < grid.lattice.dim; d++) {
     const int b = body.field->lattice.wrap(d, index[d]) >> grid.shift_bits;
@@ -184,37 +168,16 @@ bool FixMPMContact::is_known(const Body &body, const int *index) const
   return !inside;
 }
 
-/** The gap of a line of nodes along this axis, of which both bodies reach those from low to high; negative: bodies overlap. Returns false where a body
- *  hardly covers the line. */
-bool FixMPMContact::measure_gap(Tie &tie, int axis, const int *index, int low, int high,
-                                double &gap) const
+/** The gap of a line of nodes; negative: bodies overlap. Returns false where a body hardly covers the line. */
+bool FixMPMContact::measure_gap(const Tie &tie, const Line &line, double &gap) const
 {
-  const MPMField &field = *bodies[tie.a].field;
-  const double h = field.lattice.h, slope = std::fabs(tie.n[axis]),
-               cross = field.lattice.cell_volume() / (h * slope);
-  double covers[2] = {0.0, 0.0};
+  const double h = bodies[tie.a].field->lattice.h, slope = std::fabs(tie.n[line.axis]);
+  if (std::min(line.seen[0].share, line.seen[1].share) < COVERED) return false;
   std::vector<std::array<double, 2>> shares;
-  int at[3] = {index[0], index[1], index[2]};
-  for (int i = low - AROUND; i <= high + AROUND; i++) {
-    at[axis] = i;
-    shares.push_back({0.0, 0.0});
-    for (int k = 0; k < 2; k++) {
-      const Body &body = bodies[k ? tie.b : tie.a];
-      const int64_t node = node_at(*body.field, at);
-      if (node < 0) continue;
-      double g[3];
-      const int slot = (int) (node / NODES_PER_BLOCK), n = (int) (node % NODES_PER_BLOCK);
-      gradient_at(body, slot, n, g);
-      const double circle = body.field->frame->node_circle(slot, n),
-                   along = MathExtra::dot3(g, tie.n);
-      if (circle > 0.0) covers[k] += (k ? -along : along) / (cross * circle);
-      shares.back()[k] = share_of(body, at);
-    }
-  }
-  for (int k = 0; k < 2; k++) {
-    for (const auto &share : shares) covers[k] = std::max(covers[k], share[k]);
-    covers[k] = std::min(covers[k], 1.0);
-    if (covers[k] < COVERED) return false;
+  int at[3] = {line.index[0], line.index[1], line.index[2]};
+  for (int i = line.low() - AROUND; i <= line.high() + AROUND; i++) {
+    at[line.axis] = i;
+    shares.push_back({share_of(bodies[tie.a], at), share_of(bodies[tie.b], at)});
   }
   // from where one body fills most to where the other one does: behind are other surfaces of these. Of places that are equally full the nearest ones, as rounding
   // would choose otherwise on each number of ranks
@@ -234,7 +197,7 @@ bool FixMPMContact::measure_gap(Tie &tie, int axis, const int *index, int low, i
       }
   double missing = 0.0;
   for (int i = from; i <= to; i++)
-    missing += 1.0 - shares[i][0] / covers[0] - shares[i][1] / covers[1];
+    missing += 1.0 - shares[i][0] / line.seen[0].share - shares[i][1] / line.seen[1].share;
   gap = h * (slope * missing - (1.0 - full));
   return true;
 }
@@ -266,39 +229,40 @@ void FixMPMContact::find_tangents(Tie &tie, int held) const
   if (!nheld) MathExtra::cross3(tie.n, tie.along[0], tie.along[1]);
 }
 
-/** places: node index along the axis and pair, of which those from first to last are next to each other. */
-void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std::size_t first,
-                            std::size_t last, int axis, const std::array<int, 6> &line)
+/** Ties the bodies together along a line, and those that join it. */
+void FixMPMContact::add_tie(const std::vector<Line> &lines, const std::vector<int> &parts)
 {
   Tie tie = {};
-  std::copy(line.begin(), line.end(), tie.key.begin());
-  tie.key[6] = places[first % places.size()].first;
-  const Pair &begin = pairs[places[first % places.size()].second];
+  const Line &line = lines[parts[0]];
+  std::copy(line.key.begin(), line.key.end(), tie.key.begin());
+  tie.key[6] = line.low();
+  const Pair &begin = pairs[line.places[0].second];
   const int dim = bodies[begin.a].field->lattice.dim;
   tie.a = begin.a;
   tie.b = begin.b;
-  tie.owned = owned_pairs[places[first % places.size()].second];
+  tie.owned = owned_pairs[line.places[0].second];
   tie.first = (int) links.size();
   double area = 0.0;
-  for (std::size_t k = first; k < last; k++) {
-    const Pair &pair = pairs[places[k % places.size()].second];
+  int held = (1 << dim) - 1;    // components that walls hold, or take from images, in both bodies
+  std::vector<int> places;
+  for (const int part : parts)
+    for (const auto &place : lines[part].places) places.push_back(place.second);
+  for (const int place : places) {
+    const Pair &pair = pairs[place];
     area += pair.area;
     for (int d = 0; d < 3; d++) tie.n[d] += pair.area * pair.n[d];
-  }
-  MathExtra::norm3(tie.n);
-  int held = (1 << dim) - 1;    // components that walls hold, or take from images, in both bodies
-  for (std::size_t k = first; k < last; k++) {
-    const Pair &pair = pairs[places[k % places.size()].second];
     const auto &wa = pair.walls_a, &wb = pair.walls_b;
     held &= (wa.held | wa.outside) & (wb.held | wb.outside);
   }
+  if (area == 0.0) return;
+  MathExtra::norm3(tie.n);
   find_tangents(tie, held);
   const auto number = [&](const Body &body, const double *record) {
     return (record - body.field->grid.nodes()) / body.field->grid.nreal;
   };
   const Body &a = bodies[tie.a], &b = bodies[tie.b];
-  for (std::size_t k = first; k < last; k++) {
-    const Pair &pair = pairs[places[k % places.size()].second];
+  for (const int place : places) {
+    const Pair &pair = pairs[place];
     Link link = {place_of(*a.field) + number(a, pair.ra),
                  place_of(*b.field) + number(b, pair.rb),
                  pair.ra,
@@ -326,18 +290,18 @@ void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std:
   for (double &diagonal : tie.diagonal)
     if (diagonal < HELD * free) diagonal = 0.0;
 
-  int index[3];
-  a.field->grid.node_index(number(a, begin.ra), index);
-  const int low = places[first].first, high = low + (int) (last - first) - 1;
-  for (const int end :
-       {low - 1, high + 1}) {    // a rank may have a part of a line that none of its points reaches
-    index[axis] = end;
-    if (is_known(a, index) && is_known(b, index)) continue;
-    links.resize(tie.first);
-    return;
+  for (const int part : parts) {
+    int at[3] = {lines[part].index[0], lines[part].index[1], lines[part].index[2]};
+    for (const int end : {lines[part].low() - 1, lines[part].high() + 1}) {
+      // a rank may have a part of a line that none of its points reaches
+      at[line.axis] = end;
+      if (is_known(a, at) && is_known(b, at)) continue;
+      links.resize(tie.first);
+      return;
+    }
   }
   if (gap) {
-    if (!measure_gap(tie, axis, index, low, high, tie.gap)) {
+    if (!measure_gap(tie, line, tie.gap)) {
       links.resize(tie.first);
       return;
     }
@@ -349,43 +313,19 @@ void FixMPMContact::add_tie(const std::vector<std::pair<int, int>> &places, std:
 /** Lines of nodes with their two bodies, and their gaps. */
 void FixMPMContact::find_ties()
 {
-  // by the bodies, the axis and the direction of the normal, and the indices across
-
-  std::map<std::array<int, 6>, std::vector<std::pair<int, int>>> lines;
-  const Lattice &lattice = bodies[0].field->lattice;
   owned_pairs.assign(pairs.size(), 0);
   for (const auto &node : nodes)
-    for (int p = node.first; p < node.last; p++) {
-      Pair &pair = pairs[p];
-      owned_pairs[p] = node.owned;
-      if (is_beyond_walls(pair)) continue;
-      int axis = 0, index[3];
-      for (int d = 1; d < lattice.dim; d++)
-        if (std::fabs(pair.n[d]) > std::fabs(pair.n[axis]) + STEEPER) axis = d;
-      const Grid &grid = bodies[pair.a].field->grid;
-      grid.node_index((pair.ra - bodies[pair.a].field->grid.nodes()) / grid.nreal, index);
-      const int at = index[axis];
-      index[axis] = 0;
-      lines[{pair.a, pair.b, 2 * axis + (pair.n[axis] > 0.0), index[0], index[1], index[2]}]
-          .emplace_back(at, p);
-    }
-  for (auto &[key, places] : lines) {
-    const int axis = key[2] / 2;
-    std::sort(places.begin(), places.end());
-    const std::size_t n = places.size();
-    const auto joined = [&](std::size_t k) {    // to the one before
-      const int before = places[(k + n - 1) % n].first, now = places[k % n].first;
-      if (k % n) return now == before + 1;
-      return n > 1 && lattice.periodic[axis] && now == 0 && before == lattice.ncell[axis] - 1;
-    };
-    std::size_t begin = 0;
-    while (begin < n && joined(begin)) begin++;
-    if (begin == n) begin = 0;    // all around a box
-    for (std::size_t first = begin, last; first < begin + n; first = last) {
-      for (last = first + 1; last < begin + n && joined(last);) last++;
-      add_tie(places, first, last, axis, key);
-    }
+    for (int p = node.first; p < node.last; p++) owned_pairs[p] = node.owned;
+  std::vector<Line> lines;
+  find_lines(lines);
+  find_edges(lines);
+  std::vector<std::vector<int>> parts(lines.size());
+  for (int l = 0; l < (int) lines.size(); l++) {
+    const int place = lines[l].joins < 0 ? l : lines[l].joins;
+    parts[place].insert(lines[l].joins < 0 ? parts[place].begin() : parts[place].end(), l);
   }
+  for (const auto &of_tie : parts)
+    if (!of_tie.empty()) add_tie(lines, of_tie);
   check_overlap();
 }
 
@@ -624,6 +564,18 @@ void FixMPMContact::rub(const Tie &tie, const double *on_a, double *force) const
     }
 }
 
+/** Has this tie been let go so often in the step, with what holds it along the interface, that it goes on without that? */
+bool FixMPMContact::is_torn(const Tie &tie) const
+{
+  return tie.parted >= (law == STICK ? MOST_PARTED : MOST_PARTED_RUBBING);
+}
+
+/** Coefficient of friction. */
+double FixMPMContact::friction_of(const Tie &tie) const
+{
+  return is_torn(tie) ? 0.0 : kinetic_friction;
+}
+
 void FixMPMContact::add_friction(const double *u, double *force)
 {
   for (auto &tie : ties) {
@@ -632,7 +584,7 @@ void FixMPMContact::add_friction(const double *u, double *force)
     find_slip(tie, u, tie.slip);
     double way[3];
     find_way(tie, way);
-    for (int d = 0; d < 3; d++) tie.rubs[d] = -kinetic_friction * tie.force[0] * way[d];
+    for (int d = 0; d < 3; d++) tie.rubs[d] = -friction_of(tie) * tie.force[0] * way[d];
     rub(tie, tie.rubs, force);
   }
 }
@@ -654,7 +606,7 @@ void FixMPMContact::add_friction_change(const double *du, double scale, double *
     change_of_way(tie, slip, way, turn);
     const double more = (tie.push[0] - tie.base[0]) / scale;
     for (int d = 0; d < 3; d++)
-      change[d] = -kinetic_friction * (more * way[d] + std::max(tie.force[0], 0.0) * turn[d]);
+      change[d] = -friction_of(tie) * (more * way[d] + std::max(tie.force[0], 0.0) * turn[d]);
     rub(tie, change, dforce);
   }
 }
@@ -666,7 +618,7 @@ void FixMPMContact::add_friction_turn(const double *du, double *dforce)
     double slip[3], way[3], turn[3];
     find_slip(tie, du, slip);
     change_of_way(tie, slip, way, turn);
-    for (double &t : turn) t *= -kinetic_friction * tie.force[0];
+    for (double &t : turn) t *= -friction_of(tie) * tie.force[0];
     rub(tie, turn, dforce);
   }
 }
@@ -688,7 +640,7 @@ void FixMPMContact::add_friction_blocks(double *blocks)
   const int dim = bodies[0].field->lattice.dim;
   for (const auto &tie : ties) {
     if (!slides(tie) || !(tie.force[0] > 0.0)) continue;
-    const double slope = kinetic_friction * tie.force[0];
+    const double slope = friction_of(tie) * tie.force[0];
     for (int e = 0; e < dim; e++) {
       double along[3], way[3], turn[3];
       for (int d = 0; d < 3; d++) along[d] = (d == e) - tie.n[d] * tie.n[e];
@@ -706,11 +658,14 @@ void FixMPMContact::add_friction_blocks(double *blocks)
 /** Of a tie that is in contact with friction: by how much of the force is its state wrong? Positive: it changes. */
 double FixMPMContact::wrong_friction(const Tie &tie, double largest) const
 {
-  if (!has_friction() || !can_slide(tie) || !(largest > 0.0)) return 0.0;
-  if (tie.sticks)
+  if (!has_friction() || !can_slide(tie) || is_torn(tie) || !(largest > 0.0)) return 0.0;
+  if (tie.sticks) {
+    const double more = std::max(tie.changes - FREE_CHANGES, 0) * MORE_EACH;
     return (std::hypot(tie.force[1], tie.force[2]) -
             kinetic_friction * std::max(tie.force[0], 0.0)) /
-        largest;
+        largest -
+        std::min(more, MOST_MORE);
+  }
   return -MathExtra::dot3(tie.slip, tie.way) / bodies[0].field->lattice.h;
 }
 
@@ -726,17 +681,18 @@ void FixMPMContact::change_friction(Tie &tie) const
     tie.turns = TURNS * bodies[0].field->lattice.h;
   }
   tie.sticks = !tie.sticks;
+  tie.changes++;
 }
 
-/** A tie touches from now on, after it has gone into the other body by this. With law stick, one with an inclined normal may be pulled while it sticks, by the shear
+/** A tie touches from now on, after it has gone into the other body by this. One with an inclined normal may be pulled while it sticks or rubs, by the shear
  *  that it bears, and go into the other body when it is let go, so that neither is a solution: after some times it slips instead. With friction, what has slid by more than friction could hold at the same stiffness goes on to slide: if it
  *  stuck first, its shear forces could pull it off again along an inclined normal, and so on without end. */
 void FixMPMContact::begin_touch(Tie &tie, const double *u, double approach) const
 {
   tie.active = true;
-  tie.sticks = has_friction() || (law == STICK && tie.parted < MOST_PARTED);
+  tie.sticks = (has_friction() || law == STICK) && !is_torn(tie);
   MathExtra::zero3(tie.rubs);
-  if (!has_friction() || !can_slide(tie)) return;
+  if (!has_friction() || !can_slide(tie) || is_torn(tie)) return;
   find_slip(tie, u, tie.slip);
   const double length = MathExtra::len3(tie.slip);
   if (length < kinetic_friction * approach || length == 0.0) return;
@@ -796,7 +752,7 @@ bool FixMPMContact::decide(const double *u, double unbalanced)
       change_friction(ties[k]);
     } else if (ties[k].active) {
       ties[k].active = false;
-      ties[k].parted += ties[k].sticks;
+      ties[k].parted += has_friction() || ties[k].sticks;
       MathExtra::zero3(ties[k].rubs);
     } else {
       begin_touch(ties[k], u, wrong[k] * h);
@@ -805,15 +761,15 @@ bool FixMPMContact::decide(const double *u, double unbalanced)
   return changed;
 }
 
-/** Lines that slip with law stick, once in a run. Collective. */
+/** Lines that slip, once in a run. Collective. */
 void FixMPMContact::warn_of_torn()
 {
-  if (law != STICK || told_of_torn) return;
+  if ((law != STICK && !has_friction()) || told_of_torn) return;
   bigint mine[2] = {0, 0}, all[2];
   for (const auto &tie : ties) {
     if (!tie.owned || !tie.active) continue;
     mine[0]++;
-    mine[1] += !tie.sticks;
+    mine[1] += is_torn(tie);
   }
   MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all[1] == 0) return;
@@ -821,8 +777,8 @@ void FixMPMContact::warn_of_torn()
   if (comm->me == 0)
     error->warning(
         FLERR,
-        "Fix mpm/contact {} law stick: {} of {} lines of nodes between bodies slip in step {}: "
-        "they would be pulled while they stick, and go into the other body when they "
+        "Fix mpm/contact {}: {} of {} lines of nodes between bodies slip without friction in step "
+        "{}: they would be pulled while they stick or rub, and go into the other body when they "
         "are let go, as lines with inclined normals at edges may; this is said only once in a run",
         id, all[1], all[0], update->ntimestep);
 }
