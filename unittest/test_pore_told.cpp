@@ -113,3 +113,25 @@ SERIAL_TEST(Grains, ThatDoNotGoWithTheirSoil)
     EXPECT_EQ(told(""), 0u);
   }
 }
+
+// what relax, and every, take from smooth pressures while the flow takes next to nothing, in soil as stiff as its water; not so where water flows, or
+// with little relax, or before it counts
+SERIAL_TEST(Relax, ThatSmoothsIsTold)
+{
+  const auto told = [](const char *k, const char *more, int steps) {
+    return lines_that_say(
+               column(10, strprintf("5.4e6 1000 9810 soil m 0.4 %s free pressure 0 %s", k, more),
+                      SOIL) +
+                   strprintf("timestep 4e-4\nrun %d\n", steps),
+               "become too even in a long run")
+        .size();
+  };
+  EXPECT_EQ(told("constant 1e-5", "", 2000), 1u);
+  EXPECT_EQ(told("kozeny 1e-5", "", 2000), 1u);
+  EXPECT_EQ(told("constant 1e-5", "formulation u-v-p", 2000), 1u);
+  EXPECT_EQ(told("constant 1e-5", "every auto", 2000), 1u);
+  EXPECT_EQ(told("constant 1e-5", "", 500), 0u);
+  EXPECT_EQ(told("constant 1e-5", "relax 0.02", 2000), 0u);
+  EXPECT_EQ(told("constant 1e-3", "", 2000), 0u);
+  EXPECT_EQ(told("constant 1e-3", "every auto", 2000), 0u);
+}

@@ -957,6 +957,29 @@ void FixMPMPore::look_for_long_flow(double duration, double limit)
                    every, waited.steps + 1.0, duration / limit);
 }
 
+/** Pressures that vary over some cells and that points have lost to nodes in long runs, where the flow is too slow to do so: once. */
+void FixMPMPore::look_for_smoothing(double duration)
+{
+  constexpr double MUCH = 0.02, OF_FLOW = 0.2;
+  if (smooth_known) return;
+  MPMPore::Smoothing most = {0.0, 0.0};
+  for (const auto *mine : wet) {
+    const auto here = mine->smoothing(duration);
+    if (here.share * here.over_flow > most.share * most.over_flow) most = here;
+  }
+  smoothed += most.share;
+  if (smoothed < MUCH || most.over_flow < OF_FLOW) return;
+  smooth_known = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/pore {}: pressures that vary over {} node spacings have lost {:.0f} % "
+                   "to {}, {:.2g} times what flow has taken, and become too even in a long run: "
+                   "use {}, a smaller spacing, or fix mpm/implicit",
+                   id, MPMPore::Smoothing::WAVELENGTH, 100.0 * smoothed,
+                   waits() ? "every" : "relax", most.over_flow,
+                   waits() ? "no every and a small relax" : "a smaller relax");
+}
+
 /** Those of the first step of all, before it begins. */
 void FixMPMPore::know_rates()
 {
@@ -985,6 +1008,7 @@ void FixMPMPore::flow()
   const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
   const int stages = stages_of(dt, limit);
   if (formulation == U_P) look_for_long_flow(dt, limit);
+  look_for_smoothing(dt);
   waited = {};
   if (stages > most_stages)
     error->all(FLERR, Error::NOLASTLINE,

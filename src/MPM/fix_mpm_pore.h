@@ -143,6 +143,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   bool shut_known = false;      // has a warning told of shut pores?
   bool long_known = false;      // has one told of flows that take too much at once?
   bool grains_known = false;    // has one told of grains that do not go with their soil?
+  double smoothed =
+      0.0;    // share of pressures that vary over some cells, see MPMPore::Smoothing, in these runs
+  bool smooth_known = false;    // has a warning told of it?
   bool leaks_known = false;     // has look_for_leaks() been done?
   bool has_state = false;       // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
@@ -194,6 +197,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void take_off();
   void find_greatest_rates();
   void find_coarse_points(double widest);
+  void look_for_smoothing(double duration);
   void look_for_long_flow(double duration, double limit);
   void know_rates();
   void flow();
