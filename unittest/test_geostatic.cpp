@@ -170,6 +170,11 @@ SERIAL_TEST(Geostatic, BadInput)
        {"displace_atoms all move 0 0.15 0\nmpm_geostatic grid 0.5", "needs level ground"},
        {"fix w all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-3\nmpm_geostatic grid 1",
         "use keyword geostatic of fix mpm/pore"}});
+  // also where the water comes after the command, unless it gives points its own state at rest
+  const std::string later =
+      "mpm_geostatic grid 0.5\nfix w all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-3";
+  expect_error(plain + later + "\ntimestep 1e-5\nrun 0\n", "use keyword geostatic");
+  Scene run(plain + later + " geostatic 0.5 1\ntimestep 1e-5\nrun 0\n");
   const auto refused = [&](const char *what, const std::string &with, const char *why) {
     expect_error(replaced(plain, what, with) + "mpm_geostatic grid 0.5\n", why);
   };

@@ -934,6 +934,28 @@ SERIAL_TEST(Share, IsNoOverlapWithTheSoilAlone)
                "refuses overlapping bodies: 60");
 }
 
+// water that has another share of its places than the pores have: too much of it is told. Water above the bed, or beside it, and places of points
+// by chance are no reason
+SERIAL_TEST(Share, ThatIsNotThePorosityIsTold)
+{
+  const auto told = [](const std::string &scene, const char *share, double height) {
+    return lines_that_say(replaced(scene, height > 0.0 ? "share 0.4" : "share 0.5", share) +
+                              "timestep 1e-6\nrun 2\n",
+                          "times the volume of the pores")
+        .size();
+  };
+  for (const double height : {0.3, 0.5, 0.9})
+    for (const double offset : {0.0, 0.3}) {
+      const auto scene = bed(2, 0.1, height, "", offset);
+      for (const char *share : {"share 0.1", "share 0.4", "share 0.45"})
+        EXPECT_EQ(told(scene, share, height), 0u);
+      for (const char *share : {"share 0.6", "share 0.9"})
+        EXPECT_EQ(told(scene, share, height), 1u);
+    }
+  for (const char *share : {"share 0.3", "share 0.5"})
+    EXPECT_EQ(told(slump(2) + stuff, share, 0.0), 0u);
+}
+
 SERIAL_TEST(Mixture, RefusesBadInput)
 {
   expect_error(bed(2, 0.1, 0.9, "", 0.0) + "mpm_geostatic w 0.5\n", "name that of the soil, s");

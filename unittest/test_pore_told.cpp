@@ -85,3 +85,53 @@ SERIAL_TEST(Soils, WithoutPointsOrTooLightAreTold)
   EXPECT_EQ(told("", "401", gravity, "WARNING: Fix mpm/pore"), 0u);
   EXPECT_EQ(told("", "400", "", "WARNING: Fix mpm/pore"), 0u);
 }
+
+// grains that are softer than the soil that they make, which is the same as a coefficient of Biot below the porosity, and a coefficient that
+// is not that of both moduli
+SERIAL_TEST(Grains, ThatDoNotGoWithTheirSoil)
+{
+  // bulk modulus 1e10, porosity 0.2
+  const auto rock = [](const char *biot, const char *law) {
+    return plane("si", "p f", "0 4 0 4", 1, 0.3) +
+        "create_points 1 box spacing 0.5\nfix grid all mpm 1.0\n" +
+        strprintf("fix m all mpm/material density 2300 %s\n", law) +
+        strprintf("fix water all mpm/pore 2.2e9 1000 9810 soil m 0.2 constant 1e-7 %s\n", biot) +
+        "timestep 1e-6\nrun 1\n";
+  };
+  for (const char *law : {"linear 1.8e10 0.2", "neohookean 1.8e10 0.2",
+                          "linear 1.8e10 0.2 viscosity newtonian 1e6"}) {
+    for (const char *soft : {"biot 0.9 1.24e10", "biot 1 1e9"})
+      expect_error(rock(soft, law), "grains with the bulk modulus");
+    const auto told = [&](const char *biot) {
+      return lines_that_say(rock(biot, law), "WARNING: Fix mpm/pore").size();
+    };
+    EXPECT_EQ(told("biot 0.7 3.333e10"), 0u);
+    EXPECT_EQ(told("biot 0.75 3.333e10"), 0u);
+    EXPECT_EQ(told("biot 0.21 1.25e10"), 0u);
+    EXPECT_EQ(told("biot 1 3.333e10"), 1u);
+    EXPECT_EQ(told("biot 0.5 1e12"), 1u);
+    EXPECT_EQ(told(""), 0u);
+  }
+}
+
+// what relax, and every, take from smooth pressures while the flow takes next to nothing, in soil as stiff as its water; not so where water flows, or
+// with little relax, or before it counts
+SERIAL_TEST(Relax, ThatSmoothsIsTold)
+{
+  const auto told = [](const char *k, const char *more, int steps) {
+    return lines_that_say(
+               column(10, strprintf("5.4e6 1000 9810 soil m 0.4 %s free pressure 0 %s", k, more),
+                      SOIL) +
+                   strprintf("timestep 4e-4\nrun %d\n", steps),
+               "become too even in a long run")
+        .size();
+  };
+  EXPECT_EQ(told("constant 1e-5", "", 2000), 1u);
+  EXPECT_EQ(told("kozeny 1e-5", "", 2000), 1u);
+  EXPECT_EQ(told("constant 1e-5", "formulation u-v-p", 2000), 1u);
+  EXPECT_EQ(told("constant 1e-5", "every auto", 2000), 1u);
+  EXPECT_EQ(told("constant 1e-5", "", 500), 0u);
+  EXPECT_EQ(told("constant 1e-5", "relax 0.02", 2000), 0u);
+  EXPECT_EQ(told("constant 1e-3", "", 2000), 0u);
+  EXPECT_EQ(told("constant 1e-3", "every auto", 2000), 0u);
+}

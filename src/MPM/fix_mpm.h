@@ -32,6 +32,7 @@ class MPMPlan;
 class FixMPM : public FixMPMState {
  public:
   std::unique_ptr<MPMField> field;
+  bool rests_dry = false;    ///< has mpm_geostatic given points a stress without pore water?
 
   FixMPM(class LAMMPS *, int, char **);
   ~FixMPM() override;

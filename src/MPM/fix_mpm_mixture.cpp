@@ -521,7 +521,33 @@ bool FixMPMMixture::find_shares()
     }
   int any = !nodes.empty(), all;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
+  if (all && !pores_known) look_for_overfull_pores();
   return all;
+}
+
+/** Water that points in pores have at first and that does not fit in, as with another share than the porosity: nothing but the weight of all
+ *  tells of it. At nodes that see soil only, and water all around, when both are together for the first time. */
+void FixMPMMixture::look_for_overfull_pores()
+{
+  static constexpr double WHOLE = 0.97, TOO_MUCH = 1.2;
+  pores_known = true;
+  double mine[3] = {0.0, 0.0, 0.0}, of_all[3];    // of grains, water, soil
+  const double cell = soil.field->lattice.cell_volume();
+  for (const auto &node : nodes) {
+    const double *const here = &soil.volumes[WIDTH * node.soil];
+    if (!node.owned || here[3] < WHOLE * cell || node.wet < WHOLE * (here[3] - here[0])) continue;
+    mine[0] += here[0];
+    mine[1] += node.wet;
+    mine[2] += here[3];
+  }
+  MPI_Allreduce(mine, of_all, 3, MPI_DOUBLE, MPI_SUM, world);
+  const double pores = of_all[2] - of_all[0];
+  if (comm->me == 0 && of_all[1] > TOO_MUCH * pores)
+    error->warning(
+        FLERR,
+        "Fix mpm/mixture {}: water has {:.3g} times the volume of the pores that it is in: give "
+        "its points there the share {:.3g} in create_points, which is 1 - density/rhos",
+        id, of_all[1] / pores, pores / of_all[2]);
 }
 
 /* ----------------------------------------------------------------------
@@ -1008,7 +1034,7 @@ void FixMPMMixture::restart(char *buf)
   double list[2];
   memcpy(list, buf, sizeof(list));
   if (comm->me == 0) dissipated = list[0];
-  meets = list[1] != 0.0;
+  meets = pores_known = list[1] != 0.0;
 }
 
 double FixMPMMixture::memory_usage()

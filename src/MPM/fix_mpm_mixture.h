@@ -154,6 +154,8 @@ class FixMPMMixture :
   double dt_last = 0.0;
   bool slow_told = false;    // has warn_of_slow_flow() said what it had to?
   void warn_of_slow_flow();
+  bool pores_known = false;    // has look_for_overfull_pores() looked?
+  void look_for_overfull_pores();
   double dissipated = 0.0;    // by drag so far, this rank's share
 
   bool stale() const;

@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_mpm.h"
 #include "fix_mpm_boundary.h"
 #include "fix_mpm_implicit.h"
 #include "fix_mpm_material.h"
@@ -19,6 +20,7 @@
 #include "force.h"
 #include "input.h"
 #include "material/material.h"
+#include "material/material_point.h"
 #include "math_const.h"
 #include "modify.h"
 #include "mpm_field.h"
@@ -440,6 +442,7 @@ void FixMPMPore::init()
                  soil.formula.substr(2), soil.material,
                  index < 0 ? "does not exist" : "is not atom-style");
   }
+  check_grains();
   weight = MPMGravity(lmp, "Fix mpm/pore");
   for (int part = 0; part < MPMPoreSurface::NPART; part++) {
     auto &c = conditions[part];
@@ -454,6 +457,44 @@ void FixMPMPore::init()
                  PART_NAME[part]);
     find_variable(lmp, c.value, std::string("fix mpm/pore ") + PART_NAME[part]);
   }
+}
+
+/** Of the soil without its water, as new points have it: by a compression that is small, and slow for any viscosity. */
+static double bulk_modulus(const Material &material)
+{
+  constexpr double SMALL = 1.0e-6, LONG = 1.0e12;
+  const double A[9] = {-SMALL, 0.0, 0.0, 0.0, -SMALL, 0.0, 0.0, 0.0, -SMALL};
+  MaterialPoint point(material);
+  const double before = point.pressure();
+  point.move(A, LONG);
+  return (point.pressure() - before) / (1.0 - point.batch.J[0]);
+}
+
+/** Grains that are not rigid. Their modulus and that of the soil make the coefficient of Biot, 1 - K/Ks, and no arrangement of grains is
+ *  stiffer than their share of the volume (Voigt), which is the same as a coefficient that is not below the porosity. */
+void FixMPMPore::check_grains()
+{
+  constexpr double CLOSE = 0.1, ROUNDED = 1.001;    // coefficients of Biot; numbers of few digits
+  if (grains_known) return;
+  for (const auto &soil : soils) {
+    const auto *const fix = dynamic_cast<FixMPMMaterial *>(modify->get_fix_by_id(soil.material));
+    if (!(soil.grains > 0.0)) continue;
+    const double K = bulk_modulus(*fix->material), most = (1.0 - soil.porosity) * soil.grains;
+    if (K > most * ROUNDED)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/pore biot: grains with the bulk modulus {:.6g} make no soil with that of "
+                 "fix mpm/material {}, {:.6g}, but with at most (1 - n0) Ks = {:.6g}: Ks is that "
+                 "of the mineral",
+                 soil.grains, soil.material, K, most);
+    const double alpha = 1.0 - K / soil.grains;
+    if (comm->me == 0 && fabs(alpha - soil.biot) > CLOSE)
+      error->warning(FLERR,
+                     "Fix mpm/pore: soil {} has the coefficient of Biot {:.4g}, but its bulk "
+                     "modulus at first, {:.4g}, and that of its grains, {:.4g}, make 1 - K/Ks = "
+                     "{:.4g}: pressures and settlements go by the former",
+                     soil.material, soil.biot, K, soil.grains, alpha);
+  }
+  grains_known = true;
 }
 
 /** Between points, pair styles do not know what water bears. */
@@ -668,6 +709,14 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 void FixMPMPore::setup_points()
 {
   const bool at_rest = geostatic && !has_state;
+  for (const auto *mine : wet) {
+    const auto *const fix = dynamic_cast<FixMPM *>(modify->get_fix_by_id(mine->field.id()));
+    if (fix && fix->rests_dry && !geostatic && !has_state)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/pore: points of fix mpm {} have the stress of mpm_geostatic, which does "
+                 "not know pore water: use keyword geostatic of fix mpm/pore in its place",
+                 mine->field.id());
+  }
   has_state = true;
   if (!at_rest) {
     weigh_points();
@@ -908,6 +957,29 @@ void FixMPMPore::look_for_long_flow(double duration, double limit)
                    every, waited.steps + 1.0, duration / limit);
 }
 
+/** Pressures that vary over some cells and that points have lost to nodes in long runs, where the flow is too slow to do so: once. */
+void FixMPMPore::look_for_smoothing(double duration)
+{
+  constexpr double MUCH = 0.02, OF_FLOW = 0.2;
+  if (smooth_known) return;
+  MPMPore::Smoothing most = {0.0, 0.0};
+  for (const auto *mine : wet) {
+    const auto here = mine->smoothing(duration);
+    if (here.share * here.over_flow > most.share * most.over_flow) most = here;
+  }
+  smoothed += most.share;
+  if (smoothed < MUCH || most.over_flow < OF_FLOW) return;
+  smooth_known = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/pore {}: pressures that vary over {} node spacings have lost {:.0f} % "
+                   "to {}, {:.2g} times what flow has taken, and become too even in a long run: "
+                   "use {}, a smaller spacing, or fix mpm/implicit",
+                   id, MPMPore::Smoothing::WAVELENGTH, 100.0 * smoothed,
+                   waits() ? "every" : "relax", most.over_flow,
+                   waits() ? "no every and a small relax" : "a smaller relax");
+}
+
 /** Those of the first step of all, before it begins. */
 void FixMPMPore::know_rates()
 {
@@ -936,6 +1008,7 @@ void FixMPMPore::flow()
   const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
   const int stages = stages_of(dt, limit);
   if (formulation == U_P) look_for_long_flow(dt, limit);
+  look_for_smoothing(dt);
   waited = {};
   if (stages > most_stages)
     error->all(FLERR, Error::NOLASTLINE,

@@ -136,14 +136,18 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   bool gradients_known = true;    // not yet where pressures were given
   struct {
     double steps = 0.0, time = 0.0;
-  } waited;                    // since the last flow
-  double crossing = 0.0;       // time in which waves by the stiffness of the water cross a cell
-  bool coarse = false;         // can points in between be as stiff as a lattice can be?
-  bool step_flows = true;      // does water flow in this step?
-  bool shut_known = false;     // has a warning told of shut pores?
-  bool long_known = false;     // has one told of flows that take too much at once?
-  bool leaks_known = false;    // has look_for_leaks() been done?
-  bool has_state = false;      // of an earlier run: what points have at first is behind them
+  } waited;                     // since the last flow
+  double crossing = 0.0;        // time in which waves by the stiffness of the water cross a cell
+  bool coarse = false;          // can points in between be as stiff as a lattice can be?
+  bool step_flows = true;       // does water flow in this step?
+  bool shut_known = false;      // has a warning told of shut pores?
+  bool long_known = false;      // has one told of flows that take too much at once?
+  bool grains_known = false;    // has one told of grains that do not go with their soil?
+  double smoothed =
+      0.0;    // share of pressures that vary over some cells, see MPMPore::Smoothing, in these runs
+  bool smooth_known = false;    // has a warning told of it?
+  bool leaks_known = false;     // has look_for_leaks() been done?
+  bool has_state = false;       // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
   std::vector<MPMPore *> wet;    // those that have soil with water
   MPMSuperStep steps;            // of the pressures of all fields together
@@ -170,6 +174,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
   double pressure_now(int i) const;
+  void check_grains();
   void warn_of_contact() const;
   void find_seals();
   double distance_to_bodies(const double *x, double far) const;
@@ -192,6 +197,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void take_off();
   void find_greatest_rates();
   void find_coarse_points(double widest);
+  void look_for_smoothing(double duration);
   void look_for_long_flow(double duration, double limit);
   void know_rates();
   void flow();

@@ -8,6 +8,7 @@
 
 #include "mpm_geostatic_command.h"
 
+#include "fix_mpm.h"
 #include "fix_mpm_mixture.h"
 #include "mpm_field.h"
 #include "mpm_geostatic.h"
@@ -60,6 +61,8 @@ void MPMGeostaticCommand::command(int narg, char **arg)
     return 0.0;
   };
   ground.set_stress(K0, none, carried);
+  dynamic_cast<FixMPM *>(modify->get_fix_by_id(id))->rests_dry =
+      true;    // fix mpm/pore may come later
   const auto &where = ground.ground();
   if (comm->me == 0)
     utils::logmesg(lmp, "Level ground at rest: {:.6g} high, weight {:.6g} per mass, K0 {:.6g}\n",

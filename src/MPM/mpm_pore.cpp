@@ -46,7 +46,9 @@
 #include "fix_mpm_material.h"
 #include "force.h"
 #include "material/material.h"
+#include "material/material_point.h"
 #include "math/matrix.h"
+#include "math_const.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_node_sums.h"
@@ -91,6 +93,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
   }
   MPI_Allreduce(mine.data(), here.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
   slowest = waves = least_storage = std::numeric_limits<double>::max();
+  of_storage = 0.0;
   for (std::size_t k = 0; k < here.size(); k++)
     for (const auto &one : all) {
       const auto *const fix = field.materials[k];
@@ -103,6 +106,10 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
         least_storage = std::min(least_storage, storage);
         slowest = std::min(slowest, one.permeability / (water.resistance * storage));
         waves = std::min(waves, one.biot / sqrt(storage * fix->material->density() * unit));
+        const double c = MaterialPoint(*fix->material).wave_speed(),
+                     M = unit * fix->material->density() * c * c;
+        if (M > 0.0)
+          of_storage = std::max(of_storage, storage / (storage + one.biot * one.biot / M));
         dries = dries || one.retention.can_dry();
       }
     }
@@ -671,6 +678,21 @@ double MPMPore::rate_of_waves() const
 double MPMPore::rate_of_lag() const
 {
   return slowest / (field.lattice.h * field.lattice.h) + rate_of_waves();
+}
+
+/** By a flow that follows steps without one all that nodes do not see is lost. Of a smooth wave with the number k they see, and give back to
+ *  points with its slopes, 1 - 0.056 (k h)^4, from the moments of quadratic functions. Soil that gives way holds the rest. */
+MPMPore::Smoothing MPMPore::smoothing(double duration) const
+{
+  constexpr double UNSEEN = 0.056, PHASE = MathConst::MY_2PI / Smoothing::WAVELENGTH;
+  if (suction || solve) return {0.0, 0.0};
+  const double h = field.lattice.h, lag = waiting ? 1.0 : 1.0 - exp(-rate_of_waves() * duration);
+  const double lost = lag * UNSEEN * PHASE * PHASE * PHASE * PHASE,
+               flowed = slowest * duration * PHASE * PHASE / (h * h);
+  const bool known = std::none_of(soils.begin(), soils.end(), [](const auto &s) {
+    return s.of.law == MPMPoreSoil::FORMULA;
+  });
+  return {of_storage * lost, known ? lost / std::max(flowed, 1.0e-6 * lost) : 0.0};
 }
 
 void MPMPore::end_step(const MPMRows &state, double dt)

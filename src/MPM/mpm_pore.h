@@ -126,6 +126,14 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   /** The lowest tag of this rank's points whose pores were shut in the last begin_step(), MAXTAGINT: there are none. */
   tagint shut_point() const { return shut; }
 
+  /** What a flow for this time takes from smooth pressures of points, as nodes do not see all of them. */
+  struct Smoothing {
+    static constexpr double WAVELENGTH = 20.0;    ///< of a pressure, in node spacings
+    double share;                                 ///< of its amplitude that is lost
+    double over_flow;                             ///< that over what flow takes; 0: not known
+  };
+  Smoothing smoothing(double duration) const;
+
   double memory_usage() const;
 
  private:
@@ -143,6 +151,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
       0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells
   double slowest = 0.0;    // smallest mobility over storage of a soil
   double least_storage = 0.0;
+  double of_storage =
+      0.0;    // greatest share of the storage of water and grains in that with an elastic soil
   double waves = 0.0;      // smallest wave speed by the stiffness of the water in a soil
   double fastest = 0.0;    // largest of the points in the last step
   tagint shut = MAXTAGINT;
