@@ -240,19 +240,20 @@ SERIAL_TEST(Block, SlidesIn3d)
 {
   struct Case {
     const char *scheme, *transfer;
-    double mu, slope, iterations;
+    double mu, slope, iterations, place = 0.3;
   };
   for (const Case &c :
        {Case{"newmark", " transfer flip 1.0", 0.1, 0.5, 45.0},
         Case{"newmark", " transfer flip 1.0", 0.6, 1.2, 45.0}, Case{"euler", "", 0.1, 0.5, 45.0},
-        Case{"euler", "", 0.6, 1.2, 45.0}, Case{"euler", "", 1.5, 2.0, 75.0}}) {
-    Scene run(block_on_base(c.transfer, c.mu, c.slope, strprintf("%s parts 1", c.scheme)) +
+        Case{"euler", "", 0.6, 1.2, 45.0}, Case{"euler", "", 1.5, 2.0, 75.0},
+        Case{"euler", "", 0.3, 0.5, 75.0, 0.335}}) {
+    Scene run(block_on_base(c.transfer, c.mu, c.slope, strprintf("%s parts 1", c.scheme), c.place) +
               "run 3\n");
     const std::string name = strprintf("%s, friction %g: ", c.scheme, c.mu);
     EXPECT_LT(measured(name + "iterations in three steps", run.fix("solve")->compute_vector(5)),
               c.iterations);
     // the front of the block bears most where friction is large, and its rear sticks or parts
-    if (c.mu < 0.5) {
+    if (c.mu < 0.2) {
       EXPECT_NEAR(measured(name + "of what slides", touch(run, 0) / -touch(run, 2)), c.mu,
                   0.02 * c.mu);
     }
