@@ -6,7 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Contact between bodies that a solver has in its steps (mpm_body_contact.h). In explicit steps each node that bodies share is in contact by itself:
 // Interfaces of bodies at nodes, and at their edges, for steps of a solver (fix_mpm_contact_trial.cpp).
 //
 // The integrals of the gradients of a function over two bodies are g_a = A + L_a and g_b = -A + L_b, with the integral A of the function over the interface as area
