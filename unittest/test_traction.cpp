@@ -664,6 +664,25 @@ SERIAL_TEST(Traction, TellsOfNodesOfElements)
   EXPECT_THAT(run.error(start + nodes + end), HasSubstr("all points of group all are nodes"));
 }
 
+// a round bar that is drawn by a pressure: its rim curls in the updated frame and holds the load there, at rest with a third of the strain of theory
+SERIAL_TEST(Pressure, OfARimThatCurls)
+{
+  const auto scene = [](const char *frame) {
+    return plane("si", "f f", "0 0.8 0 2.4", 1, 0.05) +
+        strprintf("fix grid all mpm 0.1 axisymmetric yes %s\n", frame) +
+        "region bar block 0 0.2 0 1 INF INF\nregion end plane 0 1 0 0 -1 0\n"
+        "create_points 1 region bar ppc 2\n"
+        "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
+        "fix walls all mpm/boundary xlo ylo slip\nvariable p equal "
+        "-3.5e5*(time/2*(time<2)+(time>=2))\n"
+        "fix load all mpm/traction region end pressure v_p\nfix dt all mpm/dt 0.5\n"
+        "run 3000\n"
+        "fix rest all mpm/relax 1e-6\nrun 6000\n";
+  };
+  EXPECT_EQ(lines_that_say(scene(""), "its rim has curled").size(), 1u);
+  EXPECT_EQ(lines_that_say(scene("frame total"), "its rim has curled").size(), 0u);
+}
+
 SERIAL_TEST(Traction, BadInput)
 {
   const auto plain = bar("", 0.4, "", "");

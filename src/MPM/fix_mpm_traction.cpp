@@ -228,7 +228,8 @@ void FixMPMTraction::setup(int vflag)
 {
   if (!told_of_nodes) note_nodes();
   if (surface != FREE && !defined) define();
-  post_run();
+  note_lost();
+  evenness_at_start = evenness();
   post_force(vflag);
 }
 
@@ -258,8 +259,47 @@ void FixMPMTraction::note_nodes()
                    id, all[0], group->names[igroup], remedy);
 }
 
-/** Have points of the surface been deleted? */
 void FixMPMTraction::post_run()
+{
+  note_lost();
+  look_for_curls();
+}
+
+/** Size of the sum of the areas of a surface, with their normals, over the area: 1 for a plane. Collective. */
+double FixMPMTraction::evenness() const
+{
+  if (surface == FREE) return 1.0;
+  const auto *const points = MPMPoints::get(atom);
+  double mine[4] = {0.0, 0.0, 0.0, 0.0}, all[4];
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (rows[i][AREA] == 0.0) continue;
+    double area[3];
+    present_area(i, points->F[i], area);
+    for (int d = 0; d < 3; d++) mine[d] += rows[i][AREA] * area[d];
+    mine[3] += rows[i][AREA] * std::sqrt(dot(area, area));
+  }
+  if (fields[0]->options.axisymmetric) mine[0] = 0.0;    // of rings
+  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
+  return all[3] > 0.0 ? std::sqrt(dot(all, all)) / all[3] : 1.0;
+}
+
+/** A pressure that pulls turns with a rim that curls, and holds it there, at rest under a part of its load. Collective. */
+void FixMPMTraction::look_for_curls()
+{
+  constexpr double MUCH = 0.75, PLANE = 0.5;    // of the evenness at the start of the run, and that
+  const bool pulls = has_pressure && now[3].of_points.empty() && now[3].value < 0.0;
+  if (!pulls || evenness_at_start < PLANE) return;
+  const double now_even = evenness();
+  if (comm->me == 0 && now_even < MUCH * evenness_at_start)
+    error->warning(FLERR,
+                   "Fix mpm/traction {}: the resultant of the pressure, which pulls, is {:.2g} of "
+                   "pressure times area, and was {:.2g} at the start of the run: where the "
+                   "surface should not bulge by so much, its rim has curled: use frame total",
+                   id, now_even, evenness_at_start);
+}
+
+/** Have points of the surface been deleted? */
+void FixMPMTraction::note_lost()
 {
   if (surface == FREE) return;
   int here = 0;

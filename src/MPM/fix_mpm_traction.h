@@ -131,6 +131,10 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   void find_load(int k);
   void evaluate_loads();
   void note_nodes();
+  void note_lost();
+  double evenness_at_start = 1.0;
+  double evenness() const;
+  void look_for_curls();
   void define();
   void add_forces();
   void find_gradient(std::vector<double> &gradient);
