@@ -7,6 +7,7 @@
 // Keyword gain of fix mpm: energy that no work explains is told, and energy that work explains is not.
 
 #include "bad_input_testing.h"
+#include "mesh_grid_testing.h"
 
 #include "atom_vec.h"
 #include "comm.h"
@@ -320,14 +321,9 @@ TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
 // that is let go with v = x and vibrates along its axis, until most of its energy is stored
 TEST(EnergyWatch, KnowsForcesOfElements)
 {
-  std::string nodes, elements;
-  for (int k = 0; k < 18; k++) nodes += strprintf("%d %d %d 0\n", k + 1, k / 2, k % 2);
-  for (int k = 0; k < 8; k++)
-    elements +=
-        strprintf("%d 3 2 1 1 %d %d %d %d\n", k + 1, 2 * k + 1, 2 * k + 3, 2 * k + 4, 2 * k + 2);
-  const ScratchFile mesh("bar.msh",
-                         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n18\n" + nodes +
-                             "$EndNodes\n$Elements\n8\n" + elements + "$EndElements\n");
+  const ScratchFile mesh("bar.msh", gmsh(QUADS, {8, 1, 0}, [](double x, double y, double) {
+                           return std::array<double, 3>{8.0 * x, y, 0.0};
+                         }));
   Scene run(plane("lj", "p p", "-8 16 -4 6", 1, 0.5) +
             "fix grid all mpm 1.0 gain error 0.02\ncreate_points 1 mesh " + mesh.name +
             "\nfix m all mpm/material density 2 neohookean 100 0.3\nfix e all mpm/elements " +

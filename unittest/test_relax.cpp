@@ -6,7 +6,7 @@
 
 // Fix mpm/relax: dynamic relaxation with kinetic damping.
 
-#include "mpm_lammps.h"
+#include "mesh_grid_testing.h"
 
 #include "force.h"
 #include "update.h"
@@ -137,7 +137,6 @@ SERIAL_TEST(Beam, BendsUnderItsWeight)
   EXPECT_GT(error[0] / error[1], 3.0);
 }
 
-// forces are those of LAMMPS's units: bodies in free fall, and under pressure
 // Stops add nothing to vibrations that come to their maximum in two or three steps: those of a bar of one cell across grew
 // by 10 % with each rest when nothing else was left, and those of linear functions so that points got lost. The ledger has what nodes do not get
 // in the steps after such rests
@@ -164,14 +163,9 @@ SERIAL_TEST(Bar, VibrationsOfFewStepsDecay)
 // 8 % of the energy in play
 SERIAL_TEST(Bar, OfElementsGainsNothing)
 {
-  std::string nodes, elements;
-  for (int k = 0; k < 18; k++) nodes += strprintf("%d %d %d 0\n", k + 1, k / 2, k % 2);
-  for (int k = 0; k < 8; k++)
-    elements +=
-        strprintf("%d 3 2 1 1 %d %d %d %d\n", k + 1, 2 * k + 1, 2 * k + 3, 2 * k + 4, 2 * k + 2);
-  const ScratchFile mesh("bar.msh",
-                         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n18\n" + nodes +
-                             "$EndNodes\n$Elements\n8\n" + elements + "$EndElements\n");
+  const ScratchFile mesh("bar.msh", gmsh(QUADS, {8, 1, 0}, [](double x, double y, double) {
+                           return std::array<double, 3>{8.0 * x, y, 0.0};
+                         }));
   for (const char *transfer : {"apic", "flip 1.0"}) {
     Scene run(plane("lj", "p p", "-8 16 -4 6", 1, 0.5) +
               "fix grid all mpm 1.0 gain error 0.01 transfer " + transfer +
@@ -186,6 +180,7 @@ SERIAL_TEST(Bar, OfElementsGainsNothing)
   }
 }
 
+// forces are those of LAMMPS's units: bodies in free fall, and under pressure
 SERIAL_TEST(Forces, HaveUnits)
 {
   for (const char *units : {"si", "metal", "real", "lj"}) {

@@ -152,20 +152,20 @@ FixMPMContact::Covers FixMPMContact::look_along(const Body &body, const Line &li
 /** The direction of a line, by its interface or by that of the wider body. Returns how much it is the latter, from 0 to 1. */
 double FixMPMContact::turn_to_wider(Line &line) const
 {
-  double n[3] = {0.0, 0.0, 0.0};
+  double n[3] = {0.0, 0.0, 0.0}, wide[3];
   for (const auto &place : line.places)
     for (int d = 0; d < 3; d++) n[d] += pairs[place.second].area * pairs[place.second].n[d];
-  MathExtra::norm3(n);
   const double wider = line.seen[0].share - line.seen[1].share,
                turned = std::min(std::fabs(wider) / WIDER, 1.0);
-  double wide[3];
   MathExtra::copy3(line.seen[wider > 0.0 ? 0 : 1].g, wide);
-  const double length = MathExtra::len3(wide);
-  MathExtra::copy3(n, line.n);
-  if (length == 0.0) return 0.0;
-  MathExtra::scale3((wider > 0.0 ? 1.0 : -1.0) / length, wide);
-  for (int d = 0; d < 3; d++) line.n[d] += turned * (wide[d] - n[d]);
-  MathExtra::norm3(line.n);
+  const double length = MathExtra::len3(n), of_wide = MathExtra::len3(wide);
+  MathExtra::zero3(line.n);    // both sides of a thin body may leave nothing
+  if (length > 0.0) MathExtra::scale3(1.0 / length, n, line.n);
+  if (of_wide == 0.0) return 0.0;
+  MathExtra::scale3((wider > 0.0 ? 1.0 : -1.0) / of_wide, wide);
+  for (int d = 0; d < 3; d++) line.n[d] += turned * (wide[d] - line.n[d]);
+  const double size = MathExtra::len3(line.n);
+  if (size > 0.0) MathExtra::scale3(1.0 / size, line.n);
   return turned;
 }
 

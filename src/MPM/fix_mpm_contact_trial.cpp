@@ -106,6 +106,7 @@ int FixMPMContact::rows_of_tie() const
    ties
 ------------------------------------------------------------------------- */
 
+/** Two bodies at a node, with the area and normal of their interface there; false: they have none. */
 bool FixMPMContact::make_trial_pair(const Common &c, int n, int a, int b, Pair &pair)
 {
   constexpr double SMALL = 1.0e-10;
@@ -254,8 +255,9 @@ void FixMPMContact::add_tie(const std::vector<Line> &lines, const std::vector<in
     const auto &wa = pair.walls_a, &wb = pair.walls_b;
     held &= (wa.held | wa.outside) & (wb.held | wb.outside);
   }
-  if (area == 0.0) return;
-  MathExtra::norm3(tie.n);
+  const double length = MathExtra::len3(tie.n);
+  if (length == 0.0) return;
+  MathExtra::scale3(1.0 / length, tie.n);
   find_tangents(tie, held);
   const auto number = [&](const Body &body, const double *record) {
     return (record - body.field->grid.nodes()) / body.field->grid.nreal;
