@@ -42,7 +42,7 @@ struct MPMPoreOptions {
   bool geostatic = false;          ///< at rest under the weight at first
   double K0 = 0.0, table = 0.0;    ///< with this ratio of stresses, and height of the water table
   double most_suction = -1.0;      ///< at first, positive; negative: no limit
-  double relax = 0.2;
+  double relax = 0.4;
   int most_stages = 64;
   static constexpr int AUTO = 0;
   int every = 1;    ///< water flows in one of up to this many steps, or AUTO

@@ -281,6 +281,29 @@ void MPMNodeScalar::values_to_points(const TakeValues &take)
   std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
 }
 
+void MPMNodeScalar::values_to_points_and_back(const Exchange &exchange, std::vector<double> &nodes)
+{
+  field.nodes.complete(value.data(), 1, 1);
+  nodes.assign(field.grid.nnodes(), 0.0);
+  double values[BATCH + SPARE_ROWS];
+  double *const tile = tiles[0].data(), *const from = tiles[1].data();
+  for (const auto &block : field.map->active) {
+    if (box_of(block)[0] > box_of(block)[3]) continue;
+    const int *const slot = field.grid.blocks[block.slot].slot;
+    kernels.load(from, value.data(), slot, box_of(block));
+    visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
+      prepare();
+      kernels.get_values(stencil, from, values);
+      exchange(run, first, n, values);
+      kernels.add_values(stencil, values, tile);
+      return true;
+    });
+    kernels.flush(tile, nodes.data(), slot, box_of(block));
+  }
+  sum(nodes);
+  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+}
+
 void MPMNodeScalar::gradients_to_points(const Conduct &take)
 {
   field.nodes.complete(value.data(), 1, 1);

@@ -101,6 +101,10 @@ class MPMNodeScalar {
   /** changes: give the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
   void values_to_points(const TakeValues &);
+  /** In: values of nodes at points; out: what points give to the sums over points of add_up(). */
+  using Exchange = std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
+  /** values_to_points() and add_up() in one. */
+  void values_to_points_and_back(const Exchange &, std::vector<double> &nodes);
   /** Gradients and values at points. */
   void gradients_to_points(const Conduct &);
   /** Sums sum_p q_p N_ip of numbers q_p that points give, of runs that have a part. */

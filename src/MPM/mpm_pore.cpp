@@ -420,7 +420,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
     in_forces[i] *= value;
     if (suction) suction->set_lag(i, state[i][0] - value);
   };
-  if (motion) {
+  if (motion)
     nodes.gradients_to_points(
         [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
           for (int p = 0; p < n; p++) {
@@ -428,10 +428,23 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
             take(first + p, q[p][3]);
           }
         });
-  } else if (!waiting) {
+  if (solve) {
+    unseen.clear();
     nodes.values_to_points([&](const MPMPointMap::Run &, int first, int n, const double *values) {
       for (int p = 0; p < n; p++) take(first + p, values[p]);
     });
+  } else {
+    nodes.values_to_points_and_back(
+        [&](const MPMPointMap::Run &, int first, int n, double *values) {
+          for (int p = 0; p < n; p++) {
+            const int i = first + p;
+            if (!motion && !waiting) take(i, values[p]);
+            values[p] = capacity[i] * (state[i][0] - values[p]);
+          }
+        },
+        unseen);
+    for (std::size_t k = 0; k < unseen.size(); k++)
+      if (nodes.capacity[k] > 0.0) unseen[k] /= nodes.capacity[k];
   }
   if (!surface.any()) return;
   // places at surfaces look at nodes of periodic images, too
@@ -662,12 +675,18 @@ void MPMPore::find_rates(std::vector<double> &inflow)
 }
 
 /* ----------------------------------------------------------------------
-   What nodes do not see of the pressures of points goes in the time in which flow crosses a cell, as in the
-   conduction of heat (mpm_conduction.cpp), and also in about 1/relax of the time in which a wave does. On the
-   way from nodes to points and back an alternating pressure keeps 0.61 of itself, and a linear one all: per
-   time, k^4 is taken from a wave with the number k. So a pressure that alternates with next to no force on
-   nodes, which a load that the lattice does not resolve makes, goes in some crossings of a cell, and one over
-   many cells stays.
+   What nodes do not see of the pressures of points, r_p, goes in the time in which flow crosses a cell, as in the
+   conduction of heat (mpm_conduction.cpp), and also in about 1/relax of the time in which a wave does, but for what
+   of it is smooth:
+
+     s_p = sum_i N_ip sum_q C_q N_iq r_q/C_i,  sum_p C_p s_p = sum_p C_p r_p,
+
+   as nodes give it back to points without slopes. On the way from nodes to points and back an alternating pressure
+   keeps 0.61 of itself with slopes, 0.14 without, and a linear one all, with the errors k^4 and k^2 for a wave with
+   the number k: per time, k^6 is taken from it. So a pressure that alternates with next to no force on nodes, which
+   a load that the lattice does not resolve makes, goes in some crossings of a cell, and one over many cells stays.
+   Without s this would be k^4, and pressures too even in long runs of slow flow. Points need no pass of their own
+   for s: nodes have its values before they give points theirs.
 ------------------------------------------------------------------------- */
 
 double MPMPore::rate_of_waves() const
@@ -680,15 +699,16 @@ double MPMPore::rate_of_lag() const
   return slowest / (field.lattice.h * field.lattice.h) + rate_of_waves();
 }
 
-/** By a flow that follows steps without one all that nodes do not see is lost. Of a smooth wave with the number k they see, and give back to
- *  points with its slopes, 1 - 0.056 (k h)^4, from the moments of quadratic functions. Soil that gives way holds the rest. */
+/** By a flow that follows steps without one all that nodes do not see is lost, but for what is smooth. Of a wave with the number k they see,
+ *  and give back to points with its slopes, 1 - 0.056 (k h)^4, and without slopes 1 - (k h)^2/4, from the moments of quadratic functions. Soil
+ *  that gives way holds the rest. */
 MPMPore::Smoothing MPMPore::smoothing(double duration) const
 {
-  constexpr double UNSEEN = 0.056, PHASE = MathConst::MY_2PI / Smoothing::WAVELENGTH;
+  constexpr double PHASE = MathConst::MY_2PI / Smoothing::WAVELENGTH, SQUARE = PHASE * PHASE,
+                   UNSEEN = 0.056 * SQUARE * SQUARE, ROUGH = 0.25 * SQUARE;
   if (suction || solve) return {0.0, 0.0};
   const double h = field.lattice.h, lag = waiting ? 1.0 : 1.0 - exp(-rate_of_waves() * duration);
-  const double lost = lag * UNSEEN * PHASE * PHASE * PHASE * PHASE,
-               flowed = slowest * duration * PHASE * PHASE / (h * h);
+  const double lost = lag * UNSEEN * ROUGH, flowed = slowest * duration * SQUARE / (h * h);
   const bool known = std::none_of(soils.begin(), soils.end(), [](const auto &s) {
     return s.of.law == MPMPoreSoil::FORMULA;
   });
@@ -698,7 +718,11 @@ MPMPore::Smoothing MPMPore::smoothing(double duration) const
 void MPMPore::end_step(const MPMRows &state, double dt)
 {
   const int dim = field.lattice.dim;
-  const double keep = solve ? solve->keep : exp(-rate_of_lag() * dt);
+  const double keep = solve ? solve->keep
+      : waiting             ? 0.0
+      : suction             ? suction->kept_share()
+                            : exp(-rate_of_lag() * dt);
+  for (std::size_t k = 0; k < unseen.size(); k++) nodes.value[k] += (1.0 - keep) * unseen[k];
   nodes.nodes_to_points(
       [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q, const double *) {
         for (int i = first; i < first + n && warmth; i++) (*warmth)[i] = warm[i];
@@ -796,7 +820,7 @@ double MPMPore::memory_usage() const
   if (suction) bytes += suction->memory_usage();
   if (layers) bytes += layers->memory_usage();
   for (const auto *list : {&in_forces, &capacity, &conductance, &mean, &squeezed, &quadratic,
-                           &volumes, &linear_mean, &quadratic_mean, &of_flow})
+                           &volumes, &linear_mean, &quadratic_mean, &of_flow, &unseen})
     bytes += list->capacity() * sizeof(double);
   if (!solve) return bytes;
   for (const auto *list : {&solve->start, &solve->capacity, &solve->biot, &solve->gradient,

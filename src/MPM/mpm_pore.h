@@ -128,7 +128,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
 
   /** What a flow for this time takes from smooth pressures of points, as nodes do not see all of them. */
   struct Smoothing {
-    static constexpr double WAVELENGTH = 20.0;    ///< of a pressure, in node spacings
+    static constexpr double WAVELENGTH = 12.0;    ///< of a pressure, in node spacings
     double share;                                 ///< of its amplitude that is lost
     double over_flow;                             ///< that over what flow takes; 0: not known
   };
@@ -178,6 +178,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   std::vector<double> linear_mean,
       quadratic_mean;             // [n] with layers: resistances across interfaces
   std::vector<double> of_flow;    // [node][8] next to the surface
+  std::vector<double> unseen;     // [node] by points, what nodes do not see of their pressures
 
   // of an implicit step
 

@@ -91,6 +91,8 @@ class MPMPoreSuction : protected Pointers {
     if (square <= most * most) return;
     for (int d = 0; d < 3; d++) flow[d] *= most / sqrt(square);
   }
+  /** The share of the lag that stays in this step, where most of it does. */
+  double kept_share() const { return longest; }
   double kept_lag(int i) const { return of[i].keep * of[i].lag; }
   /** Point i has got a volume of water. guess: its pressure if its capacity had not changed. Returns its
    *  pressure. */
