@@ -56,6 +56,7 @@ void MPMPore::begin_solve(double dt, bool inertial)
   const std::size_t nmax = atom->nmax;
   const double h = field.lattice.h, unit = force->mvv2e * force->nktv2p;
   if (!solve) solve = std::make_unique<Solve>();
+  unseen.clear();    // of a step that was not known to be implicit
   Solve &s = *solve;
   s.dt = dt;
   s.capacity = nodes.capacity;
