@@ -376,4 +376,10 @@ SERIAL_TEST(MeshGrid, Locking)
   EXPECT_EQ(warnings(quads, "linear 1 0.49", 0), 0u);
   EXPECT_EQ(warnings(triangles, "linear 1 0.45", 0), 0u);
   EXPECT_EQ(warnings(triangles, "eos linear 1 viscosity newtonian 0.01", 0, "frame updated"), 0u);
+  // plastic flow keeps the volume at any Poisson ratio
+  const std::string metal = "eos linear 1 strength j2 0.46 1e-3", sand = "drucker/prager 1 0.3 30";
+  EXPECT_EQ(warnings(triangles, metal, 0), 1u);
+  EXPECT_EQ(warnings(quads, metal, 1, "frame updated"), 1u);
+  EXPECT_EQ(warnings(quads, metal, 0), 0u);
+  EXPECT_EQ(warnings(triangles, sand, 0), 1u);
 }
