@@ -737,6 +737,19 @@ variable atoms atom x
 }
 
 // a mouth that moves out of the box takes its points there
+SERIAL_TEST(BadInput, AnotherArea)
+{
+  const auto told = [](double area) {
+    return lines_that_say(plug("0.02", 0.0, "2 0 0", strprintf("area %.17g", area)) +
+                              "timestep 0.001\nrun 1\n",
+                          "across the flow, and")
+        .size();
+  };
+  EXPECT_EQ(told(B), 0u);
+  EXPECT_EQ(told(1.01 * B), 0u);
+  EXPECT_EQ(told(10.0 * B), 1u);
+}
+
 SERIAL_TEST(BadInput, OutOfTheBox)
 {
   Scene run(plug("0.02", 0.0, "2 0 0", "move -4 0 0") + "timestep 0.001\n");

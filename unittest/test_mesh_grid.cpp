@@ -383,3 +383,29 @@ SERIAL_TEST(MeshGrid, Locking)
   EXPECT_EQ(warnings(quads, metal, 0), 0u);
   EXPECT_EQ(warnings(triangles, sand, 0), 1u);
 }
+
+// In the updated frame a body can be elsewhere than the sides that are loaded
+SERIAL_TEST(MeshGrid, LostLoads)
+{
+  const auto square = [](double x, double y, double) {
+    return std::array<double, 3>{4.0 * x, 4.0 * y, 0.0};
+  };
+  const ScratchFile grid("grid.msh", gmsh(QUADS, {8, 8, 0}, square));
+  const auto warnings = [&](const std::string &body, const std::string &options) {
+    return lines_that_say(box(2, "lj", "f f f", "-1 6 -1 6 -1 6", 1, 0.1) + "region body block " +
+                              body +
+                              " INF INF\ncreate_points 1 region body spacing 0.25\n"
+                              "fix m all mpm/material density 1 linear 1 0.3\nfix g all mpm/mesh " +
+                              grid.name + " " + options + "\ntimestep 1e-4\nrun 1\nrun 1\n",
+                          "acts on nothing in");
+  };
+  EXPECT_EQ(warnings("0 4 0 4", "pressure xhi 1").size(), 0u);
+  EXPECT_EQ(warnings("0 3.75 0 4", "pressure xhi 1").size(), 0u);    // in the same cells
+  EXPECT_EQ(warnings("0 2 0 4", "slip xhi").size(), 0u);
+  const auto all = warnings("0 2 0 4", "pressure xhi 1"),
+             half = warnings("0 4 0 2", "traction xhi 1 0 frame total");
+  ASSERT_EQ(all.size(), 2u);    // at the start of each run
+  EXPECT_THAT(all[0], HasSubstr("pressure on xhi acts on nothing in 100 % of its area"));
+  ASSERT_EQ(half.size(), 2u);
+  EXPECT_THAT(half[0], HasSubstr("traction on xhi acts on nothing in 43.8 % of its area"));
+}

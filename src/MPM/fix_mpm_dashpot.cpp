@@ -278,7 +278,7 @@ void FixMPMDashpot::define()
     MPI_Allreduce(ends, all_ends, 3, MPI_DOUBLE, MPI_MIN, world);
     if (all[1] > 0.0) check_column(all_ends[0], -all_ends[1], -all_ends[2]);
   }
-  face.check("Fix mpm/dashpot " + std::string(id), igroup, area > 0.0);
+  face.check("Fix mpm/dashpot " + std::string(id), igroup, area);
   const double scale = area > 0.0 ? area / all[0] : 1.0;
   for (int i = 0; i < atom->nlocal; i++)
     for (const int k : {(int) AREA, (int) SHARE, (int) STRESS}) rows[i][k] *= scale;

@@ -584,6 +584,10 @@ void FixMPMMesh::initial_integrate(int)
   if (follows) forces->follow(counts_cell, positions, ranks);
   if (heat) heat->conduct(bodies(), update->dt);
   points_to_nodes();
+  if (steps == 0 && !contact && forces->has_loads())
+    forces->warn_of_lost_loads(fmt::format("Fix mpm/mesh {}", id), [this](int node) {
+      return has_node[node] && ranks.first[node] && sums[node].mass > 0.0;
+    });
   find_velocities();
   nodes_to_points();
   if (musl) map_back();

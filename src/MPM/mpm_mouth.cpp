@@ -22,6 +22,9 @@ using namespace MPM_NS;
 
 // samples along an edge of the section, for its area, which is then known to 1e-5 for a circle
 static constexpr int AREA_SAMPLES = 1000;
+
+static constexpr double WRONG_AREA = 0.02;    // share by which a known one may be off
+
 // samples along its edges and the flow, which tell whether all sections are the same, and share of those that may differ: those
 // next to curved faces, where round-off decides
 static constexpr int PRISM_SAMPLES = 40, PRISM_SECTIONS = 9;
@@ -81,7 +84,14 @@ MPMMouth::MPMMouth(LAMMPS *lmp, const std::string &user, Region *mouth, const do
 
   const bool rectangle = find_section(name, low, high);
   check_prism(name);
-  if (known_area > 0.0) area = known_area;
+  if (known_area > 0.0) {
+    if (std::fabs(known_area / area - 1.0) > WRONG_AREA && comm->me == 0)
+      error->warning(FLERR,
+                     "{} has an area of {:.5g}{} across the flow, and {:.5g} is given: density and "
+                     "pressure of what comes will be wrong",
+                     name, area, axisymmetric ? " in the half plane" : "", known_area);
+    area = known_area;
+  }
 
   double n[2] = {1.0, 1.0}, step[2] = {0.0, 0.0};
   for (int k = 0; k < dim - 1; k++) {
