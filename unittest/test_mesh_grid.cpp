@@ -142,10 +142,12 @@ SERIAL_TEST(MeshGrid, PatchOfAnyCells)
     const ScratchFile file("patch.msh", distorted);
     const bool exact = kind == TRIANGLES || kind == TETRAHEDRA;
     double worst[3] = {0.0, 0.0, 0.0};
+    // uniform volume ratios are their own means
+    const std::string locking = exact ? " locking fbar" : "";
     for (int halve = 1; halve < (exact ? 2 : 3); halve++) {
       Scene run(scene(dim, file.name, "neohookean 1 0.3",
                       "frame total slip xlo slip ylo traction xhi 0.05 0" +
-                          std::string(dim == 3 ? " 0 slip zlo" : ""),
+                          std::string(dim == 3 ? " 0 slip zlo" : "") + locking,
                       halve));
       const double damping = 2.0 / run.gather().size();
       run.commands(strprintf(
@@ -185,7 +187,7 @@ static std::array<double, 2> momentum(Scene &run)
 SERIAL_TEST(MeshGrid, EnergyAndMomentum)
 {
   for (const std::string frame : {"total", "updated"})
-    for (const std::string transfer : {"flip 1", "apic"}) {
+    for (const std::string transfer : {"flip 1", "apic", "flip 1 locking fbar"}) {
       const ScratchFile file("bar.msh", bar(TRIANGLES, 3)),
           grid("grid.msh", surroundings(TRIANGLES, 3));
       Scene run(
@@ -276,22 +278,23 @@ SERIAL_TEST(MeshGrid, CreepingFlowAroundACylinder)
 TEST(MeshGrid, RanksAndRestart)
 {
   for (const bool total : {true, false})
-    for (const Kind kind : {TRIANGLES, HEXAHEDRA}) {
-      const int dim = kind == TRIANGLES ? 2 : 3;
-      const std::string mesh = kind == TRIANGLES ? tube(kind, 8) : bar(kind, 3);
+    for (const Kind kind : {TRIANGLES, HEXAHEDRA, QUADS}) {
+      const int dim = kind == HEXAHEDRA ? 3 : 2;
+      const std::string mesh = dim == 2 ? tube(kind, 8) : bar(kind, 3);
       const ScratchFile file("ranks.msh", mesh), grid("grid.msh", surroundings(kind, 2));
       const std::string name = total ? file.name : grid.name;
       const std::string options = total
           ? "frame total slip ylo pressure xlo v_p"
           : "transfer apic slip ylo traction xlo v_p 0" + std::string(dim == 3 ? " 0" : "");
+      const std::string locking = kind == QUADS ? " locking fbar" : "";
       const std::string variable = "variable p equal 0.02*sin(time)\n";
       const std::string others = "fix v all viscous 1e-4\ntimestep 0.01\n";
       const std::string fixes =
           "fix m all mpm/material density 1 neohookean 1 0.3\nfix g all mpm/mesh " + name + " " +
-          options + "\n" + others;
+          options + locking + "\n" + others;
       const std::string first = variable +
-          replaced(scene(dim, file.name, "neohookean 1 0.3", options, 1, name), "-1 6 -1 6",
-                   "-0.5 4.5 -0.9 2.9") +
+          replaced(scene(dim, file.name, "neohookean 1 0.3", options + locking, 1, name),
+                   "-1 6 -1 6", "-0.5 4.5 -0.9 2.9") +
           "velocity all set 0.05 0.1 0\nvelocity all ramp vx 0.05 -0.05 x 0 4 sum yes\n" + others;
       Twins(first, 60, "neighbor 0.1 bin\n" + variable + fixes, 60, 1e-11);
       OnRanks balanced(first, "run 120\n", "fix b all balance 20 1.0 shift xy 5 1.1\n");
@@ -382,6 +385,42 @@ SERIAL_TEST(MeshGrid, Locking)
   EXPECT_EQ(warnings(quads, metal, 1, "frame updated"), 1u);
   EXPECT_EQ(warnings(quads, metal, 0), 0u);
   EXPECT_EQ(warnings(triangles, sand, 0), 1u);
+  EXPECT_EQ(warnings(triangles, metal, 0, "frame total locking fbar"), 0u);
+  EXPECT_EQ(warnings(triangles, "neohookean 1 0.499", 0, "locking fbar"), 0u);
+}
+
+// Lame's tube with a Poisson ratio of 0.499 widens as it should with means, and quadrangles by half of that without
+SERIAL_TEST(MeshGrid, FbarDoesNotLock)
+{
+  const double p = 1e-5, nu = 0.499;
+  for (const Kind kind : {TRIANGLES, QUADS})
+    for (const std::string frame : {"total", "updated"}) {
+      double error[2];
+      for (const bool fbar : {false, true}) {
+        const ScratchFile file("tube.msh", tube(kind, 4));
+        Scene run(scene(2, file.name, "linear 1 0.499",
+                        "frame " + frame + " slip ylo slip yhi pressure xlo 1e-5" +
+                            (fbar ? " locking fbar" : ""),
+                        kind == QUADS));
+        const auto start = run.gather();
+        run.commands("fix v all viscous " + strprintf("%.17g", 3.3 / start.size()) +
+                     "\nfix d all mpm/dt 0.5 until 40\nrun 100000\n");
+        const auto end = run.gather();
+        double sum = 0.0, all = 0.0;
+        for (std::size_t k = 0; k < start.size(); k++) {
+          const double *const X = start[k].x, r = hypot(X[0], X[1]);
+          sum += hypot(end[k].x[0], end[k].x[1]) - r;
+          all += (1 + nu) * p / 3.0 * ((1 - 2 * nu) * r + 4.0 / r);
+        }
+        error[fbar] =
+            measured("mean displacement, " + frame + (fbar ? " fbar" : ""), sum / all) - 1.0;
+      }
+      if (kind == QUADS) {
+        EXPECT_LT(error[0], -0.4);
+        EXPECT_LT(std::fabs(error[1]), 0.02);
+      } else
+        EXPECT_LT(std::fabs(error[1]), std::fabs(error[0]));
+    }
 }
 
 // In the updated frame a body can be elsewhere than the sides that are loaded

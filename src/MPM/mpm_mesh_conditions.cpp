@@ -12,6 +12,7 @@
 #include "mpm_mesh_ranks.h"
 #include "mpm_options.h"
 
+#include "comm.h"
 #include "error.h"
 #include "force.h"
 #include "modify.h"

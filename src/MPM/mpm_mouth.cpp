@@ -8,6 +8,7 @@
 
 #include "mpm_mouth.h"
 
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "math/matrix.h"
