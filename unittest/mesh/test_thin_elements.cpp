@@ -716,6 +716,19 @@ SERIAL_TEST(Airbag, VentAndInflow)
   EXPECT_NEAR(suck.fix("b")->compute_vector(4) / T, 2.0 * gamma / (gamma + 1.0), 1e-3);
 }
 
+// the summary of a run has the time step over the limit of elements, not over that of a lattice whose nodes have no waves of their own
+SERIAL_TEST(Airbag, SummaryTellsTheLimit)
+{
+  const ScratchFile file("ball.msh", sphere(2, 0.1));
+  const auto lines = lines_that_say(
+      box(3, -0.3, 0.3, 0.05, "") + thin_body(file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+          "fix b all mpm/airbag e gas 1100 1.4 outside 1000\nfix d all mpm/dt 0.5\nrun 100\n",
+      " of the limit ");
+  ASSERT_EQ(lines.size(), 1u);
+  const double share = std::stod(lines[0].substr(lines[0].find("at the end ") + 11));
+  EXPECT_NEAR(measured("share of the limit", share), 0.5, 0.05);
+}
+
 // a bag that lies across periodic faces from the start holds what it holds elsewhere, and keeps it while it moves
 TEST(Airbag, AcrossPeriodicFaces)
 {
