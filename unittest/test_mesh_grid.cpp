@@ -306,6 +306,30 @@ TEST(MeshGrid, RanksAndRestart)
     }
 }
 
+// A pressure, or means against locking, that come after a restart know where the nodes have gone; another frame is an error
+SERIAL_TEST(MeshGrid, MoreOptionsAfterARestart)
+{
+  const ScratchFile file("tube.msh", tube(QUADS, 4)), restart("restart");
+  const std::string material = "neohookean 1 0.3",
+                    load = "frame total slip ylo slip yhi traction xhi 0.1 0.03 ",
+                    others = "fix v all viscous 0.01\ntimestep 0.03\n",
+                    variable = "variable p equal 0.2*(step>100)\n",
+                    fixes = "fix m all mpm/material density 1 " + material +
+      "\nfix g all mpm/mesh " + file.name + " ";
+  Scene whole(variable + scene(2, file.name, material, load + "pressure xlo v_p") + others +
+              "run 100\nrun 60\n");
+  Scene first(scene(2, file.name, material, load) + others + "run 100\nwrite_restart " +
+              restart.name + "\n");
+  Scene again("read_restart " + restart.name + "\nneighbor 0.1 bin\n" + variable + fixes + load +
+              "pressure xlo v_p\n" + others + "run 60\n");
+  EXPECT_LT(measured("difference", difference(whole.gather(), again.gather())), 1e-12);
+  Scene fbar("read_restart " + restart.name + "\nneighbor 0.1 bin\n" + fixes + load +
+             "locking fbar\n" + others + "run 1\n");
+  EXPECT_LT(measured("one step with means", difference(first.gather(), fbar.gather())), 0.05);
+  expect_error("read_restart " + restart.name + "\n" + fixes + "slip ylo\n",
+               "has another frame or mesh than in the restart file");
+}
+
 // Output sees history variables and energies of points on a mesh
 SERIAL_TEST(MeshGrid, Output)
 {

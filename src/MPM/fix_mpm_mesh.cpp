@@ -154,9 +154,8 @@ FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) :
   }
   shortest = std::numeric_limits<double>::max();
   for (const auto &one : mesh->cells) shortest = std::min(shortest, one.height);
-  follows = total && (forces->has_pressure() || fbar);
+  if (total) positions = mesh->nodes;
   if (fbar) means = std::make_unique<MPMMeshMeans>(*mesh, ranks);
-  if (follows) positions = mesh->nodes;
   if (comm->me == 0)
     utils::logmesg(lmp,
                    "Fix mpm/mesh {}: {} cells, {} nodes, the smallest height of a cell is {:.6g}\n",
@@ -539,10 +538,10 @@ void FixMPMMesh::find_ranks()
       for (int k = 0; k < one.nnode && near; k++) wanted[one.node[k]] = 1;
     }
   }
-  if (follows) share_positions();
+  if (total) share_positions();
   has_node.swap(wanted);
   ranks.find(has_node);
-  if (!follows) return;
+  if (!total || !forces->has_pressure()) return;
   std::vector<int> lowest(mesh->cells.size(), comm->nprocs);
   for (std::size_t c = 0; c < lowest.size(); c++)
     if (with_points[c]) lowest[c] = comm->me;
@@ -589,7 +588,7 @@ void FixMPMMesh::initial_integrate(int)
   check_dt();
   forces->evaluate();
   forces->clear_sums();
-  if (follows && forces->has_pressure()) forces->follow(counts_cell, positions, ranks);
+  if (total && forces->has_pressure()) forces->follow(counts_cell, positions, ranks);
   if (heat) heat->conduct(bodies(), update->dt);
   points_to_nodes();
   if (steps == 0 && !contact && forces->has_loads())
@@ -904,7 +903,7 @@ void FixMPMMesh::move_and_strain()
   const double dt = update->dt;
   const auto &strains = musl ? mapped : after;
   const auto &moves = musl && !total ? mapped : after;
-  if (follows)
+  if (total)
     for (const int node : ranks.nodes)
       for (int d = 0; d < dim; d++) positions[node][d] += dt * strains[node][d];
   if (means) find_mean_strain(strains);
@@ -1080,11 +1079,9 @@ double FixMPMMesh::compute_vector(int k)
 void FixMPMMesh::write_restart(FILE *fp)
 {
   std::vector<double> totals = {load_work};
-  std::vector<double> same;
-  if (follows) {
-    share_positions();
-    for (const auto &x : positions) same.insert(same.end(), x.begin(), x.end());
-  }
+  std::vector<double> same = {(double) positions.size()};
+  if (total) share_positions();
+  for (const auto &x : positions) same.insert(same.end(), x.begin(), x.end());
   write_totals(fp, world, totals, same);
   load_work = totals[0];
 }
@@ -1093,8 +1090,14 @@ void FixMPMMesh::restart(char *buf)
 {
   const auto *list = (const double *) buf;
   load_work = comm->me == 0 ? list[0] : 0.0;
+  if (list[1] != (double) positions.size())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh {} has another frame or mesh than in the restart file, where {} nodes "
+               "have moved, and not {}: give it those of the file",
+               id, list[1], positions.size());
+  list += 2;
   for (auto &x : positions) {
-    std::copy_n(list + 1, 3, x.data());
+    std::copy_n(list, 3, x.data());
     list += 3;
   }
 }

@@ -108,9 +108,9 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   std::vector<Node> sums;
   std::vector<MPM_NS::MeshVector> before, after, mapped;    // velocities
 
-  // where nodes of the reference configuration have gone, for a pressure that follows, and for means
+  // where nodes of the reference configuration have gone, for a pressure that follows, and for means: in any case, as either may come
+  // after a restart; updated frame: empty
 
-  bool follows = false;
   std::vector<MPM_NS::MeshVector> positions;
   std::vector<char> counts_cell;    // [cell] is this the first rank with points in it?
 
