@@ -420,6 +420,25 @@ TEST(Dashpot, WarnsOfTwoOnOneFace)
   EXPECT_EQ(warnings("fix two all mpm/dashpot region top 1 0.5").size(), 0u);
 }
 
+// Velocities that are mapped back and moving least squares: 14 % of the amplitude of a layer on rock was missing, and 19 % with half the spacing
+SERIAL_TEST(Dashpot, WarnsOfSchemesThatTakeWaves)
+{
+  const auto warnings = [](const std::string &options) {
+    return lines_that_say(strip(options, 0.0, 20, 4) +
+                              "fix far all mpm/dashpot region right 1 0.5\ntimestep 0.1\nrun 1\n",
+                          "of the amplitude of waves")
+        .size();
+  };
+  for (const std::string transfer : {"transfer aflip 1.0", "transfer apic"}) {
+    EXPECT_EQ(warnings(transfer), 0u);
+    EXPECT_EQ(warnings(transfer + " scheme musl"), 1u);
+    EXPECT_EQ(warnings(transfer + " scheme usf"), 1u);
+    EXPECT_EQ(warnings(transfer + " scheme musl stress gradient"), 0u);
+  }
+  EXPECT_EQ(warnings("transfer apic frame total scheme musl"), 1u);
+  EXPECT_EQ(warnings("transfer tpic scheme musl"), 0u);
+}
+
 SERIAL_TEST(Dashpot, BadInput)
 {
   const auto plain = strip("", 0.0, 20, 4);

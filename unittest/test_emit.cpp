@@ -737,6 +737,36 @@ variable atoms atom x
 }
 
 // a mouth that moves out of the box takes its points there
+// Around an axis of symmetry the area that is given is that of an annulus, as what is found
+SERIAL_TEST(Emit, AreaOfAnAnnulus)
+{
+  const double exact = PI * (0.09 * 0.09 - 0.03 * 0.03);
+  for (const std::string area : {"", "area "}) {
+    const std::string scene = plane("si", "f f", "0 0.3 0 0.8", 1, 0.01) +
+        "fix grid all mpm 0.02 axisymmetric yes\nfix axis all mpm/boundary xlo slip\n"
+        "fix m all mpm/material density 1000 eos linear 0.1\n"
+        "region mouth block 0.03 0.09 0.1 0.2 INF INF\n"
+        "fix in all mpm/emit 1 region mouth velocity 0 2 0 " +
+        (area.empty() ? "" : area + strprintf("%.17g", exact)) + "\ntimestep 0.001\nrun 1\n";
+    EXPECT_EQ(lines_that_say(scene, "across the flow, and").size(), 0u);
+    Scene run(scene);
+    EXPECT_NEAR(run.fix_vector("in", 13)[8] / (2000.0 * exact), 1.0, 1e-12);
+  }
+}
+
+SERIAL_TEST(BadInput, AnotherArea)
+{
+  const auto told = [](double area) {
+    return lines_that_say(plug("0.02", 0.0, "2 0 0", strprintf("area %.17g", area)) +
+                              "timestep 0.001\nrun 1\n",
+                          "across the flow, and")
+        .size();
+  };
+  EXPECT_EQ(told(B), 0u);
+  EXPECT_EQ(told(1.01 * B), 0u);
+  EXPECT_EQ(told(10.0 * B), 1u);
+}
+
 SERIAL_TEST(BadInput, OutOfTheBox)
 {
   Scene run(plug("0.02", 0.0, "2 0 0", "move -4 0 0") + "timestep 0.001\n");

@@ -481,6 +481,28 @@ SERIAL_TEST(Immersed, ClosesTheLedger)
   closes_the_ledger(run);
 }
 
+// Fluid as a whole streams through grains that are held, one in each cell: there is nothing but its kinetic energy, and drag takes it, in
+// steps as short and as long as the time in which it comes to rest. No part of it is a loss of the transfer
+SERIAL_TEST(Immersed, WorkOfDragIsTheKineticEnergy)
+{
+  for (const double dt : {0.01, 0.5}) {
+    Scene run(head("0 4 0 4 0 4") +
+              "region all block INF INF INF INF INF INF\ncreate_points 1 region all ppc 2\n"
+              "lattice sc 1.0 origin 0.5 0.5 0.5\ncreate_atoms 2 region all\n"
+              "set type 2 diameter 0.2 density 3.0\n" +
+              rest("1.0 drag stokes", "eos tait 1.0e-3 7") +
+              "velocity water set 1.0 0.0 0.0\ncompute e all mpm/energy\ntimestep " +
+              strprintf("%g", dt) + "\n");
+    const double start = run.sums(1).kinetic;
+    run.commands("run 2\n");
+    const double *e = run.compute_vector(), lost = run.sums(1).kinetic - start;
+    EXPECT_LT(lost, -0.01 * start);
+    EXPECT_LT(measured("work of drag", fabs(e[7] / lost - 1.0)), 1.0e-10);
+    EXPECT_LT(measured("loss in transfers", fabs(e[8] / lost)), 1.0e-10);
+    EXPECT_LT(measured("imbalance", fabs(e[10] / lost)), 1.0e-12);
+  }
+}
+
 SERIAL_TEST(Immersed, RefusesBadInput)
 {
   const std::string start = head("0 4 0 4 0 4", "p p f", "GRID") +

@@ -142,10 +142,12 @@ SERIAL_TEST(MeshGrid, PatchOfAnyCells)
     const ScratchFile file("patch.msh", distorted);
     const bool exact = kind == TRIANGLES || kind == TETRAHEDRA;
     double worst[3] = {0.0, 0.0, 0.0};
+    // uniform volume ratios are their own means
+    const std::string locking = exact ? " locking fbar" : "";
     for (int halve = 1; halve < (exact ? 2 : 3); halve++) {
       Scene run(scene(dim, file.name, "neohookean 1 0.3",
                       "frame total slip xlo slip ylo traction xhi 0.05 0" +
-                          std::string(dim == 3 ? " 0 slip zlo" : ""),
+                          std::string(dim == 3 ? " 0 slip zlo" : "") + locking,
                       halve));
       const double damping = 2.0 / run.gather().size();
       run.commands(strprintf(
@@ -185,7 +187,7 @@ static std::array<double, 2> momentum(Scene &run)
 SERIAL_TEST(MeshGrid, EnergyAndMomentum)
 {
   for (const std::string frame : {"total", "updated"})
-    for (const std::string transfer : {"flip 1", "apic"}) {
+    for (const std::string transfer : {"flip 1", "apic", "flip 1 locking fbar"}) {
       const ScratchFile file("bar.msh", bar(TRIANGLES, 3)),
           grid("grid.msh", surroundings(TRIANGLES, 3));
       Scene run(
@@ -276,22 +278,23 @@ SERIAL_TEST(MeshGrid, CreepingFlowAroundACylinder)
 TEST(MeshGrid, RanksAndRestart)
 {
   for (const bool total : {true, false})
-    for (const Kind kind : {TRIANGLES, HEXAHEDRA}) {
-      const int dim = kind == TRIANGLES ? 2 : 3;
-      const std::string mesh = kind == TRIANGLES ? tube(kind, 8) : bar(kind, 3);
+    for (const Kind kind : {TRIANGLES, HEXAHEDRA, QUADS}) {
+      const int dim = kind == HEXAHEDRA ? 3 : 2;
+      const std::string mesh = dim == 2 ? tube(kind, 8) : bar(kind, 3);
       const ScratchFile file("ranks.msh", mesh), grid("grid.msh", surroundings(kind, 2));
       const std::string name = total ? file.name : grid.name;
       const std::string options = total
           ? "frame total slip ylo pressure xlo v_p"
           : "transfer apic slip ylo traction xlo v_p 0" + std::string(dim == 3 ? " 0" : "");
+      const std::string locking = kind == QUADS ? " locking fbar" : "";
       const std::string variable = "variable p equal 0.02*sin(time)\n";
       const std::string others = "fix v all viscous 1e-4\ntimestep 0.01\n";
       const std::string fixes =
           "fix m all mpm/material density 1 neohookean 1 0.3\nfix g all mpm/mesh " + name + " " +
-          options + "\n" + others;
+          options + locking + "\n" + others;
       const std::string first = variable +
-          replaced(scene(dim, file.name, "neohookean 1 0.3", options, 1, name), "-1 6 -1 6",
-                   "-0.5 4.5 -0.9 2.9") +
+          replaced(scene(dim, file.name, "neohookean 1 0.3", options + locking, 1, name),
+                   "-1 6 -1 6", "-0.5 4.5 -0.9 2.9") +
           "velocity all set 0.05 0.1 0\nvelocity all ramp vx 0.05 -0.05 x 0 4 sum yes\n" + others;
       Twins(first, 60, "neighbor 0.1 bin\n" + variable + fixes, 60, 1e-11);
       OnRanks balanced(first, "run 120\n", "fix b all balance 20 1.0 shift xy 5 1.1\n");
@@ -301,6 +304,30 @@ TEST(MeshGrid, RanksAndRestart)
         EXPECT_NEAR(entry(balanced.parallel, k), one, 1e-11 + 1e-9 * std::fabs(one)) << k;
       }
     }
+}
+
+// A pressure, or means against locking, that come after a restart know where the nodes have gone; another frame is an error
+SERIAL_TEST(MeshGrid, MoreOptionsAfterARestart)
+{
+  const ScratchFile file("tube.msh", tube(QUADS, 4)), restart("restart");
+  const std::string material = "neohookean 1 0.3",
+                    load = "frame total slip ylo slip yhi traction xhi 0.1 0.03 ",
+                    others = "fix v all viscous 0.01\ntimestep 0.03\n",
+                    variable = "variable p equal 0.2*(step>100)\n",
+                    fixes = "fix m all mpm/material density 1 " + material +
+      "\nfix g all mpm/mesh " + file.name + " ";
+  Scene whole(variable + scene(2, file.name, material, load + "pressure xlo v_p") + others +
+              "run 100\nrun 60\n");
+  Scene first(scene(2, file.name, material, load) + others + "run 100\nwrite_restart " +
+              restart.name + "\n");
+  Scene again("read_restart " + restart.name + "\nneighbor 0.1 bin\n" + variable + fixes + load +
+              "pressure xlo v_p\n" + others + "run 60\n");
+  EXPECT_LT(measured("difference", difference(whole.gather(), again.gather())), 1e-12);
+  Scene fbar("read_restart " + restart.name + "\nneighbor 0.1 bin\n" + fixes + load +
+             "locking fbar\n" + others + "run 1\n");
+  EXPECT_LT(measured("one step with means", difference(first.gather(), fbar.gather())), 0.05);
+  expect_error("read_restart " + restart.name + "\n" + fixes + "slip ylo\n",
+               "has another frame or mesh than in the restart file");
 }
 
 // Output sees history variables and energies of points on a mesh
@@ -376,4 +403,72 @@ SERIAL_TEST(MeshGrid, Locking)
   EXPECT_EQ(warnings(quads, "linear 1 0.49", 0), 0u);
   EXPECT_EQ(warnings(triangles, "linear 1 0.45", 0), 0u);
   EXPECT_EQ(warnings(triangles, "eos linear 1 viscosity newtonian 0.01", 0, "frame updated"), 0u);
+  // plastic flow keeps the volume at any Poisson ratio
+  const std::string metal = "eos linear 1 strength j2 0.46 1e-3", sand = "drucker/prager 1 0.3 30";
+  EXPECT_EQ(warnings(triangles, metal, 0), 1u);
+  EXPECT_EQ(warnings(quads, metal, 1, "frame updated"), 1u);
+  EXPECT_EQ(warnings(quads, metal, 0), 0u);
+  EXPECT_EQ(warnings(triangles, sand, 0), 1u);
+  EXPECT_EQ(warnings(triangles, metal, 0, "frame total locking fbar"), 0u);
+  EXPECT_EQ(warnings(triangles, "neohookean 1 0.499", 0, "locking fbar"), 0u);
+}
+
+// Lame's tube with a Poisson ratio of 0.499 widens as it should with means, and quadrangles by half of that without
+SERIAL_TEST(MeshGrid, FbarDoesNotLock)
+{
+  const double p = 1e-5, nu = 0.499;
+  for (const Kind kind : {TRIANGLES, QUADS})
+    for (const std::string frame : {"total", "updated"}) {
+      double error[2];
+      for (const bool fbar : {false, true}) {
+        const ScratchFile file("tube.msh", tube(kind, 4));
+        Scene run(scene(2, file.name, "linear 1 0.499",
+                        "frame " + frame + " slip ylo slip yhi pressure xlo 1e-5" +
+                            (fbar ? " locking fbar" : ""),
+                        kind == QUADS));
+        const auto start = run.gather();
+        run.commands("fix v all viscous " + strprintf("%.17g", 3.3 / start.size()) +
+                     "\nfix d all mpm/dt 0.5 until 40\nrun 100000\n");
+        const auto end = run.gather();
+        double sum = 0.0, all = 0.0;
+        for (std::size_t k = 0; k < start.size(); k++) {
+          const double *const X = start[k].x, r = hypot(X[0], X[1]);
+          sum += hypot(end[k].x[0], end[k].x[1]) - r;
+          all += (1 + nu) * p / 3.0 * ((1 - 2 * nu) * r + 4.0 / r);
+        }
+        error[fbar] =
+            measured("mean displacement, " + frame + (fbar ? " fbar" : ""), sum / all) - 1.0;
+      }
+      if (kind == QUADS) {
+        EXPECT_LT(error[0], -0.4);
+        EXPECT_LT(std::fabs(error[1]), 0.02);
+      } else
+        EXPECT_LT(std::fabs(error[1]), std::fabs(error[0]));
+    }
+}
+
+// In the updated frame a body can be elsewhere than the sides that are loaded
+SERIAL_TEST(MeshGrid, LostLoads)
+{
+  const auto square = [](double x, double y, double) {
+    return std::array<double, 3>{4.0 * x, 4.0 * y, 0.0};
+  };
+  const ScratchFile grid("grid.msh", gmsh(QUADS, {8, 8, 0}, square));
+  const auto warnings = [&](const std::string &body, const std::string &options) {
+    return lines_that_say(box(2, "lj", "f f f", "-1 6 -1 6 -1 6", 1, 0.1) + "region body block " +
+                              body +
+                              " INF INF\ncreate_points 1 region body spacing 0.25\n"
+                              "fix m all mpm/material density 1 linear 1 0.3\nfix g all mpm/mesh " +
+                              grid.name + " " + options + "\ntimestep 1e-4\nrun 1\nrun 1\n",
+                          "acts on nothing in");
+  };
+  EXPECT_EQ(warnings("0 4 0 4", "pressure xhi 1").size(), 0u);
+  EXPECT_EQ(warnings("0 3.75 0 4", "pressure xhi 1").size(), 0u);    // in the same cells
+  EXPECT_EQ(warnings("0 2 0 4", "slip xhi").size(), 0u);
+  const auto all = warnings("0 2 0 4", "pressure xhi 1"),
+             half = warnings("0 4 0 2", "traction xhi 1 0 frame total");
+  ASSERT_EQ(all.size(), 2u);    // at the start of each run
+  EXPECT_THAT(all[0], HasSubstr("pressure on xhi acts on nothing in 100 % of its area"));
+  ASSERT_EQ(half.size(), 2u);
+  EXPECT_THAT(half[0], HasSubstr("traction on xhi acts on nothing in 43.8 % of its area"));
 }

@@ -683,6 +683,26 @@ SERIAL_TEST(Pressure, OfARimThatCurls)
   EXPECT_EQ(lines_that_say(scene("frame total"), "its rim has curled").size(), 0u);
 }
 
+// The load is that of the area which is given, also if that is a slip of the pen
+SERIAL_TEST(Traction, WarnsOfAnotherArea)
+{
+  const auto told = [](const std::string &more) {
+    return lines_that_say(bar("", 0.4, "", "") +
+                              "fix load all mpm/traction region end pressure 1 " + more +
+                              "\ntimestep 1e-5\nrun 1\n",
+                          "the force is that of the area which is given")
+        .size();
+  };
+  Scene run(bar("", 0.4, "", "") +
+            "fix load all mpm/traction region end pressure 1\ntimestep "
+            "1e-5\nrun 1\n");
+  const double area = run.fix_vector("load", 7)[3];
+  EXPECT_EQ(told(""), 0u);
+  EXPECT_EQ(told(strprintf("area %.17g", 1.2 * area)), 0u);
+  EXPECT_EQ(told(strprintf("area %.17g", 10.0 * area)), 1u);
+  EXPECT_EQ(told(strprintf("area %.17g", 0.1 * area)), 1u);
+}
+
 SERIAL_TEST(Traction, BadInput)
 {
   const auto plain = bar("", 0.4, "", "");

@@ -166,7 +166,7 @@ void FixMPMAirbag::flow(double dt)
                "Fix mpm/airbag {}: inflow must have a rate that is not negative, and a temperature "
                "above zero: {} and {} at step {}",
                id, rate[0], rate[1], update->ntimestep);
-  open = open || gas.pressure() - outside >= opens;
+  open = open || opens == 0.0 || gas.pressure() - outside >= opens;
 
   const double to_mass = coefficient * vent * force->ftm2v / force->nktv2p,
                to_square = 1.0 / (force->nktv2p * force->mvv2e);

@@ -135,6 +135,7 @@ class FixMPMDashpot :
   void define();
   void find_column();
   void warn_about_others() const;
+  void warn_of_light_nodes(const MPMField &) const;
   void check_column(double lowest, double highest, double steepest) const;
   void column_traction(int i, double t[3]) const;
   Body &body_of(const MPMField &);

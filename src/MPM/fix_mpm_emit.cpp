@@ -80,7 +80,9 @@ Options MPMEmitOptions::declare(int dim)
       .standard("by ppc");
   o.add("area",
         {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
-                "area of the section of the mouth, if it is known")})
+                "area of the section of the mouth, if it is known; around an axis of symmetry that "
+                "of the "
+                "annulus")})
       .standard("found from the region");
   o.add(
        "temperature",

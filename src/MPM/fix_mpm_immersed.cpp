@@ -633,7 +633,7 @@ void FixMPMImmersed::act(double dt, Stage stage)
     double push[3];
     for (int d = 0; d < 3; d++) push[d] = sum[BUOYANCY + d] + record[3] * sum[DRAG + d];
     if (push[0] != 0.0 || push[1] != 0.0 || push[2] != 0.0)
-      field->ledger.push_node(record, grid.owns(node), push);
+      field->ledger.drag_node(record, grid.owns(node), push);
   });
   count = (int) grains.size();
   dt_last = dt;

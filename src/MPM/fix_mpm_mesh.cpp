@@ -78,6 +78,13 @@ Options MPMMeshOptions::declare(int dim)
                 {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
                {"apic", APIC, "with the velocity gradient of the cell"}})})
       .keep();
+  o.add("locking",
+        {word(fbar,
+              {{"none", false, "nothing"},
+               {"fbar", true,
+                "changes of volume and mean stress are means over the points around"}})},
+        "what is averaged against volumetric locking")
+      .keep();
   const auto condition = [&](const std::string &keyword, MPMMeshCondition::Kind kind,
                              const std::string &names, const std::string &unit,
                              const std::string &meaning, int n, bool null) {
@@ -147,8 +154,8 @@ FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) :
   }
   shortest = std::numeric_limits<double>::max();
   for (const auto &one : mesh->cells) shortest = std::min(shortest, one.height);
-  follows = total && forces->has_pressure();
-  if (follows) positions = mesh->nodes;
+  if (total) positions = mesh->nodes;
+  if (fbar) means = std::make_unique<MPMMeshMeans>(*mesh, ranks);
   if (comm->me == 0)
     utils::logmesg(lmp,
                    "Fix mpm/mesh {}: {} cells, {} nodes, the smallest height of a cell is {:.6g}\n",
@@ -425,6 +432,7 @@ void FixMPMMesh::setup(int)
 
 void FixMPMMesh::warn_of_locking()
 {
+  if (means) return;
   const bool simplices = std::any_of(mesh->cells.begin(), mesh->cells.end(), [this](const auto &c) {
     return c.nnode == mesh->dim + 1;
   });
@@ -446,12 +454,31 @@ void FixMPMMesh::warn_of_locking()
     }
   });
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  warn_of_flow();
   if (all > LOCKS && comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/mesh {}: a Poisson ratio of {:.4g}: linear cells lock, and the body is "
-                   "too stiff: use quadrangles or hexahedra with one point "
-                   "each, or fix mpm with locking",
+                   "too stiff: use locking fbar, or quadrangles or hexahedra with one point each",
                    id, all);
+}
+
+/** Plastic flow keeps the volume whatever the Poisson ratio is. */
+void FixMPMMesh::warn_of_flow() const
+{
+  int mine = 0, any;
+  for (const int i : order) {
+    const auto &variables = material_of(i)->material->history();
+    mine |= std::any_of(variables.begin(), variables.end(), [](const auto &variable) {
+      return variable.name == "eplastic";
+    });
+  }
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/mesh {}: linear cells lock when the material flows plastically, and "
+                   "limit loads come out 7 to 25 % too large: use locking fbar, or quadrangles or "
+                   "hexahedra with one point each",
+                   id);
 }
 
 /* ----------------------------------------------------------------------
@@ -511,10 +538,10 @@ void FixMPMMesh::find_ranks()
       for (int k = 0; k < one.nnode && near; k++) wanted[one.node[k]] = 1;
     }
   }
-  if (follows) share_positions();
+  if (total) share_positions();
   has_node.swap(wanted);
   ranks.find(has_node);
-  if (!follows) return;
+  if (!total || !forces->has_pressure()) return;
   std::vector<int> lowest(mesh->cells.size(), comm->nprocs);
   for (std::size_t c = 0; c < lowest.size(); c++)
     if (with_points[c]) lowest[c] = comm->me;
@@ -561,9 +588,13 @@ void FixMPMMesh::initial_integrate(int)
   check_dt();
   forces->evaluate();
   forces->clear_sums();
-  if (follows) forces->follow(counts_cell, positions, ranks);
+  if (total && forces->has_pressure()) forces->follow(counts_cell, positions, ranks);
   if (heat) heat->conduct(bodies(), update->dt);
   points_to_nodes();
+  if (steps == 0 && !contact && forces->has_loads())
+    forces->warn_of_lost_loads(fmt::format("Fix mpm/mesh {}", id), [this](int node) {
+      return has_node[node] && ranks.first[node] && sums[node].mass > 0.0;
+    });
   find_velocities();
   nodes_to_points();
   if (musl) map_back();
@@ -582,15 +613,23 @@ void FixMPMMesh::points_to_nodes()
     for (const int node : ranks.nodes) sums[body * nnode + node] = {};
   const int dim = mesh->dim;
   const double unit = 1.0 / force->nktv2p;
+  if (means) find_mean_stress();
   for (const int i : order) {
     const auto &place = places[i];
     const auto &one = mesh->cells[place.cell];
     const double *const t = points->tau[i], *const f = atom->f[i], *const v = atom->v[i];
     const double m = atom->rmass[i], V = unit * atom->vfrac[i];
     double P[9] = {t[0], t[3], t[4], t[3], t[1], t[5], t[4], t[5], t[2]};
+    if (means) {
+      const double mean = (t[0] + t[1] + (dim == 3 ? t[2] : 0.0)) / dim;
+      for (int d = 0; d < dim; d++) P[4 * d] += volumetric[i].stress - mean;
+    }
     if (total) {
-      const double *const F = points->F[i];
-      const double cofactors[9] = MPM_COFACTORS(F), inv = 1.0 / dot(F, cofactors);
+      double F[9];
+      std::copy_n(points->F[i], 9, F);
+      if (means) motion_of_nodes(place, F);
+      const double cofactors[9] = MPM_COFACTORS(F),
+                   inv = 1.0 / (F[0] * cofactors[0] + F[1] * cofactors[1] + F[2] * cofactors[2]);
       double product[9];
       for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
@@ -620,6 +659,124 @@ void FixMPMMesh::points_to_nodes()
     }
   }
   for (int body = 0; body < count_bodies(); body++) ranks.sum(&sums[body * nnode].mass, WIDTH);
+}
+
+/* ----------------------------------------------------------------------
+   F-bar (E.A. de Souza Neto, D. Peric, M. Dutko, D.R.J. Owen, Int. J. Solids Struct. 33 (1996) 3277) with means <> over the points around,
+   which are symmetric: the sum over points of w a <b> is that of w <a> b. In the total frame the strain of a point has the volume ratio <J>
+   with the J that the motion of its nodes has there, weighted by initial volumes. The change of the stored energy is the sum of V0 tau : D
+   with the dilatation d<J>/<J>, so that the force has the mean stress J <p> of Cauchy stresses p, and gradients with the motion of
+   the nodes. In the updated frame it is the change of volume in the step that is averaged, by present volumes. In 2d these are changes in
+   the plane, and p is the mean of the stresses there
+------------------------------------------------------------------------- */
+
+/** The plane, or all, of the deformation gradient of the nodes at a place. */
+void FixMPMMesh::motion_of_nodes(const BackgroundMesh::Place &place, double F[9]) const
+{
+  const int dim = mesh->dim;
+  const auto &one = mesh->cells[place.cell];
+  for (int d = 0; d < dim; d++)
+    for (int e = 0; e < dim; e++) {
+      F[3 * d + e] = 0.0;
+      for (int k = 0; k < one.nnode; k++) F[3 * d + e] += positions[one.node[k]][d] * place.g[k][e];
+    }
+}
+
+/** Of a matrix whose third row and column are those of identity in 2d. */
+static double determinant_in(int dim, const double *F)
+{
+  return dim == 3 ? determinant(F) : F[0] * F[4] - F[1] * F[3];
+}
+
+void FixMPMMesh::find_mean_stress()
+{
+  const int dim = mesh->dim, ngroup = count_bodies() * (int) materials.size();
+  means->clear(ngroup, 2);
+  volumetric.resize(atom->nlocal);
+  for (const int i : order) {
+    Volumetric &mine = volumetric[i];
+    const auto material = std::find(materials.begin(), materials.end(), material_of(i));
+    mine.group = (int) (material - materials.begin()) * count_bodies() +
+        (int) (rows_of(i) / mesh->nodes.size());
+    const double *const t = points->tau[i], J = points->jacobian(i);
+    double F[9];
+    if (total) motion_of_nodes(places[i], F);
+    mine.own = total ? determinant_in(dim, F) : 1.0;
+    mine.weight = atom->vfrac[i] * (total ? 1.0 : J);
+    const double values[2] = {(t[0] + t[1] + (dim == 3 ? t[2] : 0.0)) / (dim * J), mine.own};
+    means->add(mine.group, places[i], mine.weight, values);
+  }
+  means->sum();
+  for (const int i : order) {
+    Volumetric &mine = volumetric[i];
+    mine.stress = (total ? mine.own : points->jacobian(i)) * means->mean(mine.group, places[i], 0);
+    mine.all = total ? means->mean(mine.group, places[i], 1) : 1.0;
+  }
+}
+
+/** Nodes of the total frame have moved. */
+void FixMPMMesh::find_mean_strain(const std::vector<MeshVector> &velocities)
+{
+  const int dim = mesh->dim;
+  const auto own_now = [&](int i) {
+    const auto &place = places[i];
+    double F[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    if (total) {
+      motion_of_nodes(place, F);
+    } else {
+      const auto &one = mesh->cells[place.cell];
+      for (int k = 0; k < one.nnode; k++) {
+        const auto &v = velocities[rows_of(i) + one.node[k]];
+        for (int d = 0; d < dim; d++)
+          for (int e = 0; e < dim; e++) F[3 * d + e] += update->dt * v[d] * place.g[k][e];
+      }
+    }
+    return determinant_in(dim, F);
+  };
+  means->clear(count_bodies() * (int) materials.size(), 1);
+  for (const int i : order) {
+    Volumetric &mine = volumetric[i];
+    const double own = own_now(i);
+    means->add(mine.group, places[i], mine.weight, &own);
+    mine.scale = mine.own / (mine.all * own);
+  }
+  means->sum();
+  for (const int i : order) {
+    Volumetric &mine = volumetric[i];
+    mine.scale = std::pow(mine.scale * means->mean(mine.group, places[i], 0), 1.0 / dim);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   The velocity gradient of a point, column-major, becomes that of the motion with the mean change of volume. In the total frame it is the
+   change of F in the step, where the nodes have moved on already
+------------------------------------------------------------------------- */
+
+void FixMPMMesh::scale_motion(int i, double *L) const
+{
+  const int dim = mesh->dim;
+  const double dt = update->dt, scale = volumetric[i].scale;
+  if (!total) {
+    for (int d = 0; d < dim; d++)
+      for (int e = 0; e < dim; e++)
+        L[dim * e + d] = scale * L[dim * e + d] + (d == e ? (scale - 1.0) / dt : 0.0);
+    return;
+  }
+  double now[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, old[9], step[9];
+  motion_of_nodes(places[i], now);
+  std::copy_n(now, 9, old);
+  for (int d = 0; d < dim; d++)
+    for (int e = 0; e < dim; e++) old[3 * d + e] -= dt * L[dim * e + d];
+  const double cofactors[9] = MPM_COFACTORS(old), inv = 1.0 / determinant(old);
+  for (int d = 0; d < 3; d++)
+    for (int e = 0; e < 3; e++) {
+      step[3 * d + e] = 0.0;
+      for (int c = 0; c < 3; c++) step[3 * d + e] += now[3 * d + c] * inv * cofactors[3 * e + c];
+    }
+  const double *const F = points->F[i];
+  for (int d = 0; d < dim; d++)
+    for (int e = 0; e < dim; e++)
+      L[dim * e + d] = (scale * product(step, F, d, e) - F[3 * d + e]) / dt;
 }
 
 /* ----------------------------------------------------------------------
@@ -746,9 +903,10 @@ void FixMPMMesh::move_and_strain()
   const double dt = update->dt;
   const auto &strains = musl ? mapped : after;
   const auto &moves = musl && !total ? mapped : after;
-  if (follows)
+  if (total)
     for (const int node : ranks.nodes)
       for (int d = 0; d < dim; d++) positions[node][d] += dt * strains[node][d];
+  if (means) find_mean_strain(strains);
   Batch &b = *batch;
   for_batches(order, [&](const int *list, int n, FixMPMMaterial *material) {
     double L[9 * BATCH] = {}, F[9 * BATCH], tau[6 * BATCH], vol0[BATCH];
@@ -766,6 +924,7 @@ void FixMPMMesh::move_and_strain()
       }
       for (int d = 0; d < dim && C; d++)
         for (int e = 0; e < dim; e++) C[i][3 * d + e] = L[nL * p + dim * e + d];
+      if (means) scale_motion(i, L + nL * p);
       std::copy_n(points->F[i], 9, F + 9 * p);
       std::copy_n(points->tau[i], 6, tau + 6 * p);
       vol0[p] = atom->vfrac[i];
@@ -920,11 +1079,9 @@ double FixMPMMesh::compute_vector(int k)
 void FixMPMMesh::write_restart(FILE *fp)
 {
   std::vector<double> totals = {load_work};
-  std::vector<double> same;
-  if (follows) {
-    share_positions();
-    for (const auto &x : positions) same.insert(same.end(), x.begin(), x.end());
-  }
+  std::vector<double> same = {(double) positions.size()};
+  if (total) share_positions();
+  for (const auto &x : positions) same.insert(same.end(), x.begin(), x.end());
   write_totals(fp, world, totals, same);
   load_work = totals[0];
 }
@@ -933,8 +1090,14 @@ void FixMPMMesh::restart(char *buf)
 {
   const auto *list = (const double *) buf;
   load_work = comm->me == 0 ? list[0] : 0.0;
+  if (list[1] != (double) positions.size())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mesh {} has another frame or mesh than in the restart file, where {} nodes "
+               "have moved, and not {}: give it those of the file",
+               id, list[1], positions.size());
+  list += 2;
   for (auto &x : positions) {
-    std::copy_n(list + 1, 3, x.data());
+    std::copy_n(list, 3, x.data());
     list += 3;
   }
 }
@@ -943,5 +1106,7 @@ double FixMPMMesh::memory_usage()
 {
   return FixMPMState::memory_usage() + ranks.memory_usage() +
       (double) (places.capacity() * sizeof(BackgroundMesh::Place) + sums.capacity() * sizeof(Node) +
-                (before.capacity() + after.capacity() + mapped.capacity()) * sizeof(MeshVector));
+                (before.capacity() + after.capacity() + mapped.capacity()) * sizeof(MeshVector) +
+                volumetric.capacity() * sizeof(Volumetric)) +
+      (means ? means->memory_usage() : 0.0);
 }

@@ -18,6 +18,7 @@ FixStyle(mpm/mesh,FixMPMMesh);
 #include "declare/option.h"
 #include "mesh/background_mesh.h"
 #include "mpm_mesh_conditions.h"
+#include "mpm_mesh_means.h"
 #include "mpm_mesh_ranks.h"
 #include "mpm_point_batches.h"
 #include "mpm_state.h"
@@ -47,6 +48,7 @@ struct MPMMeshOptions {
   bool musl = true;      ///< strain by velocities that were mapped back
   Transfer transfer = FLIP;
   double flip = 0.99;    ///< share of FLIP, the rest is PIC
+  bool fbar = false;     ///< changes of volume and mean stress are means against locking
   std::vector<MPMMeshCondition> conditions;
 
   MPM_NS::Options declare(int dim);
@@ -106,11 +108,23 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   std::vector<Node> sums;
   std::vector<MPM_NS::MeshVector> before, after, mapped;    // velocities
 
-  // where nodes of the reference configuration have gone, for a pressure that follows
+  // where nodes of the reference configuration have gone, for a pressure that follows, and for means: in any case, as either may come
+  // after a restart; updated frame: empty
 
-  bool follows = false;
   std::vector<MPM_NS::MeshVector> positions;
   std::vector<char> counts_cell;    // [cell] is this the first rank with points in it?
+
+  /** Of a point, in this step, against locking. */
+  struct Volumetric {
+    int group;        // of points whose means are of their own
+    double weight;    // in means of this step
+    double stress;    // mean Kirchhoff stress for the force
+    double own,
+        all;    // volume ratio at the start: of the motion of the point, and mean; updated frame: 1
+    double scale;    // of the motion in each direction
+  };
+  std::unique_ptr<MPMMeshMeans> means;    // null: none
+  std::vector<Volumetric> volumetric;
 
   MPMPoints *points = nullptr;
   std::vector<FixMPMMaterial *> materials;
@@ -128,10 +142,15 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   FixMPMMaterial *material_of(int i) const;
   void check_points();
   void warn_of_locking();
+  void warn_of_flow() const;
   void find_places();
   void find_ranks();
   bool lacks_nodes() const;
   void share_positions();
+  void motion_of_nodes(const MPM_NS::BackgroundMesh::Place &, double F[9]) const;
+  void find_mean_stress();
+  void find_mean_strain(const std::vector<MPM_NS::MeshVector> &velocities);
+  void scale_motion(int i, double *L) const;
   void points_to_nodes();
   void find_velocities();
   void map_back();

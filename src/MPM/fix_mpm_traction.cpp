@@ -352,7 +352,7 @@ void FixMPMTraction::define()
   if (all[1] == 0.0 && !face)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/traction {} has no points in group {}", id,
                group->names[igroup]);
-  if (face) face->check("Fix mpm/traction " + std::string(id), igroup, area > 0.0);
+  if (face) face->check("Fix mpm/traction " + std::string(id), igroup, area);
   const double scale = given > 0.0 ? given / all[0] : 1.0;
   for (int i = 0; i < atom->nlocal; i++) {
     rows[i][AREA] *= scale;

@@ -35,6 +35,8 @@ static constexpr double TOO_DEEP = 0.25, TOO_DEEP_CURVED = 0.6;
 static constexpr double TOO_UNEQUAL = 0.05, UNEQUAL = 0.01;
 // share of the area of a plane that has points above it, which is told
 static constexpr double CUT = 0.1;
+// ratio of a given area and that of the points from which on it is told
+static constexpr double OTHER_AREA = 1.5;
 
 void MPMFace::declare(Options &o, double &spacing, double &area)
 {
@@ -250,7 +252,7 @@ static void tell_of_cut(LAMMPS *lmp, Region *region, const std::string &user, in
         user, lmp->group->names[igroup], region->id, beyond, area);
 }
 
-void MPMFace::check(const std::string &user, int igroup, bool area_known) const
+void MPMFace::check(const std::string &user, int igroup, double known_area) const
 {
   double all[3];    // as in sums
   MPI_Allreduce(sums, all, 3, MPI_DOUBLE, MPI_SUM, world);
@@ -261,7 +263,7 @@ void MPMFace::check(const std::string &user, int igroup, bool area_known) const
         "of the region, next to its surface",
         user, group->names[igroup], region->id);
   const Judgement layers = judge();
-  const double unequal = layers.flat && !area_known ? layers.unequal : 0.0;
+  const double unequal = layers.flat && known_area == 0.0 ? layers.unequal : 0.0;
   if (!(all[0] > 0.0) || unequal > TOO_UNEQUAL ||
       std::fabs(layers.depth) > (layers.flat ? TOO_DEEP : TOO_DEEP_CURVED))
     error->all(
@@ -277,6 +279,12 @@ void MPMFace::check(const std::string &user, int igroup, bool area_known) const
         "{}: the areas of two layers of points below region {} differ by "
         "{:.3g} %, and what is found may be wrong by more: use the keywords spacing or area",
         user, region->id, 100.0 * unequal);
+  if (known_area > 0.0 && comm->me == 0 &&
+      (known_area > OTHER_AREA * all[0] || all[0] > OTHER_AREA * known_area))
+    error->warning(FLERR,
+                   "{}: the area {:.5g} is given, and that of the points below region {} is about "
+                   "{:.5g}: the force is that of the area which is given",
+                   user, known_area, region->id, all[0]);
   if (strcmp(region->style, "plane") == 0) tell_of_cut(lmp, region, user, igroup, spacing, all[0]);
 }
 

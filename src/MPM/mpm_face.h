@@ -77,9 +77,9 @@ class MPMFace : protected Pointers {
    *  radius R the depth is 11/3 s/R, as deeper layers of a ball are smaller. */
   Judgement judge() const;
   /** Collective. Stops with an error where there are no points at all, and with one or a warning where layers are not what they
-   *  should be; area_known: sums of shares do not matter. user: what looks for the surface, for example fix mpm/traction load,
+   *  should be; known_area: 0, or the area, to which shares are scaled, so that their sum matters less. user: what looks for the surface, for example fix mpm/traction load,
    *  in which group. */
-  void check(const std::string &user, int igroup, bool area_known) const;
+  void check(const std::string &user, int igroup, double known_area) const;
 
   /** Add to the Kirchhoff stress tau [6] of a point what a traction T on a surface with the unit normal n has besides forces:
    *  share is W, in units of the stress, times J over the present area of the surface for that of T. */

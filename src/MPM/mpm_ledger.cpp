@@ -149,17 +149,34 @@ void MPMLedger::account_for_forces()
 
 /* ---------------------------------------------------------------------- */
 
-void MPMLedger::push_node(double *record, bool owned, const double *impulse)
+/** Is there a mass that can take it? */
+bool MPMLedger::change_by(double *record, const double *impulse, double change[3])
 {
-  double change[3];
-  if (!(record[3] > 0.0)) return;
+  if (!(record[3] > 0.0)) return false;
   for (int d = 0; d < 3; d++) {
     change[d] = impulse[d] / record[3];
     record[d] += change[d];
   }
-  if (!owned) return;
+  return true;
+}
+
+void MPMLedger::push_node(double *record, bool owned, const double *impulse)
+{
+  double change[3];
+  if (!change_by(record, impulse, change) || !owned) return;
   for (int d = 0; d < field.lattice.dim; d++) driven += impulse[d] * record[d] * force->mvv2e;
   count_push(record, change);
+}
+
+void MPMLedger::drag_node(double *record, bool owned, const double *impulse)
+{
+  double change[3], done = 0.0;
+  if (!change_by(record, impulse, change) || !owned) return;
+  for (int d = 0; d < field.lattice.dim; d++)
+    done += 0.5 * impulse[d] * (record[d] + record[4 + d]) * force->mvv2e;
+  driven += done;
+  contact += done;
+  if (on) note_push(record, change);
 }
 
 /* ----------------------------------------------------------------------

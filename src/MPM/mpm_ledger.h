@@ -68,6 +68,9 @@ class MPMLedger : protected Pointers, public MPMEnergies {
 
   /** Change the velocity of a node by an impulse, which counts as contact where the node is owned. */
   void push_node(double *record, bool owned, const double *impulse);
+  /** The same for an impulse that has the whole step to act: its work is that at the mean of old and new velocity,
+   *  and nothing is lost as in a collision. */
+  void drag_node(double *record, bool owned, const double *impulse);
   /** An owned node had its velocity changed by contact: its record has the new one. */
   void count_push(const double *record, const double *change);
   /** An owned node had its velocity changed by whatever action, after which others may come: its mass times
@@ -88,6 +91,7 @@ class MPMLedger : protected Pointers, public MPMEnergies {
       impulses;    // [node][3] of node actions on owned nodes in this step; empty: none
 
   double *impulse(const double *record);
+  static bool change_by(double *record, const double *impulse, double change[3]);
   void account_for_forces();
   double stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;
 };

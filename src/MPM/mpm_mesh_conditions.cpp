@@ -12,6 +12,7 @@
 #include "mpm_mesh_ranks.h"
 #include "mpm_options.h"
 
+#include "comm.h"
 #include "error.h"
 #include "force.h"
 #include "modify.h"
@@ -27,6 +28,8 @@ using namespace MPM_NS;
 // sides whose normals differ by less than 30 degrees are those of a curved wall, others meet at an edge
 
 static constexpr double SMOOTH = 0.866;
+
+static constexpr double LOST = 0.01;    // share of a load on nodes without mass that is told
 
 /* ---------------------------------------------------------------------- */
 
@@ -171,6 +174,31 @@ void MPMMeshForces::follow(const std::vector<char> &cells, const std::vector<Mes
         std::copy_n(&normals[(std::size_t) width * node + 3 * number], 3, mine.normal.data());
     }
   }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMMeshForces::warn_of_lost_loads(const std::string &user,
+                                       const std::function<bool(int)> &carries) const
+{
+  std::vector<double> all(list.size(), 0.0), mine(list.size(), 0.0), borne(list.size(), 0.0);
+  for (int node = 0; node < (int) place.size(); node++) {
+    if (place[node] < 0) continue;
+    const bool there = carries(node);
+    for (const auto &one : of_nodes[place[node]]) {
+      all[one.condition] += one.area;
+      if (there) mine[one.condition] += one.area;
+    }
+  }
+  MPI_Allreduce(mine.data(), borne.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
+  for (std::size_t k = 0; k < list.size() && comm->me == 0; k++)
+    if (borne[k] < (1.0 - LOST) * all[k])
+      error->warning(FLERR,
+                     "{}: {} on {} acts on nothing in {:.3g} % of its area, where no points are "
+                     "next to the sides of the mesh",
+                     user,
+                     list[k].given.kind == MPMMeshCondition::PRESSURE ? "pressure" : "traction",
+                     list[k].given.group, 100.0 * (1.0 - borne[k] / all[k]));
 }
 
 /* ---------------------------------------------------------------------- */

@@ -14,6 +14,7 @@
 #include "pointers.h"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,10 @@ class MPMMeshForces : protected Pointers {
   /** Pressure acts on sides whose nodes have gone to these positions; cells: those whose sides this rank looks at. Collective. */
   void follow(const std::vector<char> &cells, const std::vector<MPM_NS::MeshVector> &positions,
               class MPMMeshRanks &ranks);
+
+  /** Start of a run: tell of loads on sides whose nodes have no mass. Collective.
+   *  carries: does this rank count the node, and has it a mass? */
+  void warn_of_lost_loads(const std::string &user, const std::function<bool(int)> &carries) const;
 
   /** Force of all loads on a node [force]. Counts it for the output. */
   void add_load(int node, bool count, double *force);

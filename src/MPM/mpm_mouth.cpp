@@ -8,9 +8,11 @@
 
 #include "mpm_mouth.h"
 
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "math/matrix.h"
+#include "math_const.h"
 #include "mpm_image.h"
 #include "region.h"
 
@@ -22,6 +24,9 @@ using namespace MPM_NS;
 
 // samples along an edge of the section, for its area, which is then known to 1e-5 for a circle
 static constexpr int AREA_SAMPLES = 1000;
+
+static constexpr double WRONG_AREA = 0.02;    // share by which a known one may be off
+
 // samples along its edges and the flow, which tell whether all sections are the same, and share of those that may differ: those
 // next to curved faces, where round-off decides
 static constexpr int PRISM_SAMPLES = 40, PRISM_SECTIONS = 9;
@@ -81,7 +86,6 @@ MPMMouth::MPMMouth(LAMMPS *lmp, const std::string &user, Region *mouth, const do
 
   const bool rectangle = find_section(name, low, high);
   check_prism(name);
-  if (known_area > 0.0) area = known_area;
 
   double n[2] = {1.0, 1.0}, step[2] = {0.0, 0.0};
   for (int k = 0; k < dim - 1; k++) {
@@ -102,6 +106,20 @@ MPMMouth::MPMMouth(LAMMPS *lmp, const std::string &user, Region *mouth, const do
     }
   if (columns.empty())
     error->all(FLERR, Error::NOLASTLINE, "{} has no point across: use a smaller spacing", name);
+  if (known_area > 0.0) {
+    double whole = area;    // around an axis that of the annulus
+    if (axisymmetric) {
+      whole = 0.0;
+      for (const auto &column : columns)
+        whole += MathConst::MY_2PI * column.x[0] * area / (double) columns.size();
+    }
+    if (std::fabs(known_area / whole - 1.0) > WRONG_AREA && comm->me == 0)
+      error->warning(FLERR,
+                     "{} has an area of {:.5g} across the flow, and {:.5g} is given: density and "
+                     "pressure of what comes will be wrong",
+                     name, whole, known_area);
+    area *= known_area / whole;
+  }
   for (auto &column : columns) column.area = area / (double) columns.size();
 }
 

@@ -37,7 +37,7 @@ class MPMMouth : protected Pointers {
   double area;         ///< of the section; around an axis of symmetry, in the half plane
 
   /** Collective. user: who asks, for messages. direction: of the flow, of any length. spacing: wanted distance of columns.
-   *  known_area: of the section, 0: to be found. axisymmetric: x is the distance from an axis. Ends with an error where the
+   *  known_area: of the section, of an annulus around an axis of symmetry; 0: to be found. axisymmetric: x is the distance from an axis. Ends with an error where the
    *  region is no such piece. */
   MPMMouth(class LAMMPS *, const std::string &user, Region *, const double *direction,
            double spacing, double known_area, bool axisymmetric);

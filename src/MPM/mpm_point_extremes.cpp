@@ -8,6 +8,8 @@
 
 #include "mpm_point_extremes.h"
 
+#include "fix_mpm_elements.h"
+
 #include "atom.h"
 #include "comm.h"
 #include "math/matrix.h"
@@ -15,6 +17,7 @@
 #include "mpm_points.h"
 #include "mpm_time_limit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -47,6 +50,8 @@ std::string LAMMPS_NS::point_extremes(LAMMPS *lmp, const MPMField &field)
   MPI_Allreduce(tags, of_all, 3, MPI_LMP_TAGINT, MPI_SUM, lmp->world);
   tagint tag;
   double speed, limit, mine = field.time_limit->stable_dt(tag, speed);
+  for (const auto *elements : field.elements)
+    mine = std::min(mine, elements->stable_dt_local(tag, speed));
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, lmp->world);
 
   std::string text;
