@@ -45,6 +45,9 @@ using namespace MPM_NS;
 
 static constexpr int MOST_STAGES = 100;    // of a step
 
+static constexpr double SAME =
+    2.0;    // conductivities in a cell that differ by a larger factor are told of
+
 static constexpr int WIDTH =
     3;    // sums at nodes: capacity, that times temperature, row of the matrix
 
@@ -208,6 +211,7 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
   });
   std::fill(power.begin(), power.end(), 0.0);
   find_points(of);
+  look_for_layers(of);
   double fastest = fill_nodes(of), mine = fastest;
   MPI_Allreduce(&mine, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
   const double stages = std::max(1.0, std::ceil(dt * fastest));
@@ -247,6 +251,37 @@ void FixMPMMeshHeat::find_points(const MPMMeshBodies &of)
     }
     conducting.push_back(p);
   }
+}
+
+/** An interface of materials through the middle of cells, in which functions of nodes have no kink, lets too much heat through: at the
+ *  first step of all, once. Those along sides of cells are exact. */
+void FixMPMMeshHeat::look_for_layers(const MPMMeshBodies &of)
+{
+  if (layers_known) return;
+  layers_known = true;
+  const std::size_t n = of.mesh.cells.size();
+  std::vector<double> mine(2 * n, -std::numeric_limits<double>::max()), all(2 * n);
+  for (const auto &p : conducting) {    // the greatest, and minus the least
+    const double k = p.thermal->all.conductivity;
+    double *const of_cell = &mine[2 * of.places[p.i].cell];
+    of_cell[0] = std::max(of_cell[0], k);
+    of_cell[1] = std::max(of_cell[1], -k);
+  }
+  MPI_Allreduce(mine.data(), all.data(), static_cast<int>(2 * n), MPI_DOUBLE, MPI_MAX, world);
+  int cut = 0;
+  double most = 1.0;
+  for (std::size_t c = 0; c < n; c++) {
+    if (all[2 * c] < 0.0) continue;
+    const double ratio = all[2 * c] / std::max(-all[2 * c + 1], 1.0e-300);
+    cut += ratio > SAME;
+    most = std::max(most, ratio);
+  }
+  if (cut && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/mesh/heat {}: {} cells have points of materials whose conductivities "
+                   "differ by a factor of up to {:.3g}: too much heat goes through interfaces that "
+                   "are not along sides of cells",
+                   id, cut, most);
 }
 
 /** Capacities and temperatures of nodes; returns the greatest rate of those of this rank. */

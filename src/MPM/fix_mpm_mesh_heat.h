@@ -103,7 +103,10 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   std::vector<double> heat;       // [condition] that came through it so far, this rank's share
   std::vector<double> power;      // [condition] in the last step
 
+  bool layers_known = false;    // has look_for_layers() been done?
+
   const Thermal *thermal(int i) const;
+  void look_for_layers(const MPMMeshBodies &);
   void find_points(const MPMMeshBodies &);
   double fill_nodes(const MPMMeshBodies &);
   void hold(const MPMMeshBodies &);
