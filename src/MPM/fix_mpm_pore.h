@@ -151,6 +151,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   // that it would have taken without the weight of the water, and what kinetic energy has come and gone
   struct {
     double left_out = 0.0, flow = 0.0, gradient = 0.0, exchanged = 0.0;
+    double most = 0.0;        // kinetic energy so far
     MPMPore::Inertia last;    // of all ranks
     double time = 0.0;        // of these
     bigint points = -1;       // that they are of; -1: not known
