@@ -165,6 +165,9 @@ SERIAL_TEST(Inertia, ThatCountsIsTold)
   EXPECT_EQ(loaded("1e-2", "formulation u-v-p", 160), 0u);
   EXPECT_EQ(loaded("1e-3", "", 1600), 0u);
   EXPECT_EQ(loaded("1e-3", "", 10), 0u);
+  EXPECT_EQ(told(column(10, water("1e-3", "free pressure 0"), SOIL) + load(10, LOAD, 1e-9),
+                 "fix rest all mpm/relax 1e-4\nfix dt all mpm/dt 0.5\nrun 1000\n"),
+            0u);
   EXPECT_EQ(loaded("1e-3", "every auto", 1600), 0u);
   EXPECT_EQ(told(column(10, water("1e-2", "free pressure 0 geostatic 0.5 1"), SOIL),
                  "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nrun 500\n"),

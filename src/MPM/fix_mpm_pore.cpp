@@ -16,6 +16,7 @@
 #include "fix_mpm_boundary.h"
 #include "fix_mpm_implicit.h"
 #include "fix_mpm_material.h"
+#include "fix_mpm_relax.h"
 #include "fix_mpm_rigid.h"
 #include "force.h"
 #include "input.h"
@@ -613,6 +614,9 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   warn_of_contact();
   is_implicit = !wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();
   watched.points = -1;    // velocities may have been set since the last run
+  // soils that dry have no other formulation, and bodies that are brought to rest no motion of their own
+  watches_inertia = !inertia_known && formulation == U_P && !is_implicit && !can_dry() &&
+      find_fixes<FixMPMRelax>(lmp).empty();
   if (is_implicit) init_implicit();
 }
 
@@ -986,7 +990,7 @@ void FixMPMPore::look_for_smoothing(double duration)
 /** From one flow to the next, see MPMPore::inertia(). */
 void FixMPMPore::watch_inertia()
 {
-  if (inertia_known || formulation == U_V_P || is_implicit) return;
+  if (!watches_inertia) return;
   MPMPore::Inertia mine, all;
   for (const auto *field : wet) mine.add(field->inertia(pressure));
   const double here[4] = {mine.velocity, mine.flow, mine.gradient, mine.kinetic};

@@ -156,9 +156,10 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
     double time = 0.0;        // of these
     bigint points = -1;       // that they are of; -1: not known
   } watched;
-  bool inertia_known = false;    // has a warning told of it?
-  bool leaks_known = false;      // has look_for_leaks() been done?
-  bool has_state = false;        // of an earlier run: what points have at first is behind them
+  bool watches_inertia = false;    // in this run
+  bool inertia_known = false;      // has a warning told of it?
+  bool leaks_known = false;        // has look_for_leaks() been done?
+  bool has_state = false;          // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
   std::vector<MPMPore *> wet;    // those that have soil with water
   MPMSuperStep steps;            // of the pressures of all fields together
