@@ -229,6 +229,42 @@ SERIAL_TEST(MeshHeat, LayersThatCutCells)
     }
 }
 
+// Water of 10 degrees freezes below a wall of -20, and ice of -10 melts on one of 20, for an hour (Neumann: 27.765 mm, 12.823 mm), wherever the
+// table of the conductivity has its jump next to the melting temperature. Partly molten points had that of one phase: 24.2 and 15.2 mm
+SERIAL_TEST(MeshHeat, FrontsDoNotSeeTheSideOfTheJump)
+{
+  const int n = 100;
+  const ScratchFile file("bar.msh", gmsh(QUADS, {n, 1, 0}, [](double x, double y, double) {
+                           return std::array<double, 3>{0.4 * x, 0.02 * y, 0.0};
+                         }));
+  for (const bool melts : {false, true}) {
+    double front[2];
+    for (const bool above : {false, true}) {
+      Scene run(
+          box(2, "si", "f f f", "-0.1 0.5 -0.1 0.1 -0.1 0.1", 1, 0.005) +
+          "create_points 1 elements " + file.name +
+          " halve 1\nfix m all mpm/material density 1000 linear 1e-8 0.3 " +
+          strprintf("thermal conducting 4226 %g 0.556 melt 273.15 333400 vary thermal.K "
+                    "table %s 3.99281 %s 1 vary CP table 273.15 0.485092 273.16 1\n",
+                    melts ? 263.15 : 283.15, above ? "273.15" : "273.14",
+                    above ? "273.16" : "273.15") +
+          "fix g all mpm/mesh " + file.name + " frame total\n" +
+          strprintf("fix h all mpm/mesh/heat g temperature xlo %g\n", melts ? 293.15 : 253.15) +
+          "timestep 3.0\ncompute f all mpm/atom molten volume\nrun 1200\n");
+      auto *const compute = run.lmp->modify->get_compute_by_id("f");
+      compute->compute_peratom();
+      double molten = 0.0;
+      for (int i = 0; i < run.n(); i++)
+        molten += compute->array_atom[i][0] * compute->array_atom[i][1] / 0.02;
+      front[above] = measured(strprintf("%s, jump %s, front [mm]", melts ? "melts" : "freezes",
+                                        above ? "above" : "below"),
+                              1e3 * (melts ? molten : 0.4 - molten));
+      EXPECT_NEAR(front[above], melts ? 12.823 : 27.765, 0.3);
+    }
+    EXPECT_NEAR(front[0], front[1], 0.03);
+  }
+}
+
 SERIAL_TEST(MeshHeat, BadInput)
 {
   const ScratchFile file("block.msh", block(QUADS, 3));

@@ -22,6 +22,7 @@
 #include "fix_mpm_material.h"
 #include "fix_mpm_mesh.h"
 #include "fix_mpm_mesh_contact.h"
+#include "material/mean_conduction.h"
 #include "math/matrix.h"
 #include "mpm_conduction.h"
 #include "mpm_mesh_conditions.h"
@@ -143,8 +144,10 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
     const Conduction c = material.conduction(nullptr);
-    thermals.push_back({fix, fix->find_history("temperature"), fix->find_history("molten"),
-                        material.conduction_varies(), c});
+    thermals.push_back(
+        {fix, fix->find_history("temperature"), fix->find_history("molten"),
+         material.conduction_varies(),
+         fix->find_history("molten") >= 0 && conductivity_varies_with_temperature(material), c});
     const double volumetric = material.density() * c.capacity;
     const double slowest = c.orthotropic
         ? std::min(c.conductivity, std::min(c.across[0], c.across[1]))
@@ -210,9 +213,16 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
           present[2 * c + k] = LAMMPS_NS::evaluate(lmp, conditions[c].value[k]);
   });
   std::fill(power.begin(), power.end(), 0.0);
-  find_points(of);
+  find_points(of, false);
   look_for_layers(of);
-  double fastest = fill_nodes(of), mine = fastest;
+  double fastest = fill_nodes(of);
+  if (std::any_of(thermals.begin(), thermals.end(), [](const auto &t) {
+        return t.jumps;
+      })) {
+    find_points(of, true);
+    fastest = fill_nodes(of);
+  }
+  double mine = fastest;
   MPI_Allreduce(&mine, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
   const double stages = std::max(1.0, std::ceil(dt * fastest));
   if (!(stages <= MOST_STAGES))
@@ -229,14 +239,36 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
   }
 }
 
+/** Points that are partly molten have the conductivity of neither phase if it jumps there: as mpm_conduction.cpp, with the temperatures that nodes
+ *  have within an eighth of their range in the cell on either side, with which fronts are nearer to their places than with a quarter. */
+Conduction FixMPMMeshHeat::conduction_of(const MPMMeshBodies &of, const Thermal &t, int i,
+                                         bool nodes_known) const
+{
+  constexpr double HALF_RANGE = 0.125;
+  const double *const history = t.fix->history[i];
+  if (!t.varies) return t.all;
+  if (!nodes_known || !t.jumps) return t.fix->material->conduction(history);
+  const auto &place = of.places[i];
+  const auto &cell = of.mesh.cells[place.cell];
+  double T = 0.0, low = std::numeric_limits<double>::max(), high = -low;
+  for (int k = 0; k < cell.nnode; k++) {
+    const double here = value[cell.node[k]];
+    T += place.N[k] * here;
+    low = std::min(low, here);
+    high = std::max(high, here);
+  }
+  const double reach = HALF_RANGE * (high - low);
+  return mean_conduction(*t.fix->material, history, T - reach, T + reach);
+}
+
 /** Points that conduct, with V F^-1 k F^-T. */
-void FixMPMMeshHeat::find_points(const MPMMeshBodies &of)
+void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
 {
   conducting.clear();
   for (const int i : of.points) {
     const Thermal *const t = thermal(i);
     if (!t) continue;
-    const Conduction c = t->varies ? t->fix->material->conduction(t->fix->history[i]) : t->all;
+    const Conduction c = conduction_of(of, *t, i, nodes_known);
     const double *const F = points->F[i], cofactors[9] = MPM_COFACTORS(F), J = dot(F, cofactors);
     double along[3], n[3][3];
     principal_conductivities(c, F, along, n);

@@ -73,6 +73,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
     const FixMPMMaterial *fix;
     int temperature, molten;    // columns of history
     bool varies;
+    bool jumps;                // its conductivity depends on the temperature, and it melts
     MPM_NS::Conduction all;    // or the mean
   };
   struct Point {
@@ -107,7 +108,9 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
 
   const Thermal *thermal(int i) const;
   void look_for_layers(const MPMMeshBodies &);
-  void find_points(const MPMMeshBodies &);
+  MPM_NS::Conduction conduction_of(const MPMMeshBodies &, const Thermal &, int i,
+                                   bool nodes_known) const;
+  void find_points(const MPMMeshBodies &, bool nodes_known);
   double fill_nodes(const MPMMeshBodies &);
   void hold(const MPMMeshBodies &);
   void advance(const MPMMeshBodies &, double dt);
