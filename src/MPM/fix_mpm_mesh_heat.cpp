@@ -92,6 +92,10 @@ Options MPMMeshHeatOptions::declare()
       rules.push_back(
           {!group.empty(), keyword, "is given twice for group " + group + ": give it once"});
     }
+    for (const auto &c : conditions)
+      rules.push_back({c.kind == MPMMeshHeatCondition::CONVECTION && c.value[0].variable.empty() &&
+                           !(c.value[0].value >= 0.0),
+                       "convection", "needs a coefficient that is not negative: {convection}"});
     return rules;
   });
   return o;
@@ -211,6 +215,12 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
       for (int k = 0; k < 2; k++)
         if (conditions[c].value[k].given)
           present[2 * c + k] = LAMMPS_NS::evaluate(lmp, conditions[c].value[k]);
+    for (std::size_t c = 0; c < conditions.size(); c++)
+      if (conditions[c].kind == MPMMeshHeatCondition::CONVECTION && !(present[2 * c] >= 0.0))
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/mesh/heat {} convection {}: variable {} = {:.6g}, but it must not be "
+                   "negative",
+                   id, conditions[c].group, conditions[c].value[0].variable, present[2 * c]);
   });
   std::fill(power.begin(), power.end(), 0.0);
   find_points(of, false);
