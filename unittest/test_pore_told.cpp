@@ -152,6 +152,7 @@ SERIAL_TEST(Inertia, ThatCountsIsTold)
                 "fix dt all mpm/dt 0.5\nrun 200\n");
   };
   EXPECT_EQ(wave("1e-3", ""), 1u);
+  EXPECT_EQ(wave("3e-2", ""), 1u);    // which u-p, and not the soil, damps at once
   EXPECT_EQ(wave("1e-3", "every auto"), 1u);
   EXPECT_EQ(wave("1e-3", "formulation u-v-p"), 0u);
   EXPECT_EQ(wave("1e-5", ""), 0u);

@@ -1022,11 +1022,13 @@ void FixMPMPore::watch_inertia()
 
 void FixMPMPore::post_run()
 {
-  constexpr double OF_FLOW = 0.03, OF_MOTION = 0.02, OF_WEIGHT = 1.0e-4, UP_AND_DOWN = 1.5;
+  constexpr double OF_FLOW = 0.03, OF_MOTION = 0.02, OF_WEIGHT = 1.0e-4, UP_AND_DOWN = 1.5,
+                   FALLEN = 0.5;
   const double part = watched.left_out;
-  if (inertia_known || !(watched.exchanged > UP_AND_DOWN * watched.most) ||
-      !(part > OF_FLOW * watched.flow) || !(part > OF_MOTION * watched.exchanged) ||
-      !(part > OF_WEIGHT * watched.gradient))
+  const bool has_swung = watched.exchanged > UP_AND_DOWN * watched.most ||
+      watched.last.kinetic < FALLEN * watched.most;
+  if (inertia_known || !has_swung || !(part > OF_FLOW * watched.flow) ||
+      !(part > OF_MOTION * watched.exchanged) || !(part > OF_WEIGHT * watched.gradient))
     return;
   inertia_known = true;
   if (comm->me == 0)
