@@ -163,6 +163,7 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
   if (thermals.empty())
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/mesh/heat {}: no fix mpm/material has a part thermal conducting", id);
+  layers_known = false;
   relaxed *= least / greatest;    // see the top of mpm_conduction.cpp
   largest = 0.0;
   for (const auto &cell : mesh.cells) largest = std::max(largest, cell.height);
@@ -223,8 +224,8 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
                    id, conditions[c].group, conditions[c].value[0].variable, present[2 * c]);
   });
   std::fill(power.begin(), power.end(), 0.0);
+  find_layers(of);
   find_points(of, false);
-  look_for_layers(of);
   double fastest = fill_nodes(of);
   if (std::any_of(thermals.begin(), thermals.end(), [](const auto &t) {
         return t.jumps;
@@ -271,6 +272,26 @@ Conduction FixMPMMeshHeat::conduction_of(const MPMMeshBodies &of, const Thermal 
   return mean_conduction(*t.fix->material, history, T - reach, T + reach);
 }
 
+/** V F^-1 k F^-T of a conductivity across and along an interface, whose normal in the deformed body is along F^-T N. */
+void FixMPMMeshHeat::set_layers(const Cut &cut, const double *cofactors, double J, double V,
+                                double *k)
+{
+  double inverse[9], across[3] = {0.0, 0.0, 0.0};    // C^-1, and that times N
+  for (int d = 0; d < 3; d++)
+    for (int e = 0; e < 3; e++) {
+      double sum = 0.0;
+      for (int a = 0; a < 3; a++) sum += cofactors[3 * a + d] * cofactors[3 * a + e];
+      inverse[3 * d + e] = sum / (J * J);
+      across[d] += inverse[3 * d + e] * cut.normal[e];
+    }
+  const double size = dot(cut.normal, across);
+  for (int d = 0; d < 3; d++)
+    for (int e = 0; e < 3; e++)
+      k[3 * d + e] = V *
+          (cut.along * inverse[3 * d + e] +
+           (cut.across - cut.along) * across[d] * across[e] / size);
+}
+
 /** Points that conduct, with V F^-1 k F^-T. */
 void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
 {
@@ -280,9 +301,15 @@ void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
     if (!t) continue;
     const Conduction c = conduction_of(of, *t, i, nodes_known);
     const double *const F = points->F[i], cofactors[9] = MPM_COFACTORS(F), J = dot(F, cofactors);
+    Point p = {i, t, atom->rmass[i] * c.capacity, {}};
+    const int cut = cut_of[of.places[i].cell];
+    if (cut >= 0) {
+      set_layers(cuts[cut], cofactors, J, atom->vfrac[i] * J, p.k);
+      conducting.push_back(p);
+      continue;
+    }
     double along[3], n[3][3];
     principal_conductivities(c, F, along, n);
-    Point p = {i, t, atom->rmass[i] * c.capacity, {}};
     for (int a = 0; a < 3;
          a++) {    // a principal axis, in the reference configuration: the inverse is cof^T/J
       double N[3] = {0.0, 0.0, 0.0};
@@ -295,35 +322,69 @@ void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
   }
 }
 
-/** An interface of materials through the middle of cells, in which functions of nodes have no kink, lets too much heat through: at the
- *  first step of all, once. Those along sides of cells are exact. */
-void FixMPMMeshHeat::look_for_layers(const MPMMeshBodies &of)
+/** In cells that an interface of materials cuts, functions of nodes have no kink, and too much heat would go through: their points have the harmonic mean
+ *  of the conductivities across the interface and the arithmetic one along it, of which the places of points tell the normal. In the total frame
+ *  points stay in their cells. Not with conductivities that vary or have axes, of which a warning tells, once. */
+void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
 {
   if (layers_known) return;
   layers_known = true;
+  enum { VOLUME, RESISTANCE, CONDUCTANCE, PLACE, MOMENT = PLACE + 3, NSUM = MOMENT + 3 };
   const std::size_t n = of.mesh.cells.size();
-  std::vector<double> mine(2 * n, -std::numeric_limits<double>::max()), all(2 * n);
-  for (const auto &p : conducting) {    // the greatest, and minus the least
-    const double k = p.thermal->all.conductivity;
-    double *const of_cell = &mine[2 * of.places[p.i].cell];
-    of_cell[0] = std::max(of_cell[0], k);
-    of_cell[1] = std::max(of_cell[1], -k);
+  cuts.clear();
+  cut_of.assign(n, -1);
+  std::vector<double> range(2 * n, -std::numeric_limits<double>::max()), all(2 * n);
+  std::vector<double> mine(NSUM * n, 0.0), sum(NSUM * n);
+  bool plain = true;
+  for (const auto &t : thermals) plain = plain && !t.varies && !t.all.orthotropic;
+  for (const int i : of.points) {
+    const Thermal *const t = thermal(i);
+    if (!t) continue;
+    const auto &place = of.places[i];
+    const auto &cell = of.mesh.cells[place.cell];
+    const double k = t->all.conductivity, V = atom->vfrac[i];
+    double *const extreme = &range[2 * place.cell];    // the greatest, and minus the least
+    extreme[0] = std::max(extreme[0], k);
+    extreme[1] = std::max(extreme[1], -k);
+    double *const to = &mine[NSUM * place.cell];
+    to[VOLUME] += V;
+    to[RESISTANCE] += V / k;
+    to[CONDUCTANCE] += V * k;
+    for (int d = 0; d < 3; d++) {
+      double x = 0.0;
+      for (int j = 0; j < cell.nnode; j++) x += place.N[j] * of.mesh.nodes[cell.node[j]][d];
+      to[PLACE + d] += V * x;
+      to[MOMENT + d] += V * k * x;
+    }
   }
-  MPI_Allreduce(mine.data(), all.data(), static_cast<int>(2 * n), MPI_DOUBLE, MPI_MAX, world);
-  int cut = 0;
+  MPI_Allreduce(range.data(), all.data(), static_cast<int>(2 * n), MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(mine.data(), sum.data(), static_cast<int>(NSUM * n), MPI_DOUBLE, MPI_SUM, world);
+  int told = 0;
   double most = 1.0;
   for (std::size_t c = 0; c < n; c++) {
-    if (all[2 * c] < 0.0) continue;
-    const double ratio = all[2 * c] / std::max(-all[2 * c + 1], 1.0e-300);
-    cut += ratio > SAME;
-    most = std::max(most, ratio);
+    const double greatest = all[2 * c], least = -all[2 * c + 1], *const s = &sum[NSUM * c];
+    if (greatest < 0.0 || greatest == least) continue;
+    if (!plain) {
+      told += greatest > SAME * least;
+      most = std::max(most, greatest / least);
+      continue;
+    }
+    Cut cut = {s[VOLUME] / s[RESISTANCE], s[CONDUCTANCE] / s[VOLUME], {}};
+    for (int d = 0; d < 3; d++)
+      cut.normal[d] = s[MOMENT + d] / s[CONDUCTANCE] - s[PLACE + d] / s[VOLUME];
+    constexpr double EVEN = 1.0e-6;    // materials in turns have no interface
+    if (!(dot(cut.normal, cut.normal) > pow(EVEN * of.mesh.cells[c].height, 2))) continue;
+    cut_of[c] = static_cast<int>(cuts.size());
+    cuts.push_back(cut);
   }
-  if (cut && comm->me == 0)
+  if (!told || told_of_layers) return;
+  told_of_layers = true;
+  if (comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/mesh/heat {}: {} cells have points of materials whose conductivities "
-                   "differ by a factor of up to {:.3g}: too much heat goes through interfaces that "
-                   "are not along sides of cells",
-                   id, cut, most);
+                   "differ by a factor of up to {:.3g}, and one of which varies or is orthotropic: "
+                   "too much heat goes through interfaces that are not along sides of cells",
+                   id, told, most);
 }
 
 /** Capacities and temperatures of nodes; returns the greatest rate of those of this rank. */
