@@ -723,6 +723,8 @@ SERIAL_TEST(BadInput, IsRefused)
                  {{"fix heat all mpm/heat xlo", "xlo"},
                   {"fix heat all mpm/heat xlo cold", "must be one of insulated temperature flux"},
                   {"fix heat all mpm/heat zlo flux 1.0", "zlo does not exist in 2d"},
+                  {"fix heat all mpm/heat xlo convection 10 300 xlo radiation 0.8 300", "twice"},
+                  {"fix heat all mpm/heat source v_p source v_p", "twice"},
                   {"fix heat all mpm/heat ylo flux 1.0", "periodic axis: use boundary f"},
                   {"fix heat all mpm/heat xlo convection -1.0 0.0", "not negative"},
                   {"fix heat all mpm/heat xlo radiation 1.5 0.0", "not above 1"},

@@ -821,6 +821,7 @@ SERIAL_TEST(BadInput, IsRefused)
        {water + soil + "biot 0.3 1e10", "below the porosity"},
        {water + soil + "xlo wet", "must be one of closed pressure head flux"},
        {water + soil + "zlo pressure 0", "zlo does not exist in 2d"},
+       {water + soil + "free pressure 0 free rain 1e-6", "free is given twice"},
        {water + soil + "ylo pressure 0", "periodic axis: use boundary f"},
        {water + soil + "xlo head 1.0", "needs a fix gravity"},
        {water + soil + "xlo pressure v_none", "does not exist"},

@@ -70,7 +70,7 @@ Options MPMHeatOptions::declare(int dim)
          {"radiation", Condition::RADIATION, "", {values(1, "EPS", "1", "emissivity"), outside}}});
   };
   for (int face = 0; face < MPMHeatFaces::NFACE; face++)
-    o.add(FACE_NAME[face], {words(conditions[face], "this face of the box")});
+    o.add(FACE_NAME[face], {words(conditions[face], "this face of the box")}).once();
   o.add("region",
         {text(surface.region, "REG",
               "ID of a region: heat goes through its surface to what touches it from outside"),
@@ -110,7 +110,8 @@ Options MPMHeatOptions::declare(int dim)
         pairs.push_back(pair);
       });
   o.add("source", {text(source, "v_name", "power per volume, an equal- or atom-style variable")})
-      .standard("none");
+      .standard("none")
+      .once();
   o.add(
       "transfer",
       {word(transfer.kind,

@@ -73,9 +73,9 @@ void FixMPMMaterial::init()
   if (material->conducts() && modify->get_fix_by_style("^mpm/heat$").empty() &&
       modify->get_fix_by_style("^mpm/mesh/heat$").empty() && comm->me == 0)
     error->warning(FLERR,
-                   "Fix mpm/material {} has thermal conducting, but there is no fix mpm/heat, "
+                   "Fix mpm/material {} has thermal conducting, but there is no fix mpm/{}heat, "
                    "which conducts: define one, or use thermal adiabatic",
-                   id);
+                   id, modify->get_fix_by_style("^mpm/mesh$").empty() ? "" : "mesh/");
   counts_stress = !modify->get_compute_by_style("^mpm/energy$").empty();
   if (material->is_of_surfaces()) check_surfaces();
   assign_mass();

@@ -209,10 +209,10 @@ void FixMPMMesh::init()
                id, other->id);
   for (const auto *other : find_fixes<MPMPhysics>(lmp)) {
     const auto *ifix = dynamic_cast<const Fix *>(other);
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix {} {} acts on points of a fix mpm only, not on those of fix mpm/mesh {}: remove it",
-        ifix->style, ifix->id, id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {} acts on points of a fix mpm only, not on those of fix mpm/mesh {}: {}",
+               ifix->style, ifix->id, id,
+               utils::strmatch(ifix->style, "^mpm/heat$") ? "use fix mpm/mesh/heat" : "remove it");
   }
 
   points = MPMPoints::get(atom);

@@ -22,6 +22,7 @@
 #include "fix_mpm_material.h"
 #include "fix_mpm_mesh.h"
 #include "fix_mpm_mesh_contact.h"
+#include "material/mean_conduction.h"
 #include "math/matrix.h"
 #include "mpm_conduction.h"
 #include "mpm_mesh_conditions.h"
@@ -44,6 +45,9 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int MOST_STAGES = 100;    // of a step
+
+static constexpr double SAME =
+    2.0;    // conductivities in a cell that differ by a larger factor are told of
 
 static constexpr int WIDTH =
     3;    // sums at nodes: capacity, that times temperature, row of the matrix
@@ -88,6 +92,10 @@ Options MPMMeshHeatOptions::declare()
       rules.push_back(
           {!group.empty(), keyword, "is given twice for group " + group + ": give it once"});
     }
+    for (const auto &c : conditions)
+      rules.push_back({c.kind == MPMMeshHeatCondition::CONVECTION && c.value[0].variable.empty() &&
+                           !(c.value[0].value >= 0.0),
+                       "convection", "needs a coefficient that is not negative: {convection}"});
     return rules;
   });
   return o;
@@ -140,8 +148,10 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
     const Conduction c = material.conduction(nullptr);
-    thermals.push_back({fix, fix->find_history("temperature"), fix->find_history("molten"),
-                        material.conduction_varies(), c});
+    thermals.push_back(
+        {fix, fix->find_history("temperature"), fix->find_history("molten"),
+         material.conduction_varies(),
+         fix->find_history("molten") >= 0 && conductivity_varies_with_temperature(material), c});
     const double volumetric = material.density() * c.capacity;
     const double slowest = c.orthotropic
         ? std::min(c.conductivity, std::min(c.across[0], c.across[1]))
@@ -153,6 +163,7 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
   if (thermals.empty())
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/mesh/heat {}: no fix mpm/material has a part thermal conducting", id);
+  layers_known = false;
   relaxed *= least / greatest;    // see the top of mpm_conduction.cpp
   largest = 0.0;
   for (const auto &cell : mesh.cells) largest = std::max(largest, cell.height);
@@ -205,10 +216,24 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
       for (int k = 0; k < 2; k++)
         if (conditions[c].value[k].given)
           present[2 * c + k] = LAMMPS_NS::evaluate(lmp, conditions[c].value[k]);
+    for (std::size_t c = 0; c < conditions.size(); c++)
+      if (conditions[c].kind == MPMMeshHeatCondition::CONVECTION && !(present[2 * c] >= 0.0))
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/mesh/heat {} convection {}: variable {} = {:.6g}, but it must not be "
+                   "negative",
+                   id, conditions[c].group, conditions[c].value[0].variable, present[2 * c]);
   });
   std::fill(power.begin(), power.end(), 0.0);
-  find_points(of);
-  double fastest = fill_nodes(of), mine = fastest;
+  find_layers(of);
+  find_points(of, false);
+  double fastest = fill_nodes(of);
+  if (std::any_of(thermals.begin(), thermals.end(), [](const auto &t) {
+        return t.jumps;
+      })) {
+    find_points(of, true);
+    fastest = fill_nodes(of);
+  }
+  double mine = fastest;
   MPI_Allreduce(&mine, &fastest, 1, MPI_DOUBLE, MPI_MAX, world);
   const double stages = std::max(1.0, std::ceil(dt * fastest));
   if (!(stages <= MOST_STAGES))
@@ -225,18 +250,66 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
   }
 }
 
+/** Points that are partly molten have the conductivity of neither phase if it jumps there: as mpm_conduction.cpp, with the temperatures that nodes
+ *  have within an eighth of their range in the cell on either side, with which fronts are nearer to their places than with a quarter. */
+Conduction FixMPMMeshHeat::conduction_of(const MPMMeshBodies &of, const Thermal &t, int i,
+                                         bool nodes_known) const
+{
+  constexpr double HALF_RANGE = 0.125;
+  const double *const history = t.fix->history[i];
+  if (!t.varies) return t.all;
+  if (!nodes_known || !t.jumps) return t.fix->material->conduction(history);
+  const auto &place = of.places[i];
+  const auto &cell = of.mesh.cells[place.cell];
+  double T = 0.0, low = std::numeric_limits<double>::max(), high = -low;
+  for (int k = 0; k < cell.nnode; k++) {
+    const double here = value[cell.node[k]];
+    T += place.N[k] * here;
+    low = std::min(low, here);
+    high = std::max(high, here);
+  }
+  const double reach = HALF_RANGE * (high - low);
+  return mean_conduction(*t.fix->material, history, T - reach, T + reach);
+}
+
+/** V F^-1 k F^-T of a conductivity across and along an interface, whose normal in the deformed body is along F^-T N. */
+void FixMPMMeshHeat::set_layers(const Cut &cut, const double *cofactors, double J, double V,
+                                double *k)
+{
+  double inverse[9], across[3] = {0.0, 0.0, 0.0};    // C^-1, and that times N
+  for (int d = 0; d < 3; d++)
+    for (int e = 0; e < 3; e++) {
+      double sum = 0.0;
+      for (int a = 0; a < 3; a++) sum += cofactors[3 * a + d] * cofactors[3 * a + e];
+      inverse[3 * d + e] = sum / (J * J);
+      across[d] += inverse[3 * d + e] * cut.normal[e];
+    }
+  const double size = dot(cut.normal, across);
+  for (int d = 0; d < 3; d++)
+    for (int e = 0; e < 3; e++)
+      k[3 * d + e] = V *
+          (cut.along * inverse[3 * d + e] +
+           (cut.across - cut.along) * across[d] * across[e] / size);
+}
+
 /** Points that conduct, with V F^-1 k F^-T. */
-void FixMPMMeshHeat::find_points(const MPMMeshBodies &of)
+void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
 {
   conducting.clear();
   for (const int i : of.points) {
     const Thermal *const t = thermal(i);
     if (!t) continue;
-    const Conduction c = t->varies ? t->fix->material->conduction(t->fix->history[i]) : t->all;
+    const Conduction c = conduction_of(of, *t, i, nodes_known);
     const double *const F = points->F[i], cofactors[9] = MPM_COFACTORS(F), J = dot(F, cofactors);
+    Point p = {i, t, atom->rmass[i] * c.capacity, {}};
+    const int cut = cut_of[of.places[i].cell];
+    if (cut >= 0) {
+      set_layers(cuts[cut], cofactors, J, atom->vfrac[i] * J, p.k);
+      conducting.push_back(p);
+      continue;
+    }
     double along[3], n[3][3];
     principal_conductivities(c, F, along, n);
-    Point p = {i, t, atom->rmass[i] * c.capacity, {}};
     for (int a = 0; a < 3;
          a++) {    // a principal axis, in the reference configuration: the inverse is cof^T/J
       double N[3] = {0.0, 0.0, 0.0};
@@ -247,6 +320,71 @@ void FixMPMMeshHeat::find_points(const MPMMeshBodies &of)
     }
     conducting.push_back(p);
   }
+}
+
+/** In cells that an interface of materials cuts, functions of nodes have no kink, and too much heat would go through: their points have the harmonic mean
+ *  of the conductivities across the interface and the arithmetic one along it, of which the places of points tell the normal. In the total frame
+ *  points stay in their cells. Not with conductivities that vary or have axes, of which a warning tells, once. */
+void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
+{
+  if (layers_known) return;
+  layers_known = true;
+  enum { VOLUME, RESISTANCE, CONDUCTANCE, PLACE, MOMENT = PLACE + 3, NSUM = MOMENT + 3 };
+  const std::size_t n = of.mesh.cells.size();
+  cuts.clear();
+  cut_of.assign(n, -1);
+  std::vector<double> range(2 * n, -std::numeric_limits<double>::max()), all(2 * n);
+  std::vector<double> mine(NSUM * n, 0.0), sum(NSUM * n);
+  bool plain = true;
+  for (const auto &t : thermals) plain = plain && !t.varies && !t.all.orthotropic;
+  for (const int i : of.points) {
+    const Thermal *const t = thermal(i);
+    if (!t) continue;
+    const auto &place = of.places[i];
+    const auto &cell = of.mesh.cells[place.cell];
+    const double k = t->all.conductivity, V = atom->vfrac[i];
+    double *const extreme = &range[2 * place.cell];    // the greatest, and minus the least
+    extreme[0] = std::max(extreme[0], k);
+    extreme[1] = std::max(extreme[1], -k);
+    double *const to = &mine[NSUM * place.cell];
+    to[VOLUME] += V;
+    to[RESISTANCE] += V / k;
+    to[CONDUCTANCE] += V * k;
+    for (int d = 0; d < 3; d++) {
+      double x = 0.0;
+      for (int j = 0; j < cell.nnode; j++) x += place.N[j] * of.mesh.nodes[cell.node[j]][d];
+      to[PLACE + d] += V * x;
+      to[MOMENT + d] += V * k * x;
+    }
+  }
+  MPI_Allreduce(range.data(), all.data(), static_cast<int>(2 * n), MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(mine.data(), sum.data(), static_cast<int>(NSUM * n), MPI_DOUBLE, MPI_SUM, world);
+  int told = 0;
+  double most = 1.0;
+  for (std::size_t c = 0; c < n; c++) {
+    const double greatest = all[2 * c], least = -all[2 * c + 1], *const s = &sum[NSUM * c];
+    if (greatest < 0.0 || greatest == least) continue;
+    if (!plain) {
+      told += greatest > SAME * least;
+      most = std::max(most, greatest / least);
+      continue;
+    }
+    Cut cut = {s[VOLUME] / s[RESISTANCE], s[CONDUCTANCE] / s[VOLUME], {}};
+    for (int d = 0; d < 3; d++)
+      cut.normal[d] = s[MOMENT + d] / s[CONDUCTANCE] - s[PLACE + d] / s[VOLUME];
+    constexpr double EVEN = 1.0e-6;    // materials in turns have no interface
+    if (!(dot(cut.normal, cut.normal) > pow(EVEN * of.mesh.cells[c].height, 2))) continue;
+    cut_of[c] = static_cast<int>(cuts.size());
+    cuts.push_back(cut);
+  }
+  if (!told || told_of_layers) return;
+  told_of_layers = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/mesh/heat {}: {} cells have points of materials whose conductivities "
+                   "differ by a factor of up to {:.3g}, and one of which varies or is orthotropic: "
+                   "too much heat goes through interfaces that are not along sides of cells",
+                   id, told, most);
 }
 
 /** Capacities and temperatures of nodes; returns the greatest rate of those of this rank. */

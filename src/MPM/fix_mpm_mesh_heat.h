@@ -73,6 +73,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
     const FixMPMMaterial *fix;
     int temperature, molten;    // columns of history
     bool varies;
+    bool jumps;                // its conductivity depends on the temperature, and it melts
     MPM_NS::Conduction all;    // or the mean
   };
   struct Point {
@@ -86,6 +87,12 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   struct OfNode {
     int node, condition;
     double area;
+  };
+  /** Means of the conductivities in a cell that an interface of materials cuts. */
+  struct Cut {
+    double across, along;
+    double normal
+        [3];    // of the interface, in the reference configuration; its length is of no account
   };
 
   std::string mesh_id;
@@ -103,8 +110,17 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   std::vector<double> heat;       // [condition] that came through it so far, this rank's share
   std::vector<double> power;      // [condition] in the last step
 
+  std::vector<Cut> cuts;
+  std::vector<int> cut_of;        // [cell] which of these, -1: none
+  bool layers_known = false;      // have they been found in this run?
+  bool told_of_layers = false;    // has a warning told of those that have none?
+
   const Thermal *thermal(int i) const;
-  void find_points(const MPMMeshBodies &);
+  void find_layers(const MPMMeshBodies &);
+  static void set_layers(const Cut &, const double *cofactors, double J, double V, double *k);
+  MPM_NS::Conduction conduction_of(const MPMMeshBodies &, const Thermal &, int i,
+                                   bool nodes_known) const;
+  void find_points(const MPMMeshBodies &, bool nodes_known);
   double fill_nodes(const MPMMeshBodies &);
   void hold(const MPMMeshBodies &);
   void advance(const MPMMeshBodies &, double dt);

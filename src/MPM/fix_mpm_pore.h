@@ -68,6 +68,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   ~FixMPMPore() override;
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
+  void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   void write_restart(FILE *) override;
@@ -146,8 +147,19 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   double smoothed =
       0.0;    // share of pressures that vary over some cells, see MPMPore::Smoothing, in these runs
   bool smooth_known = false;    // has a warning told of it?
-  bool leaks_known = false;     // has look_for_leaks() been done?
-  bool has_state = false;       // of an earlier run: what points have at first is behind them
+  // of u-p since the first run, energies that the resistance to the flow would have taken by the acceleration that is left out, that it took, and
+  // that it would have taken without the weight of the water, and what kinetic energy has come and gone
+  struct {
+    double left_out = 0.0, flow = 0.0, gradient = 0.0, exchanged = 0.0;
+    double most = 0.0;        // kinetic energy so far
+    MPMPore::Inertia last;    // of all ranks
+    double time = 0.0;        // of these
+    bigint points = -1;       // that they are of; -1: not known
+  } watched;
+  bool watches_inertia = false;    // in this run
+  bool inertia_known = false;      // has a warning told of it?
+  bool leaks_known = false;        // has look_for_leaks() been done?
+  bool has_state = false;          // of an earlier run: what points have at first is behind them
   std::vector<std::unique_ptr<MPMPore>> fields;
   std::vector<MPMPore *> wet;    // those that have soil with water
   MPMSuperStep steps;            // of the pressures of all fields together
@@ -198,6 +210,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void find_greatest_rates();
   void find_coarse_points(double widest);
   void look_for_smoothing(double duration);
+  void watch_inertia();
   void look_for_long_flow(double duration, double limit);
   void know_rates();
   void flow();

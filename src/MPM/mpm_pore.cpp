@@ -458,6 +458,40 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
   if (motion) surface.share_area(nodes);
 }
 
+/** The gradient of the pressure lacks rho_f times the acceleration of the soil in u-p, by which the resistance would take the power
+ *  K (rho_f dv/dt)^2. From one step to another the root of the sum of K (rho_f v)^2 changes by no more than dt times the root of that power,
+ *  and by as much where a motion keeps its shape, as a standing wave does: a bound that needs no accelerations of points. */
+MPMPore::Inertia MPMPore::inertia(const MPMRows &state) const
+{
+  const int dim = field.lattice.dim;
+  const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
+  const double momentum = water.density * force->mvv2e * force->nktv2p;
+  Inertia sum;
+  for (const auto &run : field.map->runs) {
+    if (!soil(run.material)) continue;
+    Inertia here;
+    for (int i = run.first; i < run.last; i++) {
+      const double *const v = atom->v[i], *const gradient = state[i] + 1;
+      double speed = 0.0, push = 0.0, all = 0.0;
+      for (int d = 0; d < dim; d++) {
+        speed += v[d] * v[d];
+        all += gradient[d] * gradient[d];
+        push += (gradient[d] - along[d]) * (gradient[d] - along[d]);
+      }
+      double K = conductance[i];
+      if (!quadratic.empty() && K > 0.0) {
+        const double V = field.points->jacobian(i) * atom->vfrac[i];
+        K = V * secant_mobility(K / V, quadratic[i], sqrt(push));
+      }
+      here.add({K * speed, K * push, K * all, atom->rmass[i] * speed});
+    }
+    sum.add(here);
+  }
+  const double unit = 1.0 / force->nktv2p;
+  return {sum.velocity * momentum * momentum * unit, sum.flow * unit, sum.gradient * unit,
+          0.5 * force->mvv2e * sum.kinetic};
+}
+
 void MPMPore::take_off()
 {
   if (surface.any()) {

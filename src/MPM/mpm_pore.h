@@ -134,6 +134,25 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   };
   Smoothing smoothing(double duration) const;
 
+  /** Of this rank's points at the start of a step with flow, what tells whether the acceleration counts that u-p leaves out. */
+  struct Inertia {
+    double velocity =
+        0.0;    ///< the power below if the square of the velocity of points were that of their acceleration, times its unit
+    double flow = 0.0;    ///< power that the resistance to the flow takes
+    double gradient =
+        0.0;    ///< what it would take if nothing but the gradient of the pressure drove water, not its weight
+    double kinetic = 0.0;    ///< energy of the motion of soil and water
+    void add(const Inertia &more)
+    {
+      velocity += more.velocity;
+      flow += more.flow;
+      gradient += more.gradient;
+      kinetic += more.kinetic;
+    }
+  };
+  /** After begin_step(). */
+  Inertia inertia(const MPMRows &state) const;
+
   double memory_usage() const;
 
  private:
