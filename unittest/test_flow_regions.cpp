@@ -325,6 +325,19 @@ SERIAL_TEST(Regions, BadInput)
       "create_points 1 region dry spacing 0.05\n" +
       fix + "region plate\ntimestep 0.001\nrun 1\n";
   EXPECT_EQ(lines_that_say(plate, "thinner than a node spacing").size(), 1u);
+  // a corner ends in a cell, but no flow goes through a block
+  for (const double x : {0.515, 0.535, 0.555, 0.575}) {
+    std::string turned = plane("si", "f f", "0 1 0 1", 1, 0.02);
+    for (int k = 0; k < 4; k++) {
+      const double c = k < 2 ? 1.0 : -1.0, s = k % 2 ? 1.0 : -1.0;
+      turned += strprintf("region p%d plane %.17g %.17g 0 %g %g 0\n", k, x + 0.2 * c,
+                          0.55 + 0.2 * s, -c, -s);
+    }
+    turned += "region turned intersect 4 p0 p1 p2 p3\nregion dry intersect 4 p0 p1 p2 p3 side "
+              "out\ncreate_points 1 region dry spacing 0.05\n" +
+        fix + "region turned\ntimestep 0.001\nrun 1\n";
+    EXPECT_EQ(lines_that_say(turned, "thinner than a node spacing").size(), 0u) << x;
+  }
   for (const double gap : {0.07, 0.2}) {
     const auto blocks =
         plane("si", "f f", "0 1 0 1", 1, 0.02) +

@@ -957,17 +957,27 @@ void FixMPMIncompressible::check_inflow() const
 
 void FixMPMIncompressible::check_speed()
 {
+  const int dim = cells.lattice.dim;
   double most[1] = {0.0}, all[1];
-  for (const double v : velocity) {
+  const auto look_at = [&](double v) {
     if (!std::isfinite(v)) most[0] = std::numeric_limits<double>::infinity();
     most[0] = std::max(most[0], std::fabs(v));
-  }
+  };
+
+  // next to a wall that moves its velocity is in between; the images beyond are twice as fast, but nothing moves with them
+
+  for (const auto &cell : cells.cells)
+    for (int c = 0; c < dim; c++) look_at(velocity[(int64_t) cell.number * dim + c]);
+  for (int d = 0; d < dim; d++)
+    for (const auto &wall : walls[d])
+      for (int c = 0; c < dim; c++)
+        if (wall.sticks) look_at(wall.v[c]);
   MPI_Allreduce(most, all, 1, MPI_DOUBLE, MPI_MAX, world);
 
   // with lists of grains alone LAMMPS does not see how far points go, which must not be further than a period
 
   gone += all[0] * update->dt;
-  for (int d = 0; d < cells.lattice.dim; d++)
+  for (int d = 0; d < dim; d++)
     if (neighbor->includegroup && domain->periodicity[d] && gone > 0.25 * domain->prd[d])
       next_reneighbor = update->ntimestep;
   if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * h) return;
@@ -1042,8 +1052,12 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
       return 0.0;
     }
   }
-  if (regions && regions->largest_speed() * dt > h) {
-    dt = h / regions->largest_speed();
+  double moving = regions ? regions->largest_speed() : 0.0;    // what is next to it moves with it
+  for (const auto &axis_walls : walls)
+    for (const auto &face : axis_walls)
+      if (face.sticks && viscosity > 0.0) moving = std::max(moving, MathExtra::len3(face.v));
+  if (moving * dt > h) {
+    dt = h / moving;
     tag = 0;
   }
   if (forces_known) limit_before = dt;

@@ -625,7 +625,31 @@ bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
       normal_at(wall, x, n);
       from_wall[s] = n[d];
     }
-    if (sum < 1.001 * h && from_wall[0] < -TOWARDS && from_wall[1] > TOWARDS) return true;
+    if (sum < 1.001 * h && from_wall[0] < -TOWARDS && from_wall[1] > TOWARDS && !is_corner(cell, d))
+      return true;
+  }
+  return false;
+}
+
+/** A corner that ends in the cell is as thin there, but lets nothing through: next to it the wall is thicker than a cell. */
+bool MPMFlowRegions::is_corner(const MPMFlowLattice::Cell &cell, int axis) const
+{
+  constexpr int NEAR =
+      2;    // cells: one of 60 degrees is as thick there, wherever it ends in the cell
+  for (int e = 0; e < dim; e++) {
+    if (e == axis) continue;
+    for (int along = -NEAR; along <= NEAR; along++) {
+      int index[3] = {cell.index[0], cell.index[1], cell.index[2]}, wall;
+      index[e] += along;
+      bool solid = along != 0;
+      for (int s = 0; s < 2 && solid; s++) {
+        double offset[3] = {0.5, 0.5, 0.5}, x[3];
+        offset[axis] = s;
+        place(index, offset, x);
+        solid = distance(x, FAR * cells.lattice.h, wall) < 0.0;
+      }
+      if (solid) return true;
+    }
   }
   return false;
 }

@@ -162,6 +162,7 @@ class MPMFlowRegions : protected Pointers {
   void find_moments(Cut &) const;
   void find_change(Cut &, const double *x) const;
   bool is_thin(const MPMFlowLattice::Cell &) const;
+  bool is_corner(const MPMFlowLattice::Cell &, int axis) const;
   void warn_of_thin(int nthin);
 };
 
