@@ -55,6 +55,8 @@ static constexpr double ROUNDING = 1.0e-14;
 static constexpr double DIFFERENT_DT = 0.01;
 // relative difference of densities that counts as none
 static constexpr double SAME_DENSITY = 1.0e-9;
+// volume of a point over that of a cell which is too much
+static constexpr double LARGEST_POINT = 1.01;
 // with surface tension, see MPMFlowPressure::nearest
 static constexpr double NEAREST_SURFACE = 1.0e-4;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
@@ -272,6 +274,9 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     viscous = std::make_unique<MPMFlowViscosity>(cells, *pressure);
     cells.wants_around = true;
   }
+  for (auto it = region_ids.begin(); it != region_ids.end(); ++it)
+    if (std::count(region_ids.begin(), it, *it))
+      error->all(FLERR, "Fix mpm/incompressible has region {} twice: give it once", *it);
   if (!region_ids.empty()) {
     regions = std::make_unique<MPMFlowRegions>(lmp, cells, region_ids);
     pressure->regions = regions.get();
@@ -418,7 +423,8 @@ void FixMPMIncompressible::setup_pre_neighbor()
 /** Mass of points that have none yet; who else moves them. */
 void FixMPMIncompressible::check_points()
 {
-  bigint mine[2] = {0, 0}, all[2];    // points, and those of another density
+  bigint mine[3] = {0, 0, 0},
+         all[3];    // points, those of another density, and those larger than a cell
   if (solids) check_solids();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
@@ -426,13 +432,14 @@ void FixMPMIncompressible::check_points()
     if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = mass;
     mine[0]++;
     if (std::fabs(atom->rmass[i] / mass - 1.0) > SAME_DENSITY) mine[1]++;
+    if (atom->vfrac[i] > LARGEST_POINT * cells.lattice.cell_volume()) mine[2]++;
     for (int d = 0; d < domain->dimension; d++)
       if (!std::isfinite(atom->v[i][d]) || !std::isfinite(atom->x[i][d]))
         error->one(FLERR, Error::NOLASTLINE,
                    "Fix {}: point {} has a position or velocity that is not a number", style,
                    atom->tag[i]);
   }
-  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(mine, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all[0] == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {} has no material points in its group: make some with create_points", style,
@@ -443,6 +450,12 @@ void FixMPMIncompressible::check_points()
         "Fix {} {}: {} points have another mass than density {} times their volume; there is one "
         "density but for points of keywords liquid and solid",
         style, id, all[1], density);
+  if (all[2] && comm->me == 0 && !told_of_large)
+    error->warning(FLERR,
+                   "Fix {} {}: {} points are larger than a cell, and leave others empty when they "
+                   "move: use points with a spacing of at most {:.6g}, better {:.6g}",
+                   style, id, all[2], h, 0.5 * h);
+  told_of_large = all[2] > 0;
   refuse_other_integrators(lmp, *this);
   check_others();
 }
