@@ -87,6 +87,22 @@ SERIAL_TEST(Units, IsReleased)
   }
 }
 
+// what is pushed goes on, in a flow that follows it without friction: it must not be braked by the number of steps, as with apic, which
+// took 15 and 38 % here
+SERIAL_TEST(Body, GoesOn)
+{
+  for (const int nsteps : {100, 400}) {
+    auto scene = gap(2, 20, 500.0, "si", 0.0, 0.0);
+    scene = replaced(scene, "gravity 0 -0 0", "velocity 0.1 0 0") + "timestep 1e-4\nrun 2\n";
+    Scene run(scene);
+    const double before = body(run, VELOCITY);
+    run.commands(strprintf("run %d\n", nsteps));
+    EXPECT_GT(measured(strprintf("%d steps: velocity over that before", nsteps),
+                       body(run, VELOCITY) / before),
+              0.9);
+  }
+}
+
 // Archimedes: it goes down as far as its weight is that of the water, with 1.5 and 3 cells in its depth, and nothing moves it then
 SERIAL_TEST(Boat, Floats)
 {

@@ -66,9 +66,9 @@ static constexpr double NOT_IN = 0.05;
 // accelerations over that of the weight for which the first step of a fluid at rest is made: at the edges of a block of water
 // that is released the pressure makes such ones
 static constexpr double FIRST_FALL = 4.0;
-// share of FLIP by default in a flow with solids: apic alone smooths the kink of velocities at their surfaces in each step, which brakes
-// what sinks by the number of steps
-static constexpr double FLIP_OF_SOLIDS = 0.98;
+// share of FLIP by default in a flow with solids or bodies: apic alone smooths velocities at their surfaces in each step, which brakes
+// what sinks or sways by the number of steps
+static constexpr double FLIP_OF_BODIES = 0.98;
 // passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
@@ -103,7 +103,7 @@ Options MPMIncompressibleOptions::declare(int dim)
       .then([this] {
         transfer_is_given = true;
       })
-      .standard("apic (aflip 0.98 with solid)");
+      .standard("apic (aflip 0.98 with solid, or a region of fix mpm/rigid)");
   o.add("reflect",
         {number(reflect, "R", FRACTION, "1",
                 "share of the change by the pressure that points get once more")});
@@ -237,7 +237,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   read_options(lmp, options, narg, arg, 3);
   if (!solid_groups.empty() && !transfer_is_given) {
     transfer = AFLIP;
-    flip = FLIP_OF_SOLIDS;
+    flip = FLIP_OF_BODIES;
   }
   for (int d = 0; d < dim; d++)
     for (int s = 0; s < 2; s++) cells.walls[d][s] = walls[d][s];
@@ -352,6 +352,10 @@ void FixMPMIncompressible::init()
     bodies = std::make_unique<MPMFlowBodies>(lmp, cells, *regions, density);
     bodies->init();
     if (!bodies->any()) bodies.reset();
+    if (bodies && !transfer_is_given) {
+      transfer = AFLIP;
+      flip = FLIP_OF_BODIES;
+    }
     pressure->bodies = bodies.get();
     if (bodies && (!liquids.empty() || solids))
       error->all(
