@@ -87,6 +87,22 @@ SERIAL_TEST(Units, IsReleased)
   }
 }
 
+// what is pushed goes on, in a flow that follows it without friction: it must not be braked by the number of steps, as with apic, which
+// took 15 and 38 % here
+SERIAL_TEST(Body, GoesOn)
+{
+  for (const int nsteps : {100, 400}) {
+    auto scene = gap(2, 20, 500.0, "si", 0.0, 0.0);
+    scene = replaced(scene, "gravity 0 -0 0", "velocity 0.1 0 0") + "timestep 1e-4\nrun 2\n";
+    Scene run(scene);
+    const double before = body(run, VELOCITY);
+    run.commands(strprintf("run %d\n", nsteps));
+    EXPECT_GT(measured(strprintf("%d steps: velocity over that before", nsteps),
+                       body(run, VELOCITY) / before),
+              0.9);
+  }
+}
+
 // Archimedes: it goes down as far as its weight is that of the water, with 1.5 and 3 cells in its depth, and nothing moves it then
 SERIAL_TEST(Boat, Floats)
 {
@@ -172,6 +188,34 @@ SERIAL_TEST(Body, KeepsPointsOut)
   run.commands("run 100\n");
   EXPECT_EQ(inside, 0);
   EXPECT_GT(std::fabs(body(run, MATRIX + 3)), 0.01);
+}
+
+// a stone that comes to the floor goes on, and two that meet go through each other, which a warning tells, but once; a piston
+// that is in a wall from the start is one
+SERIAL_TEST(Body, WarnsOfWhatItTouches)
+{
+  const std::string say = "touch neither each other nor walls",
+                    water = plane("si", "f f", "0 1 0 1", 1, 0.02),
+                    rest =
+                        "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.4 every 1 max "
+                        "0.005\nrun 20\nrun 20\n";
+  const auto scene = [&](const std::string &low, const std::string &high, double speed) {
+    return water + "region a " + low + "\nregion b " + high + "\nregion na " + low +
+        " side out\nregion nb " + high +
+        " side out\nregion top block INF INF INF 0.9 INF INF\nregion w intersect 3 na nb top\n"
+        "create_points 1 region w spacing 0.025\n" +
+        strprintf("fix one all mpm/rigid a density 3000 slip velocity 0 %g 0\n", -speed) +
+        strprintf("fix two all mpm/rigid b density 3000 slip velocity 0 %g 0\n", speed) +
+        "fix w all mpm/incompressible 0.05 1000 region a region b\n" + rest;
+  };
+  const std::string up = "sphere 0.51 0.71 0 0.12";
+  EXPECT_EQ(lines_that_say(scene("sphere 0.51 0.4 0 0.12", up, 0.3), say).size(), 0u);
+  const auto floor = lines_that_say(scene("sphere 0.51 0.24 0 0.12", up, 3.0), say);
+  ASSERT_EQ(floor.size(), 2u);
+  EXPECT_NE(floor[0].find("fix one goes through wall ylo"), std::string::npos);
+  EXPECT_NE(floor[1].find("fix two goes through wall yhi"), std::string::npos);
+  EXPECT_EQ(lines_that_say(scene("block 0.38 0.62 -0.1 0.3 INF INF", up, 0.3), say).size(), 0u);
+  EXPECT_EQ(lines_that_say(scene("sphere 0.51 0.44 0 0.12", up, -0.5), say).size(), 2u);    // each
 }
 
 SERIAL_TEST(Body, BadInput)

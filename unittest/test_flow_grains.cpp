@@ -471,4 +471,17 @@ SERIAL_TEST(Grain, BadInput)
             "1.0 0.1 displace yes",
         "displace yes needs a fluid of fix mpm/incompressible"}},
       "timestep 0.001\nrun 1\n");
+
+  // weight without buoyancy: a mistake, unless nothing moves the grains, or buoyancy is no matter
+  const std::string g = "\nfix g all gravity 1.0 vector 0 -1 0\n", run = "timestep 0.001\nrun 1\n",
+                    move = "fix move grains nve/sphere disc\n", say = "their buoyancy is that of";
+  for (const auto &[law, mover, warned] :
+       {std::tuple{"1.0 0.1", move, 1u}, std::tuple{"1.0 0.1 gravity 0 -1 0", move, 0u},
+        std::tuple{"1.0 0.1 gravity 0 1 0", move, 1u}, std::tuple{"1.0 0.1", std::string(), 0u}})
+    EXPECT_EQ(lines_that_say(scene + w + d + law + g + mover + run, say).size(), warned) << law;
+  EXPECT_EQ(lines_that_say(scene + "set type 2 density/disc 1000.0\n" + w + d + "1.0 0.1" + g +
+                               move + run,
+                           say)
+                .size(),
+            0u);
 }

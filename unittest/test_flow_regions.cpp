@@ -300,31 +300,46 @@ SERIAL_TEST(Regions, BadInput)
 {
   const auto plain = plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.05\n";
   const std::string fix = "fix w all mpm/incompressible 0.1 1000 ";
-  expect_refused(plain,
-                 {{fix + "region", "missing"},
-                  {fix + "region none", "region none does not exist"},
-                  {"region b sphere 0.5 0.5 0 0.2\n" + fix + "region b", "points are in a region"},
-                  {"region b block 0.9 1 0.9 1 INF INF open 1\n" + fix + "region b", "open faces"},
-                  {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b viscosity 1",
-                   "cannot be used with viscosity"},
-                  {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b viscosity 1 implicit yes",
-                   "cannot be used with viscosity: use the keyword stick"},
-                  {"region b sphere 0.5 0.5 0 0.001\n" + fix + "tension 1 region b",
-                   "cannot be used with tension"},
-                  {"variable r equal 0.01\nregion b sphere 0.5 0.5 0 v_r\n" + fix + "region b",
-                   "must not change"},
-                  {"variable d equal 0.0\nregion a sphere 0.51 0.51 0 0.01 move v_d NULL "
-                   "NULL\nregion c sphere 0.41 0.41 0 "
-                   "0.01\nregion b union 2 a c\n" +
-                       fix + "region b",
-                   "must not move"}},
-                 "timestep 0.001\nrun 1\n");
+  expect_refused(
+      plain,
+      {{fix + "region", "missing"},
+       {fix + "region none", "region none does not exist"},
+       {"region b sphere 0.5 0.5 0 0.2\n" + fix + "region b", "points are in a region"},
+       {"region b block 0.9 1 0.9 1 INF INF open 1\n" + fix + "region b", "open faces"},
+       {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b region b", "has region b twice"},
+       {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b viscosity 1",
+        "cannot be used with viscosity"},
+       {"region b sphere 0.5 0.5 0 0.001\n" + fix + "region b viscosity 1 implicit yes",
+        "cannot be used with viscosity: use the keyword stick"},
+       {"region b sphere 0.5 0.5 0 0.001\n" + fix + "tension 1 region b",
+        "cannot be used with tension"},
+       {"variable r equal 0.01\nregion b sphere 0.5 0.5 0 v_r\n" + fix + "region b",
+        "must not change"},
+       {"variable d equal 0.0\nregion a sphere 0.51 0.51 0 0.01 move v_d NULL "
+        "NULL\nregion c sphere 0.41 0.41 0 "
+        "0.01\nregion b union 2 a c\n" +
+            fix + "region b",
+        "must not move"}},
+      "timestep 0.001\nrun 1\n");
   const auto plate = plane("si", "f f", "0 1 0 1", 1, 0.02) +
       "region plate block 0.41 0.43 0.2 0.8 INF INF\nregion dry block 0.41 0.43 0.2 0.8 INF INF "
       "side out\n"
       "create_points 1 region dry spacing 0.05\n" +
       fix + "region plate\ntimestep 0.001\nrun 1\n";
   EXPECT_EQ(lines_that_say(plate, "thinner than a node spacing").size(), 1u);
+  // a corner ends in a cell, but no flow goes through a block
+  for (const double x : {0.515, 0.535, 0.555, 0.575}) {
+    std::string turned = plane("si", "f f", "0 1 0 1", 1, 0.02);
+    for (int k = 0; k < 4; k++) {
+      const double c = k < 2 ? 1.0 : -1.0, s = k % 2 ? 1.0 : -1.0;
+      turned += strprintf("region p%d plane %.17g %.17g 0 %g %g 0\n", k, x + 0.2 * c,
+                          0.55 + 0.2 * s, -c, -s);
+    }
+    turned += "region turned intersect 4 p0 p1 p2 p3\nregion dry intersect 4 p0 p1 p2 p3 side "
+              "out\ncreate_points 1 region dry spacing 0.05\n" +
+        fix + "region turned\ntimestep 0.001\nrun 1\n";
+    EXPECT_EQ(lines_that_say(turned, "thinner than a node spacing").size(), 0u) << x;
+  }
   for (const double gap : {0.07, 0.2}) {
     const auto blocks =
         plane("si", "f f", "0 1 0 1", 1, 0.02) +

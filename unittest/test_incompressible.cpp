@@ -337,6 +337,21 @@ SERIAL_TEST(Cavity, Profile)
   EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);    // no voids
 }
 
+// at rest below a lid: what is next to this is as fast after the first step, but nothing is faster, also with more than a cell per step
+SERIAL_TEST(Cavity, Begins)
+{
+  for (const char *const step : {"fix dt all mpm/dt 0.8 every 1\n", "timestep 0.078\n"}) {
+    Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.03125\n" +
+              "fix w all mpm/incompressible 0.0625 1 viscosity 0.0025 wall yhi stick 1 0 wall xlo "
+              "stick wall xhi stick wall ylo stick\n" +
+              step + "run 5\n");
+    EXPECT_LE(measured("duration of a step, in parts of a cell over the speed of the lid",
+                       run.lmp->update->dt / 0.0625),
+              1.25);
+    EXPECT_LE(measured("largest speed", run.fix("w")->compute_vector(FASTEST)), 1.0);
+  }
+}
+
 // water that turns in a corner, v = (x, -y): linear velocities are exact next to walls, too
 SERIAL_TEST(Corner, LinearFlow)
 {
@@ -649,6 +664,11 @@ SERIAL_TEST(Incompressible, BadInput)
           fix + "0.1 1000",
       "requires material points");
   expect_error(plane("si", "s f", "0 1 0 1", 1, 0.02) + fix + "0.1 1000", "shrink-wrapped");
+  for (const char *const h : {"0.05", "0.025"})
+    EXPECT_EQ(lines_that_say(plain + fix + h + " 1000\ntimestep 0.01\nrun 1\nrun 1\n",
+                             "are larger than a cell")
+                  .size(),
+              h[2] == '0' && h[3] == '2' ? 1u : 0u);
 }
 
 // what hits a floor flat is several times faster after that step, which fix mpm/dt cannot know before

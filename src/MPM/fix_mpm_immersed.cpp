@@ -66,6 +66,8 @@ using MathConst::MY_PI;
 
 static constexpr int SPLIT = 8;    // reals of a node: with the old velocity
 enum { INNER = 1, OUTER };         // nodes, see has_fluid_around()
+// relative difference of gravity that counts as none, and buoyancy over weight that does, as in air
+static constexpr double SAME_GRAVITY = 0.01, NO_BUOYANCY = 0.01;
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/immersed FIELD DENSITY VISCOSITY keyword values ...
@@ -221,6 +223,38 @@ void FixMPMImmersed::check_grains(const Fix *driver, double h)
                    "Fix mpm/immersed {}: {} grains are larger than two node spacings: for "
                    "them, contact through a pair style resolves the flow",
                    id, large);
+}
+
+/** Grains that fix gravity pulls down need the same gravity for their buoyancy, which is easily forgotten. */
+void FixMPMImmersed::setup(int)
+{
+  if (told_of_weight) return;
+  double weight[3] = {0.0, 0.0, 0.0}, off = 0.0, most = 0.0;
+  for (auto *other : modify->get_fix_by_style("^gravity")) {
+    int mine = 0, any, width;
+    for (int i = 0; i < atom->nlocal && !mine; i++)
+      mine = is_grain(i) && (atom->mask[i] & other->groupbit) &&
+          density * volume(i) > NO_BUOYANCY * atom->rmass[i] &&
+          std::any_of(movers.begin(), movers.end(), [&](const Mover &mover) {
+               return atom->mask[i] & mover.groupbit;
+             });
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+    const auto *const vector = (const double *) other->extract("gvec", width);
+    for (int d = 0; d < 3 && any; d++) weight[d] += vector[d] * force->ftm2v;
+  }
+  for (int d = 0; d < domain->dimension; d++) {
+    off = std::max(off, fabs(weight[d] - gravity[d]));
+    most = std::max(most, fabs(weight[d]));
+  }
+  if (!(off > SAME_GRAVITY * most)) return;
+  told_of_weight = true;
+  if (comm->me == 0 && most > 0.0)
+    error->warning(
+        FLERR,
+        "Fix mpm/immersed {}: fix gravity gives grains the acceleration {:.6g} {:.6g} "
+        "{:.6g}, but their buoyancy is that of keyword gravity, {:.6g} {:.6g} {:.6g}: give "
+        "it the same",
+        id, weight[0], weight[1], weight[2], gravity[0], gravity[1], gravity[2]);
 }
 
 bool FixMPMImmersed::is_grain(int i) const

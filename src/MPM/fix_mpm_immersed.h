@@ -45,6 +45,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   FixMPMImmersed(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
+  void setup(int) override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -111,6 +112,7 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   double force_now[6] = {};    // drag and buoyancy on the grains of this rank, impulses
   int count = 0;
   double dt_last = 0.0;
+  bool told_of_weight = false;
 
   void check_grains(const Fix *driver, double h);
   bool has_fluid_around(int64_t node) const;

@@ -55,6 +55,8 @@ static constexpr double ROUNDING = 1.0e-14;
 static constexpr double DIFFERENT_DT = 0.01;
 // relative difference of densities that counts as none
 static constexpr double SAME_DENSITY = 1.0e-9;
+// volume of a point over that of a cell which is too much
+static constexpr double LARGEST_POINT = 1.01;
 // with surface tension, see MPMFlowPressure::nearest
 static constexpr double NEAREST_SURFACE = 1.0e-4;
 // the tolerance of points that spread, which is not seen but by other numbers of processes
@@ -64,9 +66,9 @@ static constexpr double NOT_IN = 0.05;
 // accelerations over that of the weight for which the first step of a fluid at rest is made: at the edges of a block of water
 // that is released the pressure makes such ones
 static constexpr double FIRST_FALL = 4.0;
-// share of FLIP by default in a flow with solids: apic alone smooths the kink of velocities at their surfaces in each step, which brakes
-// what sinks by the number of steps
-static constexpr double FLIP_OF_SOLIDS = 0.98;
+// share of FLIP by default in a flow with solids or bodies: apic alone smooths velocities at their surfaces in each step, which brakes
+// what sinks or sways by the number of steps
+static constexpr double FLIP_OF_BODIES = 0.98;
 // passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
@@ -101,7 +103,7 @@ Options MPMIncompressibleOptions::declare(int dim)
       .then([this] {
         transfer_is_given = true;
       })
-      .standard("apic (aflip 0.98 with solid)");
+      .standard("apic (aflip 0.98 with solid, or a region of fix mpm/rigid)");
   o.add("reflect",
         {number(reflect, "R", FRACTION, "1",
                 "share of the change by the pressure that points get once more")});
@@ -235,7 +237,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   read_options(lmp, options, narg, arg, 3);
   if (!solid_groups.empty() && !transfer_is_given) {
     transfer = AFLIP;
-    flip = FLIP_OF_SOLIDS;
+    flip = FLIP_OF_BODIES;
   }
   for (int d = 0; d < dim; d++)
     for (int s = 0; s < 2; s++) cells.walls[d][s] = walls[d][s];
@@ -272,6 +274,9 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     viscous = std::make_unique<MPMFlowViscosity>(cells, *pressure);
     cells.wants_around = true;
   }
+  for (auto it = region_ids.begin(); it != region_ids.end(); ++it)
+    if (std::count(region_ids.begin(), it, *it))
+      error->all(FLERR, "Fix mpm/incompressible has region {} twice: give it once", *it);
   if (!region_ids.empty()) {
     regions = std::make_unique<MPMFlowRegions>(lmp, cells, region_ids);
     pressure->regions = regions.get();
@@ -347,6 +352,10 @@ void FixMPMIncompressible::init()
     bodies = std::make_unique<MPMFlowBodies>(lmp, cells, *regions, density);
     bodies->init();
     if (!bodies->any()) bodies.reset();
+    if (bodies && !transfer_is_given) {
+      transfer = AFLIP;
+      flip = FLIP_OF_BODIES;
+    }
     pressure->bodies = bodies.get();
     if (bodies && (!liquids.empty() || solids))
       error->all(
@@ -418,7 +427,8 @@ void FixMPMIncompressible::setup_pre_neighbor()
 /** Mass of points that have none yet; who else moves them. */
 void FixMPMIncompressible::check_points()
 {
-  bigint mine[2] = {0, 0}, all[2];    // points, and those of another density
+  bigint mine[3] = {0, 0, 0},
+         all[3];    // points, those of another density, and those larger than a cell
   if (solids) check_solids();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!cells.is_point(i)) continue;
@@ -426,13 +436,14 @@ void FixMPMIncompressible::check_points()
     if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = mass;
     mine[0]++;
     if (std::fabs(atom->rmass[i] / mass - 1.0) > SAME_DENSITY) mine[1]++;
+    if (atom->vfrac[i] > LARGEST_POINT * cells.lattice.cell_volume()) mine[2]++;
     for (int d = 0; d < domain->dimension; d++)
       if (!std::isfinite(atom->v[i][d]) || !std::isfinite(atom->x[i][d]))
         error->one(FLERR, Error::NOLASTLINE,
                    "Fix {}: point {} has a position or velocity that is not a number", style,
                    atom->tag[i]);
   }
-  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(mine, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all[0] == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {} has no material points in its group: make some with create_points", style,
@@ -443,6 +454,12 @@ void FixMPMIncompressible::check_points()
         "Fix {} {}: {} points have another mass than density {} times their volume; there is one "
         "density but for points of keywords liquid and solid",
         style, id, all[1], density);
+  if (all[2] && comm->me == 0 && !told_of_large)
+    error->warning(FLERR,
+                   "Fix {} {}: {} points are larger than a cell, and leave others empty when they "
+                   "move: use points with a spacing of at most {:.6g}, better {:.6g}",
+                   style, id, all[2], h, 0.5 * h);
+  told_of_large = all[2] > 0;
   refuse_other_integrators(lmp, *this);
   check_others();
 }
@@ -957,17 +974,27 @@ void FixMPMIncompressible::check_inflow() const
 
 void FixMPMIncompressible::check_speed()
 {
+  const int dim = cells.lattice.dim;
   double most[1] = {0.0}, all[1];
-  for (const double v : velocity) {
+  const auto look_at = [&](double v) {
     if (!std::isfinite(v)) most[0] = std::numeric_limits<double>::infinity();
     most[0] = std::max(most[0], std::fabs(v));
-  }
+  };
+
+  // next to a wall that moves its velocity is in between; the images beyond are twice as fast, but nothing moves with them
+
+  for (const auto &cell : cells.cells)
+    for (int c = 0; c < dim; c++) look_at(velocity[(int64_t) cell.number * dim + c]);
+  for (int d = 0; d < dim; d++)
+    for (const auto &wall : walls[d])
+      for (int c = 0; c < dim; c++)
+        if (wall.sticks) look_at(wall.v[c]);
   MPI_Allreduce(most, all, 1, MPI_DOUBLE, MPI_MAX, world);
 
   // with lists of grains alone LAMMPS does not see how far points go, which must not be further than a period
 
   gone += all[0] * update->dt;
-  for (int d = 0; d < cells.lattice.dim; d++)
+  for (int d = 0; d < dim; d++)
     if (neighbor->includegroup && domain->periodicity[d] && gone > 0.25 * domain->prd[d])
       next_reneighbor = update->ntimestep;
   if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * h) return;
@@ -1042,8 +1069,12 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
       return 0.0;
     }
   }
-  if (regions && regions->largest_speed() * dt > h) {
-    dt = h / regions->largest_speed();
+  double moving = regions ? regions->largest_speed() : 0.0;    // what is next to it moves with it
+  for (const auto &axis_walls : walls)
+    for (const auto &face : axis_walls)
+      if (face.sticks && viscosity > 0.0) moving = std::max(moving, MathExtra::len3(face.v));
+  if (moving * dt > h) {
+    dt = h / moving;
     tag = 0;
   }
   if (forces_known) limit_before = dt;

@@ -137,6 +137,7 @@ class FixMPMIncompressible :
       0.0;                      // last stable_dt() with forces, on restart of all ranks; 0: none
   bool forces_known = false;    // they are cleared at the start of a run
   mutable bool told_of_bodies = false;
+  bool told_of_large = false;
   double gone = 0.0;    // most that points have moved since neighbor lists were made
 
   struct {

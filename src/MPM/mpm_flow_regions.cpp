@@ -179,6 +179,7 @@ void MPMFlowRegions::start_run()
     for (int k = 0; k < 4; k++) wall.before[k] = *MPMRegionMotion::of(wall.region)[k];
     if (wall.body) wall.body->motion(wall.center, wall.shift, wall.spin);
   }
+  met.clear();
   known = false;
 }
 
@@ -223,6 +224,7 @@ void MPMFlowRegions::find(double duration)
   }
   find_shares();
   find_cuts();
+  if (any_bodies) warn_of_bodies();
   for (auto &wall : walls)
     if (wall.moves)
       for (int k = 0; k < 4; k++) *MPMRegionMotion::of(wall.region)[k] = wall.before[k];
@@ -608,6 +610,49 @@ void MPMFlowRegions::set_motion(const std::vector<double> &all)
   }
 }
 
+/** Bodies touch nothing, and a stone would go on through the floor without a word. What is so at the start of a run is meant. */
+void MPMFlowRegions::warn_of_bodies()
+{
+  constexpr int FACES = 6;
+  const double h = cells.lattice.h, far = FAR * h;
+  std::vector<int> mine((FACES + 1) * n(), 0), all(mine.size());
+  for (const auto &cell : cells.cells) {
+    if (levels[cell.number] > h || levels[cell.number] < -h) continue;
+    for (int w = 0; w < n(); w++) {
+      if (!walls[w].body) continue;
+      int *const meets = &mine[(FACES + 1) * w];
+      double offset[3] = {0.5, 0.5, 0.5}, x[3];
+      for (int k = 0; k < 2 * dim; k++) {
+        if (!(cell.walls >> k & 1) || meets[k]) continue;
+        offset[k / 2] = k % 2;
+        place(cell.index, offset, x);
+        offset[k / 2] = 0.5;
+        meets[k] = distance_from(walls[w], x, far) < 0.0;
+      }
+      place(cell.index, offset, x);
+      if (meets[FACES] || !(levels[cell.number] < 0.0) || distance_from(walls[w], x, far) >= 0.0)
+        continue;
+      for (int other = 0; other < n(); other++)
+        if (other != w && distance_from(walls[other], x, far) < 0.0) meets[FACES] = 1;
+    }
+  }
+  MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_INT, MPI_MAX, world);
+  if (met.size() != all.size()) met = all;
+  for (int k = 0; k < (int) all.size(); k++) {
+    if (all[k] <= met[k]) continue;
+    met[k] = 1;
+    const int face = k % (FACES + 1);
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/incompressible: the body of fix {} goes through {}, as bodies in a "
+                     "flow touch neither each other nor walls: end the run before, or hold it",
+                     walls[k / (FACES + 1)].body->id,
+                     face == FACES ? std::string("another region")
+                                   : fmt::format("wall {}{}", (char) ('x' + face / 2),
+                                                 face % 2 ? "hi" : "lo"));
+  }
+}
+
 /** Is there a wall between the middles of opposite faces that are open? */
 bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
 {
@@ -625,7 +670,31 @@ bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
       normal_at(wall, x, n);
       from_wall[s] = n[d];
     }
-    if (sum < 1.001 * h && from_wall[0] < -TOWARDS && from_wall[1] > TOWARDS) return true;
+    if (sum < 1.001 * h && from_wall[0] < -TOWARDS && from_wall[1] > TOWARDS && !is_corner(cell, d))
+      return true;
+  }
+  return false;
+}
+
+/** A corner that ends in the cell is as thin there, but lets nothing through: next to it the wall is thicker than a cell. */
+bool MPMFlowRegions::is_corner(const MPMFlowLattice::Cell &cell, int axis) const
+{
+  constexpr int NEAR =
+      2;    // cells: one of 60 degrees is as thick there, wherever it ends in the cell
+  for (int e = 0; e < dim; e++) {
+    if (e == axis) continue;
+    for (int along = -NEAR; along <= NEAR; along++) {
+      int index[3] = {cell.index[0], cell.index[1], cell.index[2]}, wall;
+      index[e] += along;
+      bool solid = along != 0;
+      for (int s = 0; s < 2 && solid; s++) {
+        double offset[3] = {0.5, 0.5, 0.5}, x[3];
+        offset[axis] = s;
+        place(index, offset, x);
+        solid = distance(x, FAR * cells.lattice.h, wall) < 0.0;
+      }
+      if (solid) return true;
+    }
   }
   return false;
 }

@@ -146,6 +146,8 @@ class MPMFlowRegions : protected Pointers {
   std::vector<Held> helds;
   bigint nbuild = -1;
   bool any_moves = false, any_bodies = false, known = false, told_of_thin = false;
+  std::vector<int>
+      met;    // [wall][7] is a body in another region, or in one of the walls of the box? known: as it was at the start of the run
   double speed = 0.0, duration_of_motion = 0.0;
   std::vector<double> levels;    // distances in the middle of cells, at most far
   mutable std::vector<double> changed, slopes, values;
@@ -162,7 +164,9 @@ class MPMFlowRegions : protected Pointers {
   void find_moments(Cut &) const;
   void find_change(Cut &, const double *x) const;
   bool is_thin(const MPMFlowLattice::Cell &) const;
+  bool is_corner(const MPMFlowLattice::Cell &, int axis) const;
   void warn_of_thin(int nthin);
+  void warn_of_bodies();
 };
 
 }    // namespace LAMMPS_NS
