@@ -96,6 +96,10 @@ def not_in_test(test, names):
         return [program(test) + ".cpp"]
     with open(path[0]) as file:
         text = file.read()
+    processes = re.search(r"^// mpi: (.*)", text, re.M)
+    known = [program(test) + (".np" + n if n != "0" else "") for n in (processes.group(1).split() if processes else ["0"])]
+    if test not in known:
+        return [test]
     return [word for word in re.findall(r"[A-Za-z]\w{3,}", names) if word not in text]
 
 

@@ -31,6 +31,8 @@ def test_what_does_not_fit_is_told():
                                ("::sum(", "::summe(", "good: the text is not exactly once in mpm_halo.cpp"),
                                ("void MPMHalo::sum(", "void", "1 mutants, 1 stale"),    # more than once
                                ("Walls", "Waals", "good: no Waals in the source of test_parallel"),
+                               (".np2", ".np7", "good: no test_parallel.np7 in the source of test_parallel"),
+                               (".np2", "", "good: no test_parallel in the source of test_parallel"),
                                ("test_parallel", "test_series", "good: no test_series.cpp in")):
             with open(path, "w", encoding="ascii") as file:
                 file.write(good.replace(old, new) if old else good)
