@@ -432,10 +432,10 @@ void FixMPMImplicit::tell_of_turns()
     if (comm->me == 0)
       error->warning(
           FLERR,
-          "Fix mpm/implicit {}: points have turned by {:.2g} on average, and with stress "
-          "mls in the updated frame bodies whose surfaces are inclined to the lattice "
-          "give way a little more in each step: a beam of 4 cells bends 10 % too far. "
-          "Use stress gradient of fix mpm {}, or frame total",
+          "Fix mpm/implicit {}: points have turned by {:.2g} on average, and with stress mls in "
+          "the updated frame bodies whose surfaces are inclined to the lattice give way a little "
+          "more in each step: a beam of 4 cells bends 10 % too far. Use frame total or shape cpdi2 "
+          "of fix mpm {}, or stress gradient, which does so less",
           id, all[0] / all[1], field->id());
     return;
   }
