@@ -221,7 +221,9 @@ SERIAL_TEST(Beam, StaysWhereItIs)
               turns ? 1u : 0u)
         << options;
   }
+  // nor where nothing turns, and in the first step, which begins along the lattice
   EXPECT_TRUE(lines_that_say(hanging(8, "", 300.0, 4) + "run 5\n", "with stress mls").empty());
+  EXPECT_TRUE(lines_that_say(scene("") + "run 1\n", "with stress mls").empty());
 
   Scene total(scene("frame total") + "run 1\n");
   const double exact = total.compute_scalar("low");

@@ -345,6 +345,7 @@ void FixMPMImplicit::setup(int)
 
 void FixMPMImplicit::step()
 {
+  if (time == STATIC && !told_of_turns) tell_of_turns();
   const double begin = platform::walltime();
   const std::vector<double> energies = solver->step(fields[0]->step_dt());
   seconds += platform::walltime() - begin;
@@ -394,14 +395,14 @@ void FixMPMImplicit::step()
 void FixMPMImplicit::rest()
 {
   for (auto *field : fields) put_to_rest(*field, taken);
-  if (!told_of_turns) tell_of_turns();
 }
 
 /* ----------------------------------------------------------------------
    Stress mls has the integral of N (x_i - x)/D over a body in the place of that of the gradient of N. Both are along the
    normal of a surface that is along the lattice; next to an inclined one that of mls is not, so that stress along a free surface pulls at
    its nodes. Points move to undo that, come to other places, and the skin of a body loses stress in each step.
-   The rotation is the mean over points by their equivalent stress: fluids, and what has failed, have none
+   The rotation is the mean over points by their equivalent stress: fluids, and what has failed, have none. It is that of the
+   start of a step, as the step in which a body turns for the first time has no such error
 ------------------------------------------------------------------------- */
 
 void FixMPMImplicit::tell_of_turns()
