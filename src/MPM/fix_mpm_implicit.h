@@ -67,11 +67,13 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
       {};    // static: kinetic energy that points had, and work in a step; this rank's share [energy]
   double at_start[NTOTAL] = {};    // of this run
   double seconds = 0.0;            // in this run
+  bool told_of_turns = false;      // that stress mls lets what has turned give way
 
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;
   void step();
   void rest();
+  void tell_of_turns();
 };
 
 }    // namespace LAMMPS_NS
