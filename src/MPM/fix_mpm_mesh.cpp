@@ -593,11 +593,7 @@ void FixMPMMesh::initial_integrate(int)
   points_to_nodes();
   if (steps == 0 && forces->has_loads())
     forces->warn_of_lost_loads(fmt::format("Fix mpm/mesh {}", id), [this](int node) {
-      if (!has_node[node] || !ranks.first[node]) return false;
-      bool any = false;
-      for (int body = 0; body < count_bodies(); body++)
-        any = any || sums[body * mesh->nodes.size() + node].mass > 0.0;
-      return any;
+      return has_node[node] && ranks.first[node] && sums[node].mass > 0.0;
     });
   find_velocities();
   nodes_to_points();
