@@ -448,6 +448,20 @@ SERIAL_TEST(MeshGrid, FbarDoesNotLock)
     }
 }
 
+// Cells that turn inside out end the run with the determinant, which is a number
+SERIAL_TEST(MeshGrid, FbarTellsOfInsideOut)
+{
+  for (const Kind kind : {QUADS, HEXAHEDRA}) {
+    const ScratchFile file("bar.msh", bar(kind, 3));
+    const int dim = kind == QUADS ? 2 : 3;
+    Scene run(scene(dim, file.name, "neohookean 1 0.3",
+                    "frame total locking fbar velocity xlo 0 NULL" +
+                        std::string(dim == 3 ? " NULL" : "")));
+    run.commands("velocity all ramp vx 0 -40 x 0 4\ntimestep 0.001\n");
+    expect_error(run, "run 1000\n", "has a deformation gradient of determinant -0");
+  }
+}
+
 // In the updated frame a body can be elsewhere than the sides that are loaded
 SERIAL_TEST(MeshGrid, LostLoads)
 {

@@ -743,7 +743,9 @@ void FixMPMMesh::find_mean_strain(const std::vector<MeshVector> &velocities)
   means->sum();
   for (const int i : order) {
     Volumetric &mine = volumetric[i];
-    mine.scale = std::pow(mine.scale * means->mean(mine.group, places[i], 0), 1.0 / dim);
+    const double change = mine.scale * means->mean(mine.group, places[i], 0);
+    mine.scale =
+        std::pow(std::fabs(change), 1.0 / dim);    // what is inside out stays so, and is told
   }
 }
 
