@@ -736,7 +736,6 @@ variable atoms atom x
       "run 3\n");
 }
 
-// a mouth that moves out of the box takes its points there
 // Around an axis of symmetry the area that is given is that of an annulus, as what is found
 SERIAL_TEST(Emit, AreaOfAnAnnulus)
 {
@@ -767,6 +766,7 @@ SERIAL_TEST(BadInput, AnotherArea)
   EXPECT_EQ(told(10.0 * B), 1u);
 }
 
+// a mouth that moves out of the box takes its points there
 SERIAL_TEST(BadInput, OutOfTheBox)
 {
   Scene run(plug("0.02", 0.0, "2 0 0", "move -4 0 0") + "timestep 0.001\n");

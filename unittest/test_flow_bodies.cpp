@@ -216,6 +216,19 @@ SERIAL_TEST(Body, WarnsOfWhatItTouches)
   EXPECT_NE(floor[1].find("fix two goes through wall yhi"), std::string::npos);
   EXPECT_EQ(lines_that_say(scene("block 0.38 0.62 -0.1 0.3 INF INF", up, 0.3), say).size(), 0u);
   EXPECT_EQ(lines_that_say(scene("sphere 0.51 0.44 0 0.12", up, -0.5), say).size(), 2u);    // each
+  // held in a wall from the start, where water comes later
+  EXPECT_EQ(
+      lines_that_say(
+          plane("si", "f f", "0 2 0 1", 1, 0.02) +
+              "region water block 0 0.5 0 0.6 INF INF\ncreate_points 1 region water spacing 0.025\n"
+              "region body block 1.5 2.1 -0.1 0.2 INF INF\n"
+              "fix b all mpm/rigid body density 3000 slip hold x y rz\n"
+              "fix w all mpm/incompressible 0.05 1000 region body\n"
+              "fix g all gravity 9.81 vector 0 -1 0\nfix d all mpm/dt 0.5 every 1 max 0.01\nrun "
+              "100\n",
+          say)
+          .size(),
+      0u);
 }
 
 SERIAL_TEST(Body, BadInput)

@@ -484,4 +484,27 @@ SERIAL_TEST(Grain, BadInput)
                            say)
                 .size(),
             0u);
+
+  // a weight of each group of grains is the same as one of all; one that varies is none before the first forces
+  const std::string fits = scene + w + d + "1.0 0.1 gravity 0 -1 0",
+                    left = "region left block INF 2 INF INF INF INF\n"
+                           "group left region left\ngroup right subtract all left\n";
+  EXPECT_EQ(
+      lines_that_say(
+          fits + "\n" + left +
+              "fix g left gravity 1.0 vector 0 -1 0\nfix g2 right gravity 1.0 vector 0 -1 0\n" +
+              move + run,
+          say)
+          .size(),
+      0u);
+  EXPECT_EQ(lines_that_say(
+                fits + "\n" + left + "fix g right gravity 2.0 vector 0 -1 0\n" + move + run, say)
+                .size(),
+            1u);
+  EXPECT_EQ(lines_that_say(fits +
+                               "\nvariable g equal 2*time\nfix g all gravity v_g vector 0 -1 0\n" +
+                               move + run + "run 1\n",
+                           say)
+                .size(),
+            0u);
 }

@@ -81,8 +81,7 @@ Options MPMEmitOptions::declare(int dim)
   o.add("area",
         {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
                 "area of the section of the mouth, if it is known; around an axis of symmetry that "
-                "of the "
-                "annulus")})
+                "of the annulus")})
       .standard("found from the region");
   o.add(
        "temperature",

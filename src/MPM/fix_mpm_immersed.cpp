@@ -44,6 +44,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "fix_gravity.h"
 #include "fix_mpm_incompressible.h"
 #include "force.h"
 #include "math_const.h"
@@ -225,30 +226,58 @@ void FixMPMImmersed::check_grains(const Fix *driver, double h)
                    id, large);
 }
 
-/** Grains that fix gravity pulls down need the same gravity for their buoyancy, which is easily forgotten. */
+namespace {
+
+/** A fix gravity with variables has no vector before its first forces. It does not tell whether it has some. */
+struct Gravity : public FixGravity {
+  static bool is_constant(const Fix *fix)
+  {
+    const auto *const gravity = dynamic_cast<const FixGravity *>(fix);
+    return gravity && gravity->*(&Gravity::varflag) == CONSTANT;
+  }
+};
+
+}    // namespace
+
+/** Grains that fix gravity pulls down need the same gravity for their buoyancy, which is easily forgotten. One that varies cannot be that
+ *  of the keyword, which is constant. */
 void FixMPMImmersed::setup(int)
 {
   if (told_of_weight) return;
-  double weight[3] = {0.0, 0.0, 0.0}, off = 0.0, most = 0.0;
+  std::vector<std::pair<int, const double *>> pulls;    // groups, and their force per mass
   for (auto *other : modify->get_fix_by_style("^gravity")) {
-    int mine = 0, any, width;
-    for (int i = 0; i < atom->nlocal && !mine; i++)
-      mine = is_grain(i) && (atom->mask[i] & other->groupbit) &&
-          density * volume(i) > NO_BUOYANCY * atom->rmass[i] &&
-          std::any_of(movers.begin(), movers.end(), [&](const Mover &mover) {
-               return atom->mask[i] & mover.groupbit;
-             });
-    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-    const auto *const vector = (const double *) other->extract("gvec", width);
-    for (int d = 0; d < 3 && any; d++) weight[d] += vector[d] * force->ftm2v;
+    int width;
+    if (!Gravity::is_constant(other)) return;
+    pulls.emplace_back(other->groupbit, (const double *) other->extract("gvec", width));
   }
-  for (int d = 0; d < domain->dimension; d++) {
-    off = std::max(off, fabs(weight[d] - gravity[d]));
-    most = std::max(most, fabs(weight[d]));
+  struct {
+    double off;
+    int rank;
+  } mine = {0.0, comm->me}, worst;
+  double weight[3] = {0.0, 0.0, 0.0};    // of the grain of which it is most different
+  for (int i = 0; i < atom->nlocal; i++) {
+    const int mask = atom->mask[i];
+    if (!is_grain(i) || !(density * volume(i) > NO_BUOYANCY * atom->rmass[i]) ||
+        std::none_of(movers.begin(), movers.end(), [&](const Mover &mover) {
+          return mask & mover.groupbit;
+        }))
+      continue;
+    double here[3] = {0.0, 0.0, 0.0}, off = 0.0, most = 0.0;
+    for (const auto &[group, vector] : pulls)
+      for (int d = 0; d < 3 && (mask & group); d++) here[d] += vector[d] * force->ftm2v;
+    for (int d = 0; d < domain->dimension; d++) {
+      off = std::max(off, fabs(here[d] - gravity[d]));
+      most = std::max(most, fabs(here[d]));
+    }
+    if (most == 0.0 || off <= SAME_GRAVITY * most || off <= mine.off) continue;
+    mine.off = off;
+    std::copy_n(here, 3, weight);
   }
-  if (!(off > SAME_GRAVITY * most)) return;
+  MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
+  if (worst.off == 0.0) return;
   told_of_weight = true;
-  if (comm->me == 0 && most > 0.0)
+  MPI_Bcast(weight, 3, MPI_DOUBLE, worst.rank, world);
+  if (comm->me == 0)
     error->warning(
         FLERR,
         "Fix mpm/immersed {}: fix gravity gives grains the acceleration {:.6g} {:.6g} "

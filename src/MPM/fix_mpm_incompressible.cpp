@@ -352,9 +352,9 @@ void FixMPMIncompressible::init()
     bodies = std::make_unique<MPMFlowBodies>(lmp, cells, *regions, density);
     bodies->init();
     if (!bodies->any()) bodies.reset();
-    if (bodies && !transfer_is_given) {
-      transfer = AFLIP;
-      flip = FLIP_OF_BODIES;
+    if (solid_groups.empty() && !transfer_is_given) {    // bodies can come and go between runs
+      transfer = bodies ? AFLIP : APIC;
+      flip = bodies ? FLIP_OF_BODIES : 0.0;
     }
     pressure->bodies = bodies.get();
     if (bodies && (!liquids.empty() || solids))

@@ -466,12 +466,12 @@ void FixMPMMesh::warn_of_locking()
 void FixMPMMesh::warn_of_flow() const
 {
   int mine = 0, any;
-  for (const int i : order) {
-    const auto &variables = material_of(i)->material->history();
+  for_batches(order, [&](const int *, int, const FixMPMMaterial *material) {
+    const auto &variables = material->material->history();
     mine |= std::any_of(variables.begin(), variables.end(), [](const auto &variable) {
       return variable.name == "eplastic";
     });
-  }
+  });
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (any && comm->me == 0)
     error->warning(FLERR,
@@ -591,7 +591,7 @@ void FixMPMMesh::initial_integrate(int)
   if (total && forces->has_pressure()) forces->follow(counts_cell, positions, ranks);
   if (heat) heat->conduct(bodies(), update->dt);
   points_to_nodes();
-  if (steps == 0 && !contact && forces->has_loads())
+  if (steps == 0 && forces->has_loads())
     forces->warn_of_lost_loads(fmt::format("Fix mpm/mesh {}", id), [this](int node) {
       return has_node[node] && ranks.first[node] && sums[node].mass > 0.0;
     });
@@ -743,7 +743,9 @@ void FixMPMMesh::find_mean_strain(const std::vector<MeshVector> &velocities)
   means->sum();
   for (const int i : order) {
     Volumetric &mine = volumetric[i];
-    mine.scale = std::pow(mine.scale * means->mean(mine.group, places[i], 0), 1.0 / dim);
+    const double change = mine.scale * means->mean(mine.group, places[i], 0);
+    mine.scale =
+        std::pow(std::fabs(change), 1.0 / dim);    // what is inside out stays so, and is told
   }
 }
 

@@ -73,11 +73,11 @@ class MPMFlowLattice : protected Pointers {
   /** Blocks, cells, and lists; nothing while these are valid. */
   void find_cells();
   /** Does a point with this base still have its cells in those of its run? */
-  bool in_reach(const Run &run, const int base[3]) const
+  template <int dim> bool in_reach(const Run &run, const int base[3]) const
   {
     const Range &r = ranges[run.slot];
     bool in = true;
-    for (int d = 0; d < lattice.dim; d++)
+    for (int d = 0; d < dim; d++)
       in = in && base[d] >= r.low[d] - DRIFT && base[d] <= r.high[d] + DRIFT;
     return in;
   }

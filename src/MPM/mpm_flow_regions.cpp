@@ -610,37 +610,53 @@ void MPMFlowRegions::set_motion(const std::vector<double> &all)
   }
 }
 
-/** Bodies touch nothing, and a stone would go on through the floor without a word. What is so at the start of a run is meant. */
+/** Is a place in a wall, and has it come there with the motion of the last two steps? */
+MPMFlowRegions::Meets MPMFlowRegions::meets(int wall, const double *x) const
+{
+  const double far = FAR * cells.lattice.h;
+  if (distance_from(walls[wall], x, far) >= 0.0) return AWAY;
+  double v[3], before[3];    // as far from the wall now as x was then
+  velocity_at(wall, x, v);
+  for (int d = 0; d < 3; d++) before[d] = x[d] + 2.0 * duration_of_motion * v[d];
+  return distance_from(walls[wall], before, far) >= 0.0 ? COMES : INSIDE;
+}
+
+/** Bodies touch nothing, and a stone would go on through the floor without a word. What is so at the start of a run is meant, also where
+ *  water comes later, and with it the cells in which that is seen. */
 void MPMFlowRegions::warn_of_bodies()
 {
   constexpr int FACES = 6;
-  const double h = cells.lattice.h, far = FAR * h;
+  const double h = cells.lattice.h;
   std::vector<int> mine((FACES + 1) * n(), 0), all(mine.size());
   for (const auto &cell : cells.cells) {
     if (levels[cell.number] > h || levels[cell.number] < -h) continue;
     for (int w = 0; w < n(); w++) {
       if (!walls[w].body) continue;
-      int *const meets = &mine[(FACES + 1) * w];
+      int *const here = &mine[(FACES + 1) * w];
       double offset[3] = {0.5, 0.5, 0.5}, x[3];
       for (int k = 0; k < 2 * dim; k++) {
-        if (!(cell.walls >> k & 1) || meets[k]) continue;
+        if (!(cell.walls >> k & 1) || here[k] == COMES) continue;
         offset[k / 2] = k % 2;
         place(cell.index, offset, x);
         offset[k / 2] = 0.5;
-        meets[k] = distance_from(walls[w], x, far) < 0.0;
+        here[k] = std::max<int>(here[k], meets(w, x));
       }
+      if (here[FACES] == COMES || !(levels[cell.number] < 0.0)) continue;
       place(cell.index, offset, x);
-      if (meets[FACES] || !(levels[cell.number] < 0.0) || distance_from(walls[w], x, far) >= 0.0)
-        continue;
-      for (int other = 0; other < n(); other++)
-        if (other != w && distance_from(walls[other], x, far) < 0.0) meets[FACES] = 1;
+      const int own = meets(w, x);
+      for (int other = 0; other < n() && own != AWAY; other++) {
+        const int its = other == w ? AWAY : meets(other, x);
+        if (its != AWAY) here[FACES] = std::max({here[FACES], own, its});
+      }
     }
   }
   MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_INT, MPI_MAX, world);
-  if (met.size() != all.size()) met = all;
+  const bool first = met.empty();
+  met.resize(all.size());
   for (int k = 0; k < (int) all.size(); k++) {
-    if (all[k] <= met[k]) continue;
+    if (all[k] == AWAY || met[k]) continue;
     met[k] = 1;
+    if (all[k] != COMES || first) continue;
     const int face = k % (FACES + 1);
     if (comm->me == 0)
       error->warning(FLERR,

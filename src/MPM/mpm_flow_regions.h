@@ -147,7 +147,7 @@ class MPMFlowRegions : protected Pointers {
   bigint nbuild = -1;
   bool any_moves = false, any_bodies = false, known = false, told_of_thin = false;
   std::vector<int>
-      met;    // [wall][7] is a body in another region, or in one of the walls of the box? known: as it was at the start of the run
+      met;    // [wall][7] has a body been seen in another region, or in one of the walls of the box?
   double speed = 0.0, duration_of_motion = 0.0;
   std::vector<double> levels;    // distances in the middle of cells, at most far
   mutable std::vector<double> changed, slopes, values;
@@ -166,6 +166,8 @@ class MPMFlowRegions : protected Pointers {
   bool is_thin(const MPMFlowLattice::Cell &) const;
   bool is_corner(const MPMFlowLattice::Cell &, int axis) const;
   void warn_of_thin(int nthin);
+  enum Meets { AWAY, INSIDE, COMES };
+  Meets meets(int wall, const double *x) const;
   void warn_of_bodies();
 };
 

@@ -257,7 +257,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);
         places.keep_inside(x);
         places.find(x, w);
-        all_in_reach = all_in_reach && cells.in_reach(run, w.base);
+        all_in_reach = all_in_reach && cells.in_reach<dim>(run, w.base);
         continue;
       }
       if (update.old) {
@@ -298,7 +298,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         places.keep_inside(x);
       }
       places.find(x, w);
-      all_in_reach = all_in_reach && cells.in_reach(run, w.base);
+      all_in_reach = all_in_reach && cells.in_reach<dim>(run, w.base);
     }
   }
   return all_in_reach;
