@@ -203,6 +203,30 @@ PARAMETER_TEST(Rock, ShakesTheLayer, double, Values(1.0, 1.5707963267948966))
   EXPECT_NEAR(measured("top over rock, over exact", most / 2e-4 / exact), 1.0, 0.02);
 }
 
+// The same at its resonance with the base in a plane of nodes, where points hardly reach the nodes beyond it. The rock has the impedance alone:
+// how this is made of density and speed does not matter
+SERIAL_TEST(Rock, ShakesTheLayerFromAPlaneOfNodes)
+{
+  const double z = 0.25, omega = 0.5 * PI * CS / 20.0;
+  double most[2] = {0.0, 0.0};
+  for (const bool dense : {false, true}) {
+    const double rho = dense ? 3.0 : 1.0;
+    Scene run(
+        strip("transfer aflip 1.0", 0.0, 20, 4) +
+        strprintf("variable v equal 1e-4*sin(%.17g*time)*(1-exp(-1.0*time*time/2500))\n", omega) +
+        strprintf("fix rock all mpm/dashpot region left %.17g %.17g density %.17g "
+                  "incoming 0 v_v 0\ntimestep 0.5\nrun %d\n",
+                  1.0 / z / rho, CS / z / rho, rho, (int) (30.0 * 20.0 / CS / 0.5)));
+    for (int k = 0; k < 80; k++) {
+      run.commands(strprintf("run %d post no\n", (int) (2.0 * PI / omega / 0.5 / 40.0)));
+      const auto top = waves(run, 19.0, 20.3, true);
+      most[dense] = std::max(most[dense], std::fabs(top[0] + top[1]));
+    }
+    EXPECT_NEAR(measured("top over rock, over exact", most[dense] / 2e-4 * z), 1.0, 0.02);
+  }
+  EXPECT_NEAR(most[1] / most[0], 1.0, 1e-6);
+}
+
 // A rigid base whose velocity is given, and the frame that moves with it, in which its acceleration is a weight, are the same
 SERIAL_TEST(RigidBase, IsAWeightInItsFrame)
 {

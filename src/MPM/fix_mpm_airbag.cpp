@@ -87,6 +87,11 @@ FixMPMAirbag::FixMPMAirbag(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
                "Fix mpm/airbag acts on the elements of a fix mpm/elements: use group all");
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
+  if (coefficient > 1.0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/airbag {}: a vent has the discharge coefficient {:.6g}, above 1: more "
+                   "gas flows out than through a nozzle without losses",
+                   id, coefficient);
   scalar_flag = vector_flag = 1;
   size_vector = 8;
   global_freq = 1;

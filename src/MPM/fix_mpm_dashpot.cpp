@@ -63,9 +63,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// rate of a node, in wave speeds over node spacings: with stress mls, stress pulls less at nodes that points hardly reach than
-// the functions there tell, and dashpots must not pull more
-static constexpr double FASTEST = 20.0, FASTEST_MLS = 8.0;
+// rate of a node, in wave speeds over node spacings, times the density of the far side over that of the body: with stress mls, stress
+// pulls less at nodes that points hardly reach than the functions there tell, and dashpots must not pull more
+static constexpr double FASTEST = 20.0, FASTEST_MLS = 6.0;
 
 static constexpr int DEPTH =
     3;    // cells below the surface whose nodes count for what the support lacks
@@ -561,7 +561,9 @@ bool FixMPMDashpot::weigh(Body &body, const Mark &mark, double dt, double *dampi
   const double fastest = is_mls(options.shape, options.transfer) && !options.strains_by_gradient()
       ? FASTEST_MLS
       : FASTEST;
-  const double most = fastest * (speed_p + (dim - 1) * speed_s) / grid.lattice.h;
+  const int i = mark.point;
+  const double most = fastest * (speed_p + (dim - 1) * speed_s) / grid.lattice.h *
+      rows[i][DENSITY] * atom->vfrac[i] / atom->rmass[i];
   double total = 0.0, center[3] = {0.0, 0.0, 0.0}, spread[3] = {0.0, 0.0, 0.0};
   for (Node *node = first; node < last; node++) {
     const double mass = grid.record(node->number)[3], *const L = body.rates->at(node->number);
