@@ -155,6 +155,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
     MPMPore::Inertia last;    // of all ranks
     double time = 0.0;        // of these
     bigint points = -1;       // that they are of; -1: not known
+    bigint flows = 0;         // so far in this run
   } watched;
   bool watches_inertia = false;    // in this run
   bool inertia_known = false;      // has a warning told of it?
