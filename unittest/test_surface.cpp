@@ -416,3 +416,33 @@ TEST(Surface, RefusesMistakes)
                "fix grid all mpm 1.0\nfix surf all mpm/surface\n",
                "use atom_style hybrid sphere mpm");
 }
+
+// Points of a body touch each other when they have their usual diameter: a pair style of grains that acts between them, too, is told
+SERIAL_TEST(Surface, WarnsOfPointsThatTouchAsGrains)
+{
+  const std::string
+      head = "units lj\natom_style hybrid sphere mpm\nboundary f f f\nregion box block 0 8 0 8 0 "
+             "8\ncreate_box 2 box\n"
+             "neighbor 0.3 bin\ncomm_modify vel yes\npair_style granular\n",
+      rest = "fix m all mpm/material density 1 neohookean 10 0.3\n"
+             "pair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0 0\ntimestep 0.001\n",
+      exclude = "neigh_modify exclude type 1 1\n", said = "touch as grains";
+  const std::string block =
+      "fix grid all mpm 1.0\nregion b block 3 5 3 5 3 5\ncreate_points 1 region b ppc 2\n" + rest;
+  const auto lines = lines_that_say(head + block + "run 1\n", said);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], testing::HasSubstr("Fix mpm grid: 144 pairs"));
+  EXPECT_EQ(lines_that_say(head + block + exclude + "run 1\n", said).size(), 0u);
+  EXPECT_EQ(lines_that_say(head + block + "set group all diameter 0.4\nrun 1\n", said).size(), 0u);
+
+  const ScratchFile file(
+      "rope.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 3 4 4\n2 4 4 4\n3 5 4 4\n$EndNodes\n"
+      "$Elements\n2\n1 1 0 1 2\n2 1 0 2 3\n$EndElements\n");
+  const std::string rope = "create_points 1 mesh " + file.name + " section 1 diameter 1.1\n" +
+      rest + "fix e all mpm/elements " + file.name + " section 1\nfix move all nve\n";
+  const auto free = lines_that_say(head + rope + "run 1\n", said);
+  ASSERT_EQ(free.size(), 1u);
+  EXPECT_THAT(free[0], testing::HasSubstr("Fix mpm/elements e: 2 pairs"));
+  EXPECT_EQ(lines_that_say(head + rope + exclude + "run 1\n", said).size(), 0u);
+}

@@ -28,6 +28,7 @@
 #include "mpm_guard.h"
 #include "mpm_halo.h"
 #include "mpm_options.h"
+#include "mpm_pair_styles.h"
 #include "mpm_physics.h"
 #include "mpm_plan.h"
 #include "mpm_point_map.h"
@@ -231,6 +232,7 @@ void FixMPM::setup(int)
 {
   if (update->dt <= 0.0) error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
   if (plan && force->pair) field->guard->check_lists();
+  if (force->pair) warn_of_points_as_grains(lmp, groupbit, fmt::format("Fix mpm {}", id));
   if (plan) plan->start();
   field->running = true;
   if (field->affine) field->affine->fit();

@@ -34,6 +34,7 @@
 #include "mpm_image.h"
 #include "mpm_input.h"
 #include "mpm_options.h"
+#include "mpm_pair_styles.h"
 #include "mpm_points.h"
 #include "mpm_time_limit.h"
 #include "neighbor.h"
@@ -1381,6 +1382,8 @@ void FixMPMElements::check_free_dt()
 {
   constexpr double SLACK = 0.55;    // of the limit
   check_dt();
+  if (force->pair && update->setupflag)
+    warn_of_points_as_grains(lmp, groupbit, fmt::format("Fix mpm/elements {}", id));
   if (compression || warned_slack) return;
   tagint tag;
   double speed, limit;

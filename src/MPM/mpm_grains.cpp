@@ -318,3 +318,44 @@ void MPMGrains::pairs_of(const Style &style, double ahead, int every, Collision 
     }
   }
 }
+
+/* ----------------------------------------------------------------------
+   Points of one body touch each other as soon as they have their usual diameter. A pair style of grains that is there for other atoms then
+   pushes them apart, besides the stress of the material: a body is stiffer, and starts with energy where diameters are larger than distances
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::string &who)
+{
+  constexpr double TOUCH = 1.0001;
+  const Atom *const atom = lmp->atom;
+  if (!atom->radius_flag || !atom->vfrac) return;
+  bigint mine = 0, pairs = 0;
+  int type = lmp->atom->ntypes + 1, first;
+  for (const auto &style : MPMPairStyle::all(*lmp->force)) {
+    const NeighList *const list = style.pair->list;
+    if (!utils::strmatch(style.name, "^gran") || !list) continue;
+    for (int ii = 0; ii < list->inum; ii++) {
+      const int i = list->ilist[ii];
+      if (!(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
+      for (int jj = 0; jj < list->numneigh[i]; jj++) {
+        const int j = list->firstneigh[i][jj] & NEIGHMASK;
+        if (!(atom->mask[j] & groupbit) || !(atom->vfrac[j] > 0.0)) continue;
+        double square = 0.0;
+        for (int d = 0; d < 3; d++)
+          square += (atom->x[i][d] - atom->x[j][d]) * (atom->x[i][d] - atom->x[j][d]);
+        const double reach = TOUCH * (atom->radius[i] + atom->radius[j]);
+        if (square > reach * reach) continue;
+        mine++;
+        type = std::min(type, atom->type[i]);
+      }
+    }
+  }
+  MPI_Allreduce(&mine, &pairs, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+  MPI_Allreduce(&type, &first, 1, MPI_INT, MPI_MIN, lmp->world);
+  if (pairs && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "{}: {} pairs of its material points touch as grains by the pair style, "
+                        "whose forces are added to the stress of the material: use neigh_modify "
+                        "exclude type {} {}, or keyword lists of fix mpm/surface",
+                        who, pairs, first, first);
+}

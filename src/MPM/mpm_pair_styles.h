@@ -42,5 +42,8 @@ struct MPMPairStyle {
   };
 };
 
+/** A warning tells when a pair style of grains acts between material points of the group that touch now: after neighbor lists were made. */
+void warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::string &who);
+
 }    // namespace LAMMPS_NS
 #endif
