@@ -14,9 +14,9 @@
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_ledger.h"
+#include "mpm_mls_turn.h"
 #include "mpm_node_action.h"
 #include "mpm_options.h"
-#include "mpm_points.h"
 #include "mpm_rest.h"
 #include "mpm_time_limit.h"
 #include "mpm_trial_contact.h"
@@ -36,9 +36,6 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-static constexpr double TURNED =
-    0.02;    // rotation of what bears shear, after which stress mls is told
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/implicit static|euler|newmark|midpoint|alpha|hht keyword value ...
@@ -397,47 +394,15 @@ void FixMPMImplicit::rest()
   for (auto *field : fields) put_to_rest(*field, taken);
 }
 
-/* ----------------------------------------------------------------------
-   Stress mls has the integral of N (x_i - x)/D over a body in the place of that of the gradient of N. Both are along the
-   normal of a surface that is along the lattice; next to an inclined one that of mls is not, so that stress along a free surface pulls at
-   its nodes. Points move to undo that, come to other places, and the skin of a body loses stress in each step.
-   The rotation is the mean over points by their equivalent stress: fluids, and what has failed, have none. It is that of the
-   start of a step, as the step in which a body turns for the first time has no such error
-------------------------------------------------------------------------- */
-
+/** As steps begin: the one in which a body turns for the first time has no such error. Once. */
 void FixMPMImplicit::tell_of_turns()
 {
   for (const auto *field : fields) {
-    const auto &options = field->options;
-    if (field->frame->is_total() || !is_mls(options.shape, options.transfer) ||
-        options.strains_by_gradient())
-      continue;
-    double mine[2] = {0.0, 0.0}, all[2];
-    for (int i = 0; i < atom->nlocal; i++) {
-      if (!field->is_point(i)) continue;
-      const double *const F = field->points->F[i];
-      double s[6];
-      field->points->cauchy(i, s);
-      const double xy = s[0] - s[1], yz = s[1] - s[2], zx = s[2] - s[0],
-                   shear = std::sqrt(0.5 * (xy * xy + yz * yz + zx * zx) +
-                                     3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])),
-                   wx = F[7] - F[5], wy = F[2] - F[6], wz = F[3] - F[1],
-                   turn =
-                       std::atan2(std::sqrt(wx * wx + wy * wy + wz * wz), F[0] + F[4] + F[8] - 1.0);
-      mine[0] += atom->vfrac[i] * shear * turn;
-      mine[1] += atom->vfrac[i] * shear;
-    }
-    MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
-    if (!(all[0] > TURNED * all[1])) continue;
+    const double turn = turn_with_mls(*field);
+    if (!is_turned(turn)) continue;
     told_of_turns = true;
     if (comm->me == 0)
-      error->warning(
-          FLERR,
-          "Fix mpm/implicit {}: points have turned by {:.2g} on average, and with stress mls in "
-          "the updated frame bodies whose surfaces are inclined to the lattice give way a little "
-          "more in each step: a beam of 4 cells bends 10 % too far. Use frame total or shape cpdi2 "
-          "of fix mpm {}, or stress gradient, which does so less",
-          id, all[0] / all[1], field->id());
+      error->warning(FLERR, "Fix mpm/implicit {}: {}", id, about_turn_with_mls(turn, field->id()));
     return;
   }
 }

@@ -33,6 +33,7 @@
 #include "fix_mpm_refine.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_mls_turn.h"
 #include "mpm_options.h"
 #include "mpm_points.h"
 #include "mpm_rest.h"
@@ -228,6 +229,7 @@ double FixMPMRelax::force_of_stress() const
 
 void FixMPMRelax::rest()
 {
+  if (!told_of_turns) tell_of_turns();
   for (auto *field : fields) put_to_rest(*field, taken);
   kinetic = 0.0;
   nrests++;
@@ -236,6 +238,19 @@ void FixMPMRelax::rest()
   if (interval > SOON || peak == 0.0) return;
   if (peak > GROWN * least) grows = 1.0;
   least = std::min(least, peak);
+}
+
+/** Once. */
+void FixMPMRelax::tell_of_turns()
+{
+  for (const auto *field : fields) {
+    const double turn = turn_with_mls(*field);
+    if (!is_turned(turn)) continue;
+    told_of_turns = true;
+    if (comm->me == 0)
+      error->warning(FLERR, "Fix mpm/relax {}: {}", id, about_turn_with_mls(turn, field->id()));
+    return;
+  }
 }
 
 /* ----------------------------------------------------------------------

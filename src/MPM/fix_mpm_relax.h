@@ -75,9 +75,11 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   bool falls = false;    // the kinetic energy, in this step
   std::vector<MPMField *> fields;
   bool may_start_by_half = false;
+  bool told_of_turns = false;    // that stress mls lets what has turned give way
 
   void look();
   void rest();
+  void tell_of_turns();
   bool can_start_by_half(const MPMPlan &) const;
   void start_by_half();
   double force_of_stress() const;

@@ -1,0 +1,31 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_MLS_TURN_H
+#define LMP_MPM_MLS_TURN_H
+
+#include <string>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** What statics have of bodies that have turned, where forces have moving least squares in the updated frame (mpm_mls_turn.cpp): rotation of
+ *  the points of a field [rad], their mean by equivalent stress; 0 with other forces. Collective. */
+double turn_with_mls(const MPMField &);
+
+/** Is this rotation one to tell of? */
+inline bool is_turned(double turn)
+{
+  return turn > 0.02;
+}
+
+/** What a warning says of it, without its beginning: field: ID of the fix mpm. */
+std::string about_turn_with_mls(double turn, const std::string &field);
+
+}    // namespace LAMMPS_NS
+#endif
