@@ -33,14 +33,16 @@ TEST(Shut, IsTold)
        {"kozeny 1e-2 ylo pressure 0", "squared 1e-2 ylo pressure 0",
         "kozeny 1e-2 ylo pressure 0 every 3", "kozeny 1e-2 ylo pressure 0 formulation u-v-p",
         "kozeny 1e-2 ylo pressure 0 forchheimer ergun 1e-3"}) {
+    // that u-p leaves out the inertia of water that flows at two meters in a second is told first
+    const double fast = std::string(law).find("u-v-p") == std::string::npos;
     Scene run(pressed(law, 2.0));
     Water water(run);
     run.commands("compute n all mpm/atom porosity\n");
     run.commands("fix dt all mpm/dt 0.3 until 0.05\nrun 100000\n");
-    EXPECT_EQ(over_ranks(run.lmp->error->get_numwarn(), MPI_SUM), 0.0) << law;
+    EXPECT_EQ(over_ranks(run.lmp->error->get_numwarn(), MPI_SUM), fast) << law;
     const double before = water.mass(), came = run.fix("water")->compute_scalar();
     run.commands("fix dt all mpm/dt 0.3 until 0.225\nrun 100000\n");
-    EXPECT_EQ(over_ranks(run.lmp->error->get_numwarn(), MPI_SUM), 1.0) << law;
+    EXPECT_EQ(over_ranks(run.lmp->error->get_numwarn(), MPI_SUM), fast + 1.0) << law;
     auto *compute = run.lmp->modify->get_compute_by_id("n");
     compute->compute_peratom();
     const double *const p = water.pressures();
