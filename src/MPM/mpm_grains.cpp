@@ -339,7 +339,8 @@ void LAMMPS_NS::warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::s
       if (!(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
       for (int jj = 0; jj < list->numneigh[i]; jj++) {
         const int j = list->firstneigh[i][jj] & NEIGHMASK;
-        if (!(atom->mask[j] & groupbit) || !(atom->vfrac[j] > 0.0)) continue;
+        // copies of other processes may not have the diameters that fix mpm/surface has just set
+        if (j >= atom->nlocal || !(atom->mask[j] & groupbit) || !(atom->vfrac[j] > 0.0)) continue;
         double square = 0.0;
         for (int d = 0; d < 3; d++)
           square += (atom->x[i][d] - atom->x[j][d]) * (atom->x[i][d] - atom->x[j][d]);
@@ -353,9 +354,10 @@ void LAMMPS_NS::warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::s
   MPI_Allreduce(&mine, &pairs, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
   MPI_Allreduce(&type, &first, 1, MPI_INT, MPI_MIN, lmp->world);
   if (pairs && lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        "{}: {} pairs of its material points touch as grains by the pair style, "
-                        "whose forces are added to the stress of the material: use neigh_modify "
-                        "exclude type {} {}, or keyword lists of fix mpm/surface",
-                        who, pairs, first, first);
+    lmp->error->warning(
+        FLERR,
+        "{}: at least {} pairs of its material points touch as grains by the pair style, "
+        "whose forces are added to the stress of the material: use neigh_modify "
+        "exclude type {} {}, or keyword lists of fix mpm/surface",
+        who, pairs, first, first);
 }
