@@ -431,7 +431,7 @@ SERIAL_TEST(Surface, WarnsOfPointsThatTouchAsGrains)
       "fix grid all mpm 1.0\nregion b block 3 5 3 5 3 5\ncreate_points 1 region b ppc 2\n" + rest;
   const auto lines = lines_that_say(head + block + "run 1\n", said);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0], testing::HasSubstr("Fix mpm grid: 144 pairs"));
+  EXPECT_THAT(lines[0], testing::HasSubstr("Fix mpm grid: at least 144 pairs"));
   EXPECT_EQ(lines_that_say(head + block + exclude + "run 1\n", said).size(), 0u);
   EXPECT_EQ(lines_that_say(head + block + "set group all diameter 0.4\nrun 1\n", said).size(), 0u);
 
@@ -443,6 +443,6 @@ SERIAL_TEST(Surface, WarnsOfPointsThatTouchAsGrains)
       rest + "fix e all mpm/elements " + file.name + " section 1\nfix move all nve\n";
   const auto free = lines_that_say(head + rope + "run 1\n", said);
   ASSERT_EQ(free.size(), 1u);
-  EXPECT_THAT(free[0], testing::HasSubstr("Fix mpm/elements e: 2 pairs"));
+  EXPECT_THAT(free[0], testing::HasSubstr("Fix mpm/elements e: at least 2 pairs"));
   EXPECT_EQ(lines_that_say(head + rope + exclude + "run 1\n", said).size(), 0u);
 }
