@@ -428,11 +428,19 @@ SERIAL_TEST(Surface, WarnsOfPointsThatTouchAsGrains)
              "pair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0 0\ntimestep 0.001\n",
       exclude = "neigh_modify exclude type 1 1\n", said = "touch as grains";
   const std::string block =
-      "fix grid all mpm 1.0\nregion b block 3 5 3 5 3 5\ncreate_points 1 region b ppc 2\n" + rest;
+      "fix grid all mpm 1.0\nregion b block 3 5 3 5 3 5\nregion upper block 3 5 3 5 4 5\n"
+      "create_points 1 region b ppc 2\n" +
+      rest;
   const auto lines = lines_that_say(head + block + "run 1\n", said);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], testing::HasSubstr("Fix mpm grid: at least 144 pairs"));
   EXPECT_EQ(lines_that_say(head + block + exclude + "run 1\n", said).size(), 0u);
+  // two bodies of a type each, which are to touch
+  EXPECT_EQ(lines_that_say(head + block + exclude +
+                               "neigh_modify exclude type 2 2\nset region upper type 2\nrun 1\n",
+                           said)
+                .size(),
+            0u);
   EXPECT_EQ(lines_that_say(head + block + "set group all diameter 0.4\nrun 1\n", said).size(), 0u);
 
   const ScratchFile file(

@@ -341,6 +341,8 @@ void LAMMPS_NS::warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::s
         const int j = list->firstneigh[i][jj] & NEIGHMASK;
         // copies of other processes may not have the diameters that fix mpm/surface has just set
         if (j >= atom->nlocal || !(atom->mask[j] & groupbit) || !(atom->vfrac[j] > 0.0)) continue;
+        if (atom->type[i] != atom->type[j])
+          continue;    // bodies that are to touch as grains have a type each
         double square = 0.0;
         for (int d = 0; d < 3; d++)
           square += (atom->x[i][d] - atom->x[j][d]) * (atom->x[i][d] - atom->x[j][d]);
