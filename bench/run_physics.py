@@ -21,7 +21,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROUNDS = int(os.environ.get("ROUNDS", 5))
 SIZES = {"405k": (37, 41, 405224, 40), "46k": (18, 22, 46656, 300)}
 # name: (case, what it is compared with), both as (physics, thermal, more keywords)
-CASES = {"heat": (("heat", "yes", " "), ("none", "yes", " ")),
+CASES = {"heat": (("heat", "yes", "every 1"), ("none", "yes", " ")),
          "heat_every_auto": (("heat", "yes", "every auto"), ("none", "yes", " ")),
          "heat_every_5": (("heat", "yes", "every 5"), ("none", "yes", " ")),
          "heat_every_10": (("heat", "yes", "every 10"), ("none", "yes", " ")),

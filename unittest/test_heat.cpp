@@ -79,7 +79,7 @@ SERIAL_TEST(Insulated, ManyShortSteps)
 {
   for (const char *transfer : {"relax 1.0", "affine"}) {
     const int n = 20;
-    Scene run(bar(n, std::string("transfer ") + transfer));
+    Scene run(bar(n, std::string("every 1 transfer ") + transfer));
     Warm warm(run);
     warm.set([](const double *x) {
       return 1.0 + std::cos(PI * x[0]);
@@ -674,7 +674,7 @@ SERIAL_TEST(Moving, HasTheSameTemperatures)
     Scene run(plane("lj", "p p", "0 16 0 1", 1, 0.02) +
               body("block 3 5 0 1 -0.5 0.5",
                    "density 1.0 eos linear 1e-3 thermal conducting 1.0 0.0 0.05", "0.1") +
-              "fix heat all mpm/heat\n");
+              "fix heat all mpm/heat every 1\n");
     Warm warm(run);
     const double v = moves ? 7.3 : 0.0;
     warm.set([&](const double *x) {

@@ -31,7 +31,8 @@ std::string step(const std::string &every)
 PARAMETER_TEST(Bar, HasLongerSteps, const char *,
                Values("", "transfer xpic 3", "time sdirk2 tolerance 1e-12"))
 {
-  Scene few(warmed(std::string("every 5 ") + GetParam())), one(warmed(GetParam()));
+  Scene few(warmed(std::string("every 5 ") + GetParam())),
+      one(warmed(std::string("every 1 ") + GetParam()));
   few.commands("timestep 0.001\nrun 4\n");
   EXPECT_EQ(few.fix("heat")->compute_scalar(), 0.0);
   few.commands("run 18\n");
@@ -64,7 +65,7 @@ SERIAL_TEST(Couette, IsWarmInTheMiddle)
     return Warm(run).at(0.1, 0.5, h) + h * h / 12.0;
   };
   const double exact = 0.0769191;    // at t = 0.1
-  const double each = measured("every step", middle("")) / exact,
+  const double each = measured("every step", middle("every 1")) / exact,
                fourth = measured("every fourth", middle("every 4")) / exact;
   EXPECT_NEAR(each, 1.0, 0.005);
   EXPECT_NEAR(fourth, each, 0.002);
@@ -115,7 +116,7 @@ TEST(Friction, HeatsBothBodies)
       if (warm.has(i)) most = std::max(most, warm.T(i));
     return over_ranks(most, MPI_MAX);
   };
-  Scene each(text("") + "run 400\n"), fourth(text("every 4") + "run 2\n");
+  Scene each(text("every 1") + "run 400\n"), fourth(text("every 4") + "run 2\n");
   const double m0 = Warm(fourth, "m").heat();
   EXPECT_GT(m0, 0.0);    // before any conduction
   EXPECT_NEAR((m0 + Warm(fourth, "n").heat()) / fourth.fix("heat")->compute_scalar(), 1.0, 1e-11);
@@ -221,6 +222,17 @@ TEST(Auto, IsAsExact)
   EXPECT_NEAR(measured("heat, auto", heat[1]) / heat[0], 1.0, 0.001);
 }
 
+// what an input has that does not say how many
+SERIAL_TEST(Auto, IsTheDefault)
+{
+  const auto scene = [](const std::string &every) {
+    return disk(every) + step("every auto") + "run 100\n";
+  };
+  Scene one(scene("every 1")), run(scene("every auto")), plain(scene(""));
+  EXPECT_GT(temperature_difference(one, run), 0.0);
+  EXPECT_EQ(temperature_difference(plain, run), 0.0);
+}
+
 // what changes from step to step, and what is fast or near the limit, is as with every 1, to the last bit
 PARAMETER_TEST(Auto, DoesNotWait, const char *,
                Values("xlo temperature v_hot", "xhi convection v_hot 0.0", "source v_hot",
@@ -256,7 +268,7 @@ SERIAL_TEST(Step, IsLimited)
     Scene run(bar(20, "stages 5 " + every) + "fix dt all mpm/dt 0.9\nrun 1\n");
     return run.lmp->update->dt;
   };
-  EXPECT_NEAR(dt("") / dt("every 10"), 10.0, 1e-9);
+  EXPECT_NEAR(dt("every 1") / dt("every 10"), 10.0, 1e-9);
   Scene run(bar(20, "stages 5 every 10", 0.0, "dtcheck no"));
   expect_error(run, strprintf("timestep %g\nrun 10\n", 0.73 * 0.98 * 2.0 / (6.0 * 400.0)),
                "a smaller timestep or fix mpm/heat ... every");

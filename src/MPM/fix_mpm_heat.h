@@ -44,7 +44,7 @@ struct MPMHeatOptions {
   MPMHeatTransfer transfer;
   int most_stages = 32;
   static constexpr int AUTO = 0;
-  int every = 1;    // steps of fix mpm from one conduction to the next, or AUTO
+  int every = AUTO;    // steps of fix mpm from one conduction to the next, or AUTO
   MPMDiffusionOptions in_time;
   bool grains = false;
   bool penalty = false;
