@@ -69,6 +69,10 @@ static constexpr double FIRST_FALL = 4.0;
 // share of FLIP by default in a flow with solids or bodies: apic alone smooths velocities at their surfaces in each step, which brakes
 // what sinks or sways by the number of steps
 static constexpr double FLIP_OF_BODIES = 0.98;
+// what is kept of what the lattice does not see of velocities, with transfer auto, where that is less than the first of these shares of h^2 d2v_c/dx_c^2
+// (root mean squares); nothing where it is more than the second one. Vortices, waves, and drops that swing, 16 cells or more in a wave, have 0.03 to 0.06;
+// what is left of flow in a fluid at rest, and what falls or splashes, has 0.2 to 3
+static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
 // passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
@@ -93,7 +97,10 @@ Options MPMIncompressibleOptions::declare(int dim)
   o.add(
        "transfer",
        {word(transfer,
-             {{"apic", APIC, "points have gradients of the velocity"},
+             {{"auto", AUTO,
+               "gradients, and 0.98 of what the lattice does not see where the flow is smooth, "
+               "down to nothing where it is not"},
+              {"apic", APIC, "points have gradients of the velocity"},
               {"flip",
                FLIP,
                "points keep this share of what the lattice does not see of their velocity",
@@ -103,7 +110,7 @@ Options MPMIncompressibleOptions::declare(int dim)
       .then([this] {
         transfer_is_given = true;
       })
-      .standard("apic (aflip 0.98 with solid, or a region of fix mpm/rigid)");
+      .standard("auto (aflip 0.98 with solid, or a region of fix mpm/rigid)");
   o.add("reflect",
         {number(reflect, "R", FRACTION, "1",
                 "share of the change by the pressure that points get once more")});
@@ -310,7 +317,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     }
     solids = std::make_unique<MPMFlowSolids>(lmp, cells, bits);
   }
-  if (transfer == APIC || transfer == AFLIP)
+  if (transfer == AUTO || transfer == APIC || transfer == AFLIP)
     state.declare(gradient, "mpm/incompressible:gradient", flow_slopes(dim));
 
   time_integrate = 1;
@@ -353,7 +360,7 @@ void FixMPMIncompressible::init()
     bodies->init();
     if (!bodies->any()) bodies.reset();
     if (solid_groups.empty() && !transfer_is_given) {    // bodies can come and go between runs
-      transfer = bodies ? AFLIP : APIC;
+      transfer = bodies ? AFLIP : AUTO;
       flip = bodies ? FLIP_OF_BODIES : 0.0;
     }
     pressure->bodies = bodies.get();
@@ -661,9 +668,15 @@ void FixMPMIncompressible::initial_integrate(int)
   const bool differ = std::fabs(dt - before) > DIFFERENT_DT * dt;
   dt_before = dt;
   const MPMFlowPoints points = points_now(dt);
-  int valid = cells.valid && (!grains || cells.visitors_in_reach()), all_valid;
-  MPI_Allreduce(&valid, &all_valid, 1, MPI_INT, MPI_MIN, world);
-  cells.valid = all_valid;
+  double of_last[3];
+  sum_last_step(cells.valid && (!grains || cells.visitors_in_reach()), of_last);
+  cells.valid = of_last[0] == 0.0;
+  if (transfer == AUTO) {
+    const double rest = std::sqrt(of_last[1]), smooth = std::sqrt(of_last[2]);
+    flip = smooth > 0.0
+        ? FLIP_OF_SMOOTH * std::clamp((NOISY - rest / smooth) / (NOISY - SMOOTH), 0.0, 1.0)
+        : 0.0;
+  }
   if (grains && !cells.valid) grains->list();
   cells.find_cells();
   if (regions) regions->find(dt);
@@ -673,7 +686,8 @@ void FixMPMIncompressible::initial_integrate(int)
   give_to_cells(cells, points, sums);
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
   find_velocities();
-  if (flip > 0.0 || reflect > 0.0 || differ) old = star;
+  const bool keeps = flip > 0.0 || transfer == AUTO;
+  if (keeps || reflect > 0.0 || differ) old = star;
   if (several) find_lightness(points);
   if (solids) {
     if (!stiffness_known) check_stiffness();
@@ -700,18 +714,26 @@ void FixMPMIncompressible::initial_integrate(int)
   if (bodies) bodies->move(dt);
 
   const MPMFlowUpdate update_points = {flip,
-                                       flip > 0.0 ? old.data() : nullptr,
+                                       keeps ? old.data() : nullptr,
                                        reflect,
                                        reflect > 0.0 ? more.data() : nullptr,
                                        spread > 0.0 ? shift.data() : nullptr,
                                        regions.get(),
                                        inflow.get(),
-                                       solids.get()};
+                                       solids.get(),
+                                       transfer == AUTO ? unseen : nullptr};
   if (solids) solids->deform(velocity.data(), dt, viscosity);
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
 
   note_filling();
+}
+
+/** Number of ranks whose cells are not those of their points, and MPMFlowUpdate::squares of the last step of all ranks. */
+void FixMPMIncompressible::sum_last_step(bool valid, double *all) const
+{
+  const double mine[3] = {valid ? 0.0 : 1.0, unseen[0], unseen[1]};
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
 }
 
 /** Velocities after forces and viscosity of a duration, which go to star, and the pressure. */
@@ -1119,17 +1141,19 @@ double FixMPMIncompressible::compute_vector(int k)
   return all;
 }
 
-/** The duration of the last step, and the limit of the one to come, with forces; motion of regions. */
+/** The duration of the last step, and the limit of the one to come, with forces; what share is kept by; motion of regions. */
 void FixMPMIncompressible::write_restart(FILE *fp)
 {
   tagint tag;
   double mine = stable_dt(tag), limit;
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
+  double of_last[3];
+  sum_last_step(true, of_last);
   if (comm->me) return;
-  std::vector<double> state = {dt_before, limit, 0.0};
+  std::vector<double> state = {dt_before, limit, of_last[1], of_last[2], 0.0};
   if (regions) {
     const auto motion = regions->motion();
-    state[2] = (double) motion.size();
+    state[4] = (double) motion.size();
     state.insert(state.end(), motion.begin(), motion.end());
   }
   const int size = state.size() * sizeof(double);
@@ -1139,11 +1163,12 @@ void FixMPMIncompressible::write_restart(FILE *fp)
 
 void FixMPMIncompressible::restart(char *buf)
 {
-  double state[3];
+  double state[5];
   memcpy(state, buf, sizeof(state));
   dt_before = state[0];
   limit_before = state[1];
-  std::vector<double> motion((std::size_t) state[2]);
+  for (int k = 0; k < 2; k++) unseen[k] = comm->me ? 0.0 : state[2 + k];
+  std::vector<double> motion((std::size_t) state[4]);
   memcpy(motion.data(), buf + sizeof(state), motion.size() * sizeof(double));
   if (regions) regions->set_motion(motion);
 }

@@ -39,16 +39,16 @@ class MPMFlowViscosity;
 struct MPMFlowPoints;
 
 struct MPMIncompressibleOptions {
-  enum Transfer { APIC, FLIP, AFLIP, PIC };
+  enum Transfer { AUTO, APIC, FLIP, AFLIP, PIC };
 
   double h = 0.0, density = 0.0;
   double viscosity = 0.0;
   bool implicit = false;    ///< viscosity
   double tension = 0.0;
   double angle = 90.0;    ///< between surfaces and walls, degrees
-  Transfer transfer = APIC;
+  Transfer transfer = AUTO;
   bool transfer_is_given = false;
-  double flip = 0.0;       ///< share of FLIP
+  double flip = 0.0;       ///< share of FLIP, with AUTO that of this step
   double reflect = 0.0;    ///< share of the change by the pressure that comes once more
   double spread = 0.5;     ///< share of an excess of points that spreads in a step
   double tolerance = 1.0e-9;
@@ -138,7 +138,8 @@ class FixMPMIncompressible :
   bool forces_known = false;    // they are cleared at the start of a run
   mutable bool told_of_bodies = false;
   bool told_of_large = false;
-  double gone = 0.0;    // most that points have moved since neighbor lists were made
+  double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
+  double gone = 0.0;                // most that points have moved since neighbor lists were made
 
   struct {
     double iterations = 0.0, of_stress = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0,
@@ -148,6 +149,7 @@ class FixMPMIncompressible :
   } last;    // of the last step; filled, wet, walls, and regions of this rank
 
   double acceleration_of_stress() const;
+  void sum_last_step(bool valid, double *all) const;
   void weight(double *g) const;
   const std::vector<double> *surface_psi() const;
   MPMFlowPoints points_now(double dt) const;

@@ -171,44 +171,77 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
   }
 }
 
-/** Velocities at a place, and their gradients [flow_slopes(dim)] times the spacing (its square), if asked for: those of components c are linear along
- *  each of the other axes between two layers of faces. */
-template <int dim>
-void interpolate(const Cells<dim> &near, const StaggeredWeights &w, const double *values, double *v,
-                 double *G)
+/** Velocities of several fields at a place, and of the first one the gradients [flow_slopes(dim)] times the spacing (its square), if asked for: those of components c are linear along
+ *  each of the other axes between two layers of faces. bend: [dim] second derivatives along c, times the square of the spacing. */
+template <int dim, int nfield, bool slopes>
+void interpolate(const Cells<dim> &near, const StaggeredWeights &w, const double *const *fields,
+                 double (*v)[dim], double *G, double *bend)
 {
-  std::fill_n(v, dim, 0.0);
-  if (G) std::fill_n(G, flow_slopes(dim), 0.0);
+  std::fill_n(v[0], nfield * dim, 0.0);
+  if constexpr (slopes) {
+    std::fill_n(G, flow_slopes(dim), 0.0);
+    std::fill_n(bend, dim, 0.0);
+  }
   for (int c = 0; c < dim; c++) {
     const int d = (c + 1) % dim, e = (c + 2) % 3;
     const double slope[3] = {w.f[c] - 1.0, 1.0 - 2.0 * w.f[c], w.f[c]};
     int k[3] = {0, 0, 0};
-    const auto at = [&](int kd, int ke) {
-      k[d] = kd;
-      if (dim == 3) k[e] = ke;
-      return values[near(k) * dim + c];
-    };
     for (k[c] = 0; k[c] < 3; k[c]++) {
       const double spline = w.spline[c][k[c]];
-      double layer = at(0, 0), along_d = at(1, 0) - layer, along_e = 0.0, both = 0.0;
-      layer += w.f[d] * along_d;
-      if (dim == 3) {
-        const double next = at(0, 1), next_d = at(1, 1) - next;
-        both = next_d - along_d;
-        along_d += w.f[e] * both;
-        along_e = next + w.f[d] * next_d - layer;
-        layer += w.f[e] * along_e;
-      }
-      v[c] += spline * layer;
-      if (!G) continue;
-      G[dim * c + c] += slope[k[c]] * layer;
-      G[dim * c + d] += spline * along_d;
-      if constexpr (dim == 3) {
-        G[3 * c + e] += spline * along_e;
-        G[9 + c] += spline * both;
+      int64_t at[2][2];
+      for (k[d] = 0; k[d] < 2; k[d]++)
+        for (int ke = 0; ke < dim - 1; ke++) {
+          if (dim == 3) k[e] = ke;
+          at[k[d]][ke] = near(k) * dim + c;
+        }
+      for (int field = 0; field < nfield; field++) {
+        const double *const values = fields[field];
+        double layer = values[at[0][0]], along_d = values[at[1][0]] - layer, along_e = 0.0,
+               both = 0.0;
+        layer += w.f[d] * along_d;
+        if constexpr (dim == 3) {
+          const double next = values[at[0][1]], next_d = values[at[1][1]] - next;
+          both = next_d - along_d;
+          along_d += w.f[e] * both;
+          along_e = next + w.f[d] * next_d - layer;
+          layer += w.f[e] * along_e;
+        }
+        v[field][c] += spline * layer;
+        if (!slopes || field > 0) continue;
+        bend[c] += k[c] == 1 ? -2.0 * layer : layer;
+        G[dim * c + c] += slope[k[c]] * layer;
+        G[dim * c + d] += spline * along_d;
+        if constexpr (dim == 3) {
+          G[3 * c + e] += spline * along_e;
+          G[9 + c] += spline * both;
+        }
       }
     }
   }
+}
+
+/** The same of one field; G: null if not asked for. */
+template <int dim>
+void interpolate(const Cells<dim> &near, const StaggeredWeights &w, const double *values, double *v,
+                 double *G)
+{
+  double one[1][dim], bend[dim];
+  G ? interpolate<dim, 1, true>(near, w, &values, one, G, bend)
+    : interpolate<dim, 1, false>(near, w, &values, one, nullptr, nullptr);
+  std::copy_n(one[0], dim, v);
+}
+
+/** The same of one to three fields. */
+template <int dim, bool slopes>
+void interpolate_all(int nfield, const Cells<dim> &near, const StaggeredWeights &w,
+                     const double *const *fields, double (*v)[dim], double *G, double *bend)
+{
+  if (nfield == 1)
+    interpolate<dim, 1, slopes>(near, w, fields, v, G, bend);
+  else if (nfield == 2)
+    interpolate<dim, 2, slopes>(near, w, fields, v, G, bend);
+  else
+    interpolate<dim, 3, slopes>(near, w, fields, v, G, bend);
 }
 
 /** Velocity and gradients, G: [flow_slopes(dim)], at a place that is so far away. */
@@ -233,6 +266,11 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
   StaggeredWeights w;
   MPMFlowReach<dim> reach;
   bool all_in_reach = true;
+  double squares[2] = {0.0, 0.0};
+  const double *fields[3] = {velocity};    // and those before, and the shift, if there are such
+  const int of_old = 1, of_shift = update.old ? 2 : 1;
+  if (update.old) fields[of_old] = update.old;
+  if (update.shift) fields[of_shift] = update.shift;
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
     for (int i = run.first; i < run.last; i++) {
@@ -241,13 +279,17 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       reach.find(cells.grid, block, w.base);
       const Cells<dim> near(reach);
       constexpr int NSLOPE = flow_slopes(dim);
-      double now[dim], G[NSLOPE], old[dim], more[dim] = {}, G_more[NSLOPE];
-      interpolate<dim>(near, w, velocity, now, points.gradient ? G : nullptr);
+      const bool solid = update.solids && update.solids->holds(i);
+      const int nfield = of_shift + (update.shift && !solid ? 1 : 0);
+      double at_point[3][dim], G[NSLOPE], bend[dim], more[dim] = {}, G_more[NSLOPE];
+      points.gradient
+          ? interpolate_all<dim, true>(nfield, near, w, fields, at_point, G, bend)
+          : interpolate_all<dim, false>(nfield, near, w, fields, at_point, nullptr, nullptr);
+      const double *const now = at_point[0];
       double p = 0.0;
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
         p += w.cell<dim>(k) * pressure[number];
       });
-      const bool solid = update.solids && update.solids->holds(i);
       if (solid)
         update.solids->set_pressure(stress[i], p);
       else
@@ -260,10 +302,16 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         all_in_reach = all_in_reach && cells.in_reach<dim>(run, w.base);
         continue;
       }
-      if (update.old) {
-        interpolate<dim>(near, w, update.old, old, nullptr);
-        for (int c = 0; c < dim; c++) v[c] = now[c] + update.flip * (v[c] - old[c]);
-      } else
+      if (update.old)
+        for (int c = 0; c < dim; c++) {
+          const double unseen = v[c] - at_point[of_old][c];
+          if (update.squares) {
+            squares[0] += points.mass[i] * unseen * unseen;
+            squares[1] += points.mass[i] * bend[c] * bend[c];
+          }
+          v[c] = now[c] + update.flip * unseen;
+        }
+      else
         std::copy_n(now, dim, v);
       if (update.more) {
         interpolate<dim>(near, w, update.more, more, points.gradient ? G_more : nullptr);
@@ -275,7 +323,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
           points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
 
       double shift[dim] = {};
-      if (update.shift && !solid) interpolate<dim>(near, w, update.shift, shift, nullptr);
+      if (update.shift && !solid) std::copy_n(at_point[of_shift], dim, shift);
       if (update.shift && !solid && points.gradient)
         move_in_field<dim>(shift, v, points.gradient[i]);
 
@@ -301,6 +349,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       all_in_reach = all_in_reach && cells.in_reach<dim>(run, w.base);
     }
   }
+  if (update.squares) std::copy_n(squares, 2, update.squares);
   return all_in_reach;
 }
 

@@ -49,6 +49,9 @@ struct MPMFlowUpdate {
   const MPMFlowInflow *inflow = nullptr;      ///< mouths whose points it moves; null: none
   /** Points that keep the stress of their law, and do not spread; null: none. */
   const MPMFlowSolids *solids = nullptr;
+  /** Gets two sums over the points of this rank, with their masses: of the squares of what cells do not see of velocities, and of
+   *  h^2 d2v_c/dx_c^2, of which the former is a small share in a smooth flow; null: not asked for. With gradients and flip alone. */
+  double *squares = nullptr;
 };
 
 /** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a
