@@ -37,6 +37,7 @@ Options MPMAirbagOptions::declare()
       .then([this] {
         has_pressure = true;
       })
+      .once()
       .standard("that of the gas");
   o.add("gas",
         {number(p, "p", POSITIVE, "pressure", "pressure of the gas when this fix is first used"),
@@ -45,12 +46,14 @@ Options MPMAirbagOptions::declare()
       .then([this] {
         has_gas = true;
       })
+      .once()
       .standard("none");
-  o.add("outside", {number(outside, "p", NOT_NEGATIVE, "pressure", "pressure outside")});
+  o.add("outside", {number(outside, "p", NOT_NEGATIVE, "pressure", "pressure outside")}).once();
   o.add("temperature",
         {number(temperature, "T", POSITIVE, "temperature",
                 "of the gas when this fix is first used, and outside"),
          number(R, "R", POSITIVE, "energy/(mass temperature)", "specific gas constant")})
+      .once()
       .standard("not known: neither inflow nor vent");
   o.add("inflow",
         {variables(inflow, 2, "rate T", "mass/time, temperature",
@@ -58,14 +61,17 @@ Options MPMAirbagOptions::declare()
       .then([this] {
         has_inflow = true;
       })
+      .once()
       .standard("none");
   o.add("vent",
         {number(vent, "A", POSITIVE, "distance^2", "area of holes to the outside"),
          number(coefficient, "C", POSITIVE, "", "their discharge coefficient")})
+      .once()
       .standard("none");
   o.add("opens",
         {number(opens, "p", NOT_NEGATIVE, "pressure",
-                "vents open for good when the pressure is so much above that outside")});
+                "vents open for good when the pressure is so much above that outside")})
+      .once();
   o.refuse([this] {
     return OptionRules{
         {has_pressure == has_gas, "", "needs either pressure or gas"},

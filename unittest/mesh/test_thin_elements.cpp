@@ -871,6 +871,10 @@ SERIAL_TEST(ThinElements, BadInput)
               HasSubstr("use temperature T R"));
   EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e pressure 1 vent 1 1\n"),
               HasSubstr("are for gas"));
+  EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e gas 1e5 1.4 gas 2e5 1.4\n"),
+              HasSubstr("gas is given twice"));
+  EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e pressure 1 pressure 2\n"),
+              HasSubstr("pressure is given twice"));
   // no vent lets pass more than the exact nozzle does: taken, but said
   const std::string vented = box(3, -0.6, 0.6, 0.05, "") + "create_points 1 mesh " + ball.name +
       " " + thick +
