@@ -300,6 +300,8 @@ TEST(Mistakes, InText)
       {"x,y,vx,velocity:0\n0.5,0.5,1,1\n", "volume 1", "vx and velocity:0 are the same quantity"},
       {"x,y,z\n0.5,0.5,1\n", "volume 1", "z = 1, which must be 0 in a 2d"},
       {"x,y,F/xx\n0.5,0.5,1\n", "volume 1", "1 columns of F, which has 9"},
+      {"x,y,F:0,F:1,F:2,F:3,F:4,F:5,F:6,F:7,F:8\n0.5,0.5,1,0,0.5,0,1,0,0,0,1\n", "volume 1",
+       "F:2 = 0.5, which must be 0 in a 2d"},
       {"x,y,stress/xx\n0.5,0.5,1\n", "volume 1", "1 columns of stress, which has 6"},
       {"x,y,type\n0.5,0.5,4\n", "volume 1", "row 1 has type 4, but types are 1 to 3"},
       {"x,y,type\n0.5,0.5,1.5\n", "volume 1", "must be an integer|has type 1.5"},
