@@ -829,6 +829,8 @@ SERIAL_TEST(ThinElements, BadInput)
   EXPECT_THAT(failure(ball.name, "", "", ""),
               HasSubstr("no elements of dimension 3, but 128 of dimension 2 (keywords thickness"));
   EXPECT_THAT(failure(ball.name, thick + " section 1", "", ""), HasSubstr("use one of them"));
+  EXPECT_THAT(failure(ball.name, thick, "", "", "eos tait 1e5 7"),
+              HasSubstr("surfaces or lines: it resists no shear"));
   EXPECT_THAT(failure(ball.name, thick, "locking fbar", ""), HasSubstr("is for solids"));
   EXPECT_THAT(failure(ball.name, thick, "compression no", "", "eos linear 1e5 strength j2 4e4 100"),
               HasSubstr("must be elastic"));
