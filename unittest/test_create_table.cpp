@@ -338,6 +338,15 @@ TEST(Mistakes, InText)
   const ScratchFile file("points", "id,x,y\n1,0.5,0.5\n");
   const std::string once = "create_points 2 table " + file.name + " volume 1\n";
   EXPECT_TRUE(contains(answer(flat + once + once), "1 points have IDs that atoms have already"));
+  // the same point with other digits, but not a neighbor
+  for (const auto &[text, n] : {std::pair{"x,y\n0.5,0.5\n0.6,0.5\n0.5,0.50000001\n", 1},
+                                std::pair{"x,y\n0.5,0.5\n0.6,0.5\n0.5,0.501\n", 0}}) {
+    const ScratchFile near("points", text);
+    EXPECT_EQ(lines_that_say(flat + "create_points 2 table " + near.name + " volume 0.01\n",
+                             "1 points are within 0.0001 edges of others")
+                  .size(),
+              n);
+  }
 }
 
 // no cut and no changed byte of a dump does harm: the file is read, or it is said what is wrong
