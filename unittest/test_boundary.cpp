@@ -1818,6 +1818,8 @@ timestep 0.001
        {"fix w all mpm/boundary ylo stick velocity 0 v_text 0\nrun 0", "not equal-style"},
        {"fix w all mpm/boundary ylo stick rotate 0 0 0 0 0 0 1", "non-zero length"},
        {"fix w all mpm/boundary ylo stick velocity 0 0 0 displacement 0 0 0", "one of them"},
+       {"fix w all mpm/boundary ylo stick velocity 1 NULL NULL velocity NULL 1 NULL",
+        "velocity is given twice"},
        {"fix w all mpm/boundary ylo slip displacement NULL 0 0", "allows NULL only"},
        {"fix w all mpm/boundary ylo stick displacement NULL NULL NULL",
         "leaves all components free"},

@@ -300,6 +300,8 @@ TEST(Mistakes, InText)
       {"x,y,vx,velocity:0\n0.5,0.5,1,1\n", "volume 1", "vx and velocity:0 are the same quantity"},
       {"x,y,z\n0.5,0.5,1\n", "volume 1", "z = 1, which must be 0 in a 2d"},
       {"x,y,F/xx\n0.5,0.5,1\n", "volume 1", "1 columns of F, which has 9"},
+      {"x,y,F:0,F:1,F:2,F:3,F:4,F:5,F:6,F:7,F:8\n0.5,0.5,1,0,0.5,0,1,0,0,0,1\n", "volume 1",
+       "F:2 = 0.5, which must be 0 in a 2d"},
       {"x,y,stress/xx\n0.5,0.5,1\n", "volume 1", "1 columns of stress, which has 6"},
       {"x,y,type\n0.5,0.5,4\n", "volume 1", "row 1 has type 4, but types are 1 to 3"},
       {"x,y,type\n0.5,0.5,1.5\n", "volume 1", "must be an integer|has type 1.5"},
@@ -336,6 +338,15 @@ TEST(Mistakes, InText)
   const ScratchFile file("points", "id,x,y\n1,0.5,0.5\n");
   const std::string once = "create_points 2 table " + file.name + " volume 1\n";
   EXPECT_TRUE(contains(answer(flat + once + once), "1 points have IDs that atoms have already"));
+  // the same point with other digits, but not a neighbor
+  for (const auto &[text, n] : {std::pair{"x,y\n0.5,0.5\n0.6,0.5\n0.5,0.50000001\n", 1},
+                                std::pair{"x,y\n0.5,0.5\n0.6,0.5\n0.5,0.501\n", 0}}) {
+    const ScratchFile near("points", text);
+    EXPECT_EQ(lines_that_say(flat + "create_points 2 table " + near.name + " volume 0.01\n",
+                             "1 points are within 0.0001 edges of others")
+                  .size(),
+              n);
+  }
 }
 
 // no cut and no changed byte of a dump does harm: the file is read, or it is said what is wrong

@@ -481,6 +481,7 @@ SERIAL_TEST(Dashpot, BadInput)
        {fix + "region right 1 0.5 incoming 1 0", "missing argument"},
        {fix + "region right 1 0.5 incoming 0 0 1", "along x and y in 2d"},
        {fix + "region right 1 0.5 incoming v_none 0 0", "does not exist"},
+       {fix + "region right 1 0.5 incoming 1 0 0 incoming 2 0 0", "incoming is given twice"},
        {fix + "region right 1 0.5 spacing 0.8", "are not in layers"},
        {"region away plane 30 0 0 -1 0 0\n" + fix + "region away 1 0.5", "finds no points"},
        {"unfix m\nunfix grid\n" + fix + "region right 1 0.5", "needs a fix mpm"}},

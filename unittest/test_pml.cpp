@@ -400,6 +400,7 @@ SERIAL_TEST(PML, BadInput)
                   {fix + "ylo 5", "is periodic at ylo"},
                   {fix + "zlo 5", "zlo"},
                   {fix + "xlo 12 xhi 12", "thicker than the box"},
+                  {fix + "xhi 5 xhi 6", "xhi is given twice"},
                   {fix + "xhi 5 reflection 0", "reflection"},
                   {fix + "xhi 5 reflection 1", "reflection"},
                   {fix + "xhi 5 exponent 0", "exponent"},

@@ -442,6 +442,8 @@ TEST(RigidBody, RefusesMistakes)
           "variable big equal 1e308*10\n" + "region turned mpm/mesh " + file.name +
           " 1.0 4 4 8 rotate v_z 0 0 0 0 0 1\n",
       {{"fix t all mpm/rigid body density 1.0 slip", "needs a region of style mpm/mesh: body"},
+       {"fix t all mpm/rigid shape density 1.0 slip force 1 0 0 force 0 1 0",
+        "force is given twice"},
        {"fix t all mpm/rigid shape density 0.0 slip", "density must be positive: 0.0"},
        {"fix t all mpm/rigid shape weight 1.0 slip", "must be one of density mass"},
        {fix + "glue", "Unknown fix mpm/rigid contact glue"},

@@ -720,6 +720,8 @@ SERIAL_TEST(Traction, BadInput)
        {fix + "region nowhere pressure 1",
         "Region nowhere for fix mpm/traction load does not exist"},
        {fix + "region end pressure", "missing argument"},
+       {fix + "region end pressure 1 pressure 2", "pressure is given twice"},
+       {fix + "region end traction 1 0 0 traction 2 0 0", "traction is given twice"},
        {fix + "region end pressure nan", "nan"},
        {fix + "region end pressure v_none", "none for fix mpm/traction pressure does not exist"},
        {"variable s string one\n" + fix + "region end pressure v_s",

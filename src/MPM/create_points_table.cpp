@@ -24,8 +24,10 @@
 #include "fmt/format.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <unordered_set>
 
@@ -48,7 +50,8 @@ static auto type_of_label(const Map &map, const std::string &label, long)
 
 using Columns = MPMPointColumns;
 
-static constexpr int CHUNK = 1 << 14;    // rows that are sent at a time
+static constexpr int CHUNK = 1 << 14;     // rows that are sent at a time
+static constexpr double NEAR = 1.0e-4;    // of the edge of a point: what is so near is there twice
 
 /* ---------------------------------------------------------------------- */
 
@@ -291,6 +294,35 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
   if (points.empty()) fail(fmt::format("has no points of type {}", given.part));
 }
 
+/** Points that are the same but for round-off are those of two files, or have been written twice with other digits. Places are sorted into
+ *  cells of NEAR edges of a point, twice, with cells moved by half of theirs, so that next to none are missed. */
+void CreatePointsTable::warn_of_near_points(const std::string &file) const
+{
+  double volume = 0.0;
+  for (const auto &point : points) volume += point.volume / points.size();
+  const double cell = NEAR * std::pow(volume, 1.0 / domain->dimension);
+  std::set<std::size_t> near;
+  for (const double shift : {0.0, 0.5}) {
+    using Place = std::array<double, 3>;
+    std::vector<std::pair<Place, std::size_t>> places(points.size());
+    for (std::size_t k = 0; k < points.size(); k++) {
+      for (int d = 0; d < 3; d++)
+        places[k].first[d] = std::floor((points[k].x[d] - domain->boxlo[d]) / cell + shift);
+      places[k].second = k;
+    }
+    std::sort(places.begin(), places.end());
+    for (std::size_t k = 1; k < places.size(); k++)
+      if (places[k].first == places[k - 1].first) near.insert(places[k].second);
+  }
+  if (near.empty()) return;
+  const double *const x = points[*near.begin()].x;
+  error->warning(FLERR,
+                 "Create_points table {}: {} points are within {:.3g} edges of others, as one at "
+                 "{:.8g} {:.8g} "
+                 "{:.8g}: if they are the same points twice, remove them from the file",
+                 file, near.size(), NEAR, x[0], x[1], x[2]);
+}
+
 /** Puts them into the box, where they may be in one of the next periodic images; no ID and no place is there twice. */
 void CreatePointsTable::check_points(const std::string &file)
 {
@@ -328,6 +360,7 @@ void CreatePointsTable::check_points(const std::string &file)
           "two points are at the same place, {:.8g} {:.8g} {:.8g}: it has points twice, or "
           "frames of several times",
           points[order[k]].x[0], points[order[k]].x[1], points[order[k]].x[2]));
+  warn_of_near_points(file);
 
   if (points[0].tag == 0) return;
   std::vector<bigint> tags;

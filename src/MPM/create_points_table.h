@@ -76,6 +76,7 @@ class CreatePointsTable : protected Pointers {
   void make_points(const CreatePointsTableOptions &, const MPM_NS::Table &, int type,
                    const std::string &file);
   void check_points(const std::string &file);
+  void warn_of_near_points(const std::string &file) const;
 };
 
 }    // namespace LAMMPS_NS

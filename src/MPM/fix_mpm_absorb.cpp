@@ -37,6 +37,7 @@ Options MPMAbsorbOptions::declare()
   using namespace option;
   Options o("fix mpm/absorb");
   o.add("region", {text(region_id, "region-ID", "points that are in this region are removed")})
+      .once()
       .standard("none, must be given");
   o.add("every", {integer(look_every, "N", POSITIVE, "look for points every this many steps")});
   o.refuse([=] {

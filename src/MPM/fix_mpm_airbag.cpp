@@ -16,11 +16,15 @@
 #include "mpm_options.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+// of the gas, as much as sound could carry through vents, in one part of a time step; and most parts
+static constexpr double PART = 0.003, MOST_PARTS = 1.0e5;
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/airbag ELEMENTS keyword values ...
@@ -37,6 +41,7 @@ Options MPMAirbagOptions::declare()
       .then([this] {
         has_pressure = true;
       })
+      .once()
       .standard("that of the gas");
   o.add("gas",
         {number(p, "p", POSITIVE, "pressure", "pressure of the gas when this fix is first used"),
@@ -45,12 +50,14 @@ Options MPMAirbagOptions::declare()
       .then([this] {
         has_gas = true;
       })
+      .once()
       .standard("none");
-  o.add("outside", {number(outside, "p", NOT_NEGATIVE, "pressure", "pressure outside")});
+  o.add("outside", {number(outside, "p", NOT_NEGATIVE, "pressure", "pressure outside")}).once();
   o.add("temperature",
         {number(temperature, "T", POSITIVE, "temperature",
                 "of the gas when this fix is first used, and outside"),
          number(R, "R", POSITIVE, "energy/(mass temperature)", "specific gas constant")})
+      .once()
       .standard("not known: neither inflow nor vent");
   o.add("inflow",
         {variables(inflow, 2, "rate T", "mass/time, temperature",
@@ -58,14 +65,17 @@ Options MPMAirbagOptions::declare()
       .then([this] {
         has_inflow = true;
       })
+      .once()
       .standard("none");
   o.add("vent",
         {number(vent, "A", POSITIVE, "distance^2", "area of holes to the outside"),
          number(coefficient, "C", POSITIVE, "", "their discharge coefficient")})
+      .once()
       .standard("none");
   o.add("opens",
         {number(opens, "p", NOT_NEGATIVE, "pressure",
-                "vents open for good when the pressure is so much above that outside")});
+                "vents open for good when the pressure is so much above that outside")})
+      .once();
   o.refuse([this] {
     return OptionRules{
         {has_pressure == has_gas, "", "needs either pressure or gas"},
@@ -156,7 +166,7 @@ double FixMPMAirbag::on_surface(double its_volume, double its_area, bool startin
 }
 
 /* ----------------------------------------------------------------------
-   gas that comes in and goes out in a step, by the midpoint rule
+   gas that comes in and goes out in a step, by the midpoint rule in one or more parts of it
 ------------------------------------------------------------------------- */
 
 void FixMPMAirbag::flow(double dt)
@@ -194,11 +204,19 @@ void FixMPMAirbag::flow(double dt)
     if (has_inflow) g.add(rate[0] * time, rate[1]);
     return g;
   };
-  const BagGas middle = advance(gas, gas, 0.5 * dt);
-  const double goes = through_vent(middle) * dt;
-  gas = advance(gas, middle, dt);
-  (goes > 0.0 ? out : in) += std::fabs(goes);
-  in += rate[0] * dt;
+  // the flow goes like the root of the difference of pressures: a step in which it could pass a large part of the gas would go far past the
+  // pressure outside, and back in the next one
+  const double passes = coefficient * vent * dt / gas.volume *
+      std::sqrt(gas.gamma * gas.R * std::max(gas.temperature, temperature) * to_square);
+  const int parts = open && vent > 0.0 ? (int) std::min(std::ceil(passes / PART), MOST_PARTS) : 1;
+  const double time = dt / std::max(parts, 1);
+  for (int k = 0; k < std::max(parts, 1); k++) {
+    const BagGas middle = advance(gas, gas, 0.5 * time);
+    const double goes = through_vent(middle) * time;
+    gas = advance(gas, middle, time);
+    (goes > 0.0 ? out : in) += std::fabs(goes);
+    in += rate[0] * time;
+  }
 }
 
 /* ----------------------------------------------------------------------

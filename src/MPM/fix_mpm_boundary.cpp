@@ -112,7 +112,8 @@ Options MPMBoundaryOptions::declare(int dim)
         {variables(velocity, 3, "vx vy vz", "velocity",
                    "velocity of the wall, can be variables (see below); with *stick*, NULL leaves "
                    "a component free",
-                   true)});
+                   true)})
+      .once();
   o.add("displacement",
         {variables(velocity, 3, "ux uy uz", "distance",
                    "displacement of the wall since this fix was defined, instead of its velocity; "
@@ -128,6 +129,7 @@ Options MPMBoundaryOptions::declare(int dim)
          numbers(axis, 3, "ax ay az", ANY_NUMBER, "", "direction of the axis"),
          variables(&rate, 1, "rate", "radians/time",
                    "angular velocity, can be a variable (see below)")})
+      .once()
       .standard("none");
   o.add("field", {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` to act on")})
       .standard("all");

@@ -92,6 +92,7 @@ Options MPMDashpotOptions::declare(int dim)
       .then([this] {
         has_incoming = true;
       })
+      .once()
       .standard("none");
   o.add("support", {yes_no(support)}, "hold the stress that the surface has at the start");
   o.add("spring",

@@ -62,6 +62,7 @@ Options MPMEmitOptions::declare(int dim)
   using namespace option;
   Options o("fix mpm/emit");
   o.add("region", {text(region_id, "region-ID", "the mouth, through which material comes")})
+      .once()
       .standard("none, must be given");
   o.add("velocity",
         {variables(velocity, 3, "vx vy vz", "velocity",
@@ -69,6 +70,7 @@ Options MPMEmitOptions::declare(int dim)
       .then([this] {
         has_velocity = true;
       })
+      .once()
       .standard("none, must be given");
   o.add("normal",
         {numbers(normal, 3, "nx ny nz", ANY_NUMBER, "", "direction of the flow, of any length")})
@@ -94,6 +96,7 @@ Options MPMEmitOptions::declare(int dim)
         {variables(
             move, 3, "wx wy wz", "velocity",
             "velocity of the mouth, can be variables; that of the material is relative to it")})
+      .once()
       .standard("0 0 0");
   o.refuse([=] {
     const bool across = velocity[2].value != 0.0 || !velocity[2].variable.empty() ||

@@ -75,6 +75,7 @@ Options MPMPMLOptions::declare(int dim)
   for (int face = 0; face < NFACE; face++)
     o.add(FACE[face],
           {integer(cells[face], "N", POSITIVE, "cells of the layer next to this face of the box")})
+        .once()
         .standard("none");
   o.add("reflection",
         {number(reflection, "R", {0.0, 1.0, false, false}, "",

@@ -69,16 +69,20 @@ Options MPMRigidOptions::declare()
   heat.declare(o, "it becomes heat of the material, not of the body",
                "share of it that becomes heat of the material");
   o.add("velocity",
-        {numbers(v, 3, "vx vy vz", ANY_NUMBER, "velocity", "velocity of the center at the start")});
+        {numbers(v, 3, "vx vy vz", ANY_NUMBER, "velocity", "velocity of the center at the start")})
+      .once();
   o.add("omega",
-        {numbers(omega, 3, "wx wy wz", ANY_NUMBER, "1/time", "angular velocity at the start")});
+        {numbers(omega, 3, "wx wy wz", ANY_NUMBER, "1/time", "angular velocity at the start")})
+      .once();
   o.add("gravity",
-        {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time", "acceleration of the body")});
-  o.add("force",
-        {variables(load, 3, "fx fy fz", "force", "force on the center, can be variables")});
+        {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time", "acceleration of the body")})
+      .once();
+  o.add("force", {variables(load, 3, "fx fy fz", "force", "force on the center, can be variables")})
+      .once();
   o.add("torque",
         {variables(moment, 3, "tx ty tz", "force*distance",
-                   "torque about the center, can be variables")});
+                   "torque about the center, can be variables")})
+      .once();
   o.add("hold",
         {any_of(fixed, {"x", "y", "z", "rx", "ry", "rz"},
                 "components of the velocity and of the angular velocity that stay zero")})

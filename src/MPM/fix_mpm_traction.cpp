@@ -77,6 +77,7 @@ Options MPMTractionOptions::declare(int dim)
       .then([this] {
         has_traction = true;
       })
+      .once()
       .standard("none");
   o.add("pressure",
         {variables(&pressure, 1, "p", "pressure",
@@ -84,6 +85,7 @@ Options MPMTractionOptions::declare(int dim)
       .then([this] {
         has_pressure = true;
       })
+      .once()
       .standard("none");
   o.add("moment",
         {variables(moment, 3, "Mx My Mz", "force*distance",
@@ -92,6 +94,7 @@ Options MPMTractionOptions::declare(int dim)
       .then([this] {
         has_moment = true;
       })
+      .once()
       .standard("none");
   MPMFace::declare(o, spacing, area);
   o.refuse([=] {

@@ -180,7 +180,11 @@ std::string MPMPointColumns::wrong(int c, double value) const
     return "must be positive; leave out what is no material point, by groups of a dump or keyword "
            "part";
   const bool across = (column.kind == PLACE || column.kind == VELOCITY) && column.component == 2;
-  if (across && domain->dimension == 2 && value != 0.0) return "must be 0 in a 2d simulation";
+  // of a deformation gradient, xz yz zx zy
+  const bool sheared = column.kind == DEFORMATION && column.component != 8 &&
+      (column.component % 3 == 2 || column.component > 5);
+  if ((across || sheared) && domain->dimension == 2 && value != 0.0)
+    return "must be 0 in a 2d simulation";
   return "";
 }
 

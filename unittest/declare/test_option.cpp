@@ -135,6 +135,8 @@ TEST(Option, MistakesAreExplained)
   EXPECT_EQ(answer(""), "missing: fix paint");
   EXPECT_EQ(answer("2.1"), "0: Fix paint size must be above 0 and at most 2: 2.1");
   EXPECT_EQ(answer("1 colour red"), "1: Unknown fix paint keyword: colour");
+  EXPECT_EQ(answer("1 speed 1 2 3"),
+            "4: Unknown fix paint keyword: 3; the values of speed are u v");
   EXPECT_EQ(answer("1 color"), "missing: fix paint color");
   EXPECT_EQ(answer("1 color pink"),
             "2: Unknown fix paint color pink: must be one of red green blue");

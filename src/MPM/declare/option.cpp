@@ -119,6 +119,16 @@ std::string name_of(const std::string &names, int k, int n)
   return n == 1 ? names : split(names, ' ')[k];
 }
 
+/** What to say of a number in the place of a keyword, after the values of an option: in 2d some have fewer than in 3d. */
+std::string too_many(const Option *option, const std::string &found)
+{
+  if (!option || found.find_first_of("0123456789") > 1) return "";
+  Strings usage;
+  for (const auto &value : option->values)
+    if (!value.usage.empty()) usage.push_back(value.usage);
+  return usage.empty() ? "" : "; the values of " + option->keyword + " are " + join(usage, " ");
+}
+
 /** Present values, as in the input. */
 std::string text_of(const std::vector<OptionValue> &values)
 {
@@ -326,10 +336,13 @@ int Options::read(const OptionInput &input, int iarg, const std::string &last)
     first.what = command;
   }
   iarg = first.iarg;
+  const Option *last_read = nullptr;
   while (iarg < input.narg && (last.empty() || last != input.arg[iarg])) {
     const std::string keyword = input.arg[iarg];
     auto *option = const_cast<Option *>(find(keyword));
-    if (!option) throw OptionError{iarg, "Unknown " + command + " keyword: " + keyword};
+    if (!option)
+      throw OptionError{
+          iarg, "Unknown " + command + " keyword: " + keyword + too_many(last_read, keyword)};
     const std::string full = command + " " + keyword;
     if (option->single && option->where >= 0)
       throw OptionError{iarg, sentence(full + " is given twice")};
@@ -338,6 +351,7 @@ int Options::read(const OptionInput &input, int iarg, const std::string &last)
     read_values(option->values, reader);
     if (option->after) option->after();
     iarg = reader.iarg;
+    last_read = option;
   }
   for (const auto &rule : refusals ? refusals() : OptionRules())
     if (rule.broken && (rule.keyword.empty() || given(rule.keyword)))

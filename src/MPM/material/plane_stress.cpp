@@ -423,6 +423,13 @@ void PlaneStress::check_symmetry()
   one.go(material, UNIT, STRAINED);
   one.get(stress);
   stiffness = norm(stress) / SMALL;
+  // of a fluid without viscosity: a pressure, which vanishes with the stress across
+  const double pressure = (stress[0] + stress[4] + stress[8]) / 3.0;
+  double shear[9];
+  for (int k = 0; k < 9; k++) shear[k] = stress[k] - (k % 4 ? 0.0 : pressure);
+  if (norm(stress) > 0.0 && norm(shear) <= SAME * norm(stress))
+    throw std::runtime_error(
+        "it resists no shear, and bears nothing along either then: use a solid");
   turn(R, stress, wanted);
   turn(R, STRAINED, strained);
   other.go(material, UNIT, strained);
