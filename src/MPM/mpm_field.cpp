@@ -9,6 +9,7 @@
 #include "mpm_field.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "fix_mpm.h"
@@ -53,7 +54,7 @@ static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMField
 /* ---------------------------------------------------------------------- */
 
 MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMPointState &state) :
-    Pointers(lmp), fix(fix), options(options), grid(lattice_of(*domain, h, options)),
+    Pointers(lmp), chosen(options), fix(fix), grid(lattice_of(*domain, h, options)),
     lattice(grid.lattice), nodes(lmp, *this, grid), points(MPMPoints::get(atom)),
     batch(new Batch()), ledger(lmp, *this)
 {
@@ -131,6 +132,30 @@ void MPMField::check_box()
                "Fix mpm axisymmetric: x is the distance from the axis: the box must not reach "
                "below x = 0 or be periodic along x");
   if (nodes.edges) nodes.edges->check();
+}
+
+/* ----------------------------------------------------------------------
+   Fixes can be defined in any order, and come and go between runs: this is found anew for each run
+------------------------------------------------------------------------- */
+
+void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
+{
+  const auto who = std::find_if(all.begin(), all.end(), [](const auto *physics) {
+    return physics->brings_to_rest();
+  });
+  const bool before = options.strains_by_gradient();
+  chosen.rests = who != all.end();
+  if (options.strains_by_gradient() == before || comm->me) return;
+  if (before) {
+    utils::logmesg(lmp,
+                   "Fix mpm {}: stress mls again, the default of steps that do not bring bodies to "
+                   "rest\n",
+                   id());
+    return;
+  }
+  const auto *const other = dynamic_cast<Fix *>(*who);
+  utils::logmesg(lmp, "Fix mpm {}: stress gradient, the default with fix {} {}\n", id(),
+                 other->style, other->id);
 }
 
 /* ---------------------------------------------------------------------- */
