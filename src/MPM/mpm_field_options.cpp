@@ -78,7 +78,8 @@ Options MPMFieldOptions::declare(int dim)
             {{"mls", MLS_STRESS}, {"gradient", GRADIENT_STRESS}})},
         "what makes forces of stress and velocity gradients of nodal velocities")
       .standard("mls if *shape* and *transfer* have it; gradient in the updated frame with fix "
-                "mpm/relax and with fix mpm/implicit static and euler")
+                "mpm/relax, and with fix mpm/implicit static and euler, without fix "
+                "mpm/contact and fix mpm/pore")
       .keep([this] {    // the fixes that it depends on come after the file has been read
         return stress != DEFAULT_STRESS || !strains_by_gradient();
       });
