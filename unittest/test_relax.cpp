@@ -150,16 +150,64 @@ SERIAL_TEST(Beam, TellsThatMlsBendsItTooFar)
   const auto warnings = [](const std::string &scene) {
     return lines_that_say(scene, "with stress mls in the updated frame bodies").size();
   };
-  EXPECT_EQ(warnings(bent("") + "run 3000\n"), 1u);
-  EXPECT_EQ(warnings(bent("stress gradient") + "run 3000\n"), 0u);
-  EXPECT_EQ(warnings(column(10, "", "1e-6") + "run 3000\n"), 0u);
+  EXPECT_EQ(warnings(bent("stress mls") + "run 3000\n"), 1u);
+  EXPECT_EQ(warnings(bent("") + "run 3000\n"), 0u);
+  EXPECT_EQ(warnings(column(10, "stress mls", "1e-6") + "run 3000\n"), 0u);
   double low[2];
   for (const bool total : {false, true}) {
-    Scene run(bent(total ? "frame total" : "stress gradient") + "run 20000\n");
+    Scene run(bent(total ? "frame total" : "") + "run 20000\n");
     EXPECT_LE(run.fix("rest")->compute_scalar(), 1e-5);
     low[total] = run.compute_scalar("low");
   }
-  EXPECT_NEAR(measured("stress gradient over frame total", low[0] / low[1]), 1.0, 0.015);
+  EXPECT_NEAR(measured("default, stress gradient, over frame total", low[0] / low[1]), 1.0, 0.015);
+}
+
+// Stress is that of gradients by default while the fix is there, wherever it is defined: to the last bit what a run that asks for it has. A run
+// without the fix has moving least squares again, and restart files know of none that the input has not
+SERIAL_TEST(Beam, StressByDefaultIsThatOfGradients)
+{
+  const auto scene = [](const std::string &options) {
+    return replaced(beam(4, "1e-9", options), "gravity 1", "gravity 100");
+  };
+  const auto low = [](Scene &run) {
+    double y = 1.0;
+    for (int i = 0; i < run.n(); i++) y = std::min(y, run.x()[i][1]);
+    return y;
+  };
+  const std::string relax = "fix rest all mpm/relax 1e-9\n", text = scene("");
+  Scene given(scene("stress gradient") + "run 300\n"), mls(scene("stress mls") + "run 300\n");
+  EXPECT_NE(low(mls), low(given));
+  const ScratchFile at_rest("relax-default.restart"), later("relax-default-later.restart");
+  Scene after(text + "run 300\n");
+  EXPECT_EQ(low(after), low(given));
+  Scene before(replaced(replaced(text, relax, ""), "fix grid", relax + "fix grid") + "run 300\n");
+  EXPECT_EQ(low(before), low(given));
+
+  const auto lines = [](const std::string &commands) {
+    return lines_that_say(commands, "Fix mpm grid: stress").size();
+  };
+  EXPECT_EQ(lines(text + "run 1\nrun 1\n"), 1u) << "once";
+  EXPECT_EQ(lines(text + "run 1\nunfix rest\nrun 1\nrun 1\n"), 2u) << "and of moving least squares";
+  EXPECT_EQ(lines(replaced(text, relax, "") + "run 1\n"), 0u);
+  for (const char *options : {"stress mls", "stress gradient", "frame total", "transfer flip 1.0"})
+    EXPECT_EQ(lines(scene(options) + "run 1\n"), 0u) << options;
+
+  // the motion that follows is that of what the input gives
+  after.commands("write_restart " + at_rest.name + "\nunfix rest\nrun 50\nwrite_restart " +
+                 later.name + "\n");
+  const auto go_on = [&](const std::string &file, const std::string &options,
+                         const std::string &rest) {
+    const std::string all = scene(options), fixes = all.substr(all.find("fix grid"));
+    return "read_restart " + file + "\nneighbor 0.0075 bin\n" + replaced(fixes, relax, rest) +
+        "run 50\n";
+  };
+  Scene explicit_run(go_on(at_rest.name, "", "")), same(go_on(at_rest.name, "stress mls", "")),
+      other(go_on(at_rest.name, "stress gradient", ""));
+  EXPECT_EQ(low(explicit_run), low(same));
+  EXPECT_NE(low(explicit_run), low(other));
+  EXPECT_NEAR(low(explicit_run), low(after), 1e-9);
+  Scene refused;
+  expect_error(refused, go_on(later.name, "stress gradient", ""), "stress mls (now gradient)");
 }
 
 // Stops add nothing to vibrations that come to their maximum in two or three steps: those of a bar of one cell across grew

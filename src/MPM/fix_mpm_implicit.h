@@ -42,6 +42,8 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   bool looks_beyond_points() const override { return false; }
+  /** The mid-point rule keeps angular momentum with moving least squares. */
+  bool brings_to_rest() const override { return time != MIDPOINT; }
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 

@@ -48,6 +48,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
 
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
+  bool brings_to_rest() const override { return true; }
   std::vector<Account> accounts() const override
   {
     return {{"rest", false}, {"work at rest", false, true}};

@@ -50,6 +50,8 @@ struct MPMPoints;
 /** One velocity field on one lattice: options, points, nodes, and an object for each thing that only
  *  some options need. */
 class MPMField : protected Pointers {
+  MPMFieldOptions chosen;
+
  public:
   using Options = MPMFieldOptions;
 
@@ -57,7 +59,7 @@ class MPMField : protected Pointers {
   using Pointers::lmp;
 
   Fix &fix;    ///< the fix mpm: its ID, its group, its requests for new neighbor lists
-  const Options options;
+  const Options &options = chosen;
   MPM_NS::Grid grid;    ///< records of momentum: velocity and mass after the momentum equation
   MPM_NS::Lattice &lattice;    ///< that of the grid
   MPMNodes nodes;
@@ -128,6 +130,8 @@ class MPMField : protected Pointers {
   /** The field of a fix mpm; null: the fix does not exist or has another style. */
   static MPMField *find(class LAMMPS *, const std::string &id);
 
+  /** Start of a run, before anything looks at the options: the form of the stress where the input leaves it open. */
+  void choose_stress(const std::vector<MPMPhysics *> &);
   /** Start of a run. */
   void init(MPMPlan *);
   /** The materials that there are now; also between runs, where those of the last one may be gone. */

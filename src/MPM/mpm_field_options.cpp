@@ -69,7 +69,7 @@ Options MPMFieldOptions::declare(int dim)
   o.add("stress",
         {word(
             [this] {
-              const bool mls = is_mls(shape, transfer) && stress != GRADIENT_STRESS;
+              const bool mls = is_mls(shape, transfer) && !strains_by_gradient();
               return mls ? MLS_STRESS : GRADIENT_STRESS;
             },
             [this](int word) {
@@ -77,8 +77,12 @@ Options MPMFieldOptions::declare(int dim)
             },
             {{"mls", MLS_STRESS}, {"gradient", GRADIENT_STRESS}})},
         "what makes forces of stress and velocity gradients of nodal velocities")
-      .standard("mls if *shape* and *transfer* have it")
-      .keep();
+      .standard("mls if *shape* and *transfer* have it; gradient in the updated frame with fix "
+                "mpm/relax, and with fix mpm/implicit static and euler, without fix "
+                "mpm/contact and fix mpm/pore")
+      .keep([this] {    // the fixes that it depends on come after the file has been read
+        return stress != DEFAULT_STRESS || !strains_by_gradient();
+      });
   o.add("scheme", {word(scheme, {{"usl", USL}, {"usf", USF}, {"musl", MUSL}, {"usavg", USAVG}})},
         "when stress is updated in a step")
       .keep();

@@ -19,7 +19,7 @@ struct MPMFieldOptions {
   enum Scheme { USL, USF, MUSL, USAVG };    ///< when stress is updated in a step
   enum Series { LUMPED, XPIC, FMPM };       ///< terms of the inverse of the mass matrix
   /** What makes forces of stress, and velocity gradients of nodal velocities; by default what the
-   *  shape and the transfer have. */
+   *  shape and the transfer have, or, where bodies come to rest in the updated frame, gradients. */
   enum Stress { DEFAULT_STRESS, MLS_STRESS, GRADIENT_STRESS };
   enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
   enum Policy { ERROR, WARN, DELETE };               ///< what to do with a point that goes bad
@@ -33,6 +33,7 @@ struct MPMFieldOptions {
   Series series = LUMPED;
   int order = 1;    ///< terms of the series
   Stress stress = DEFAULT_STRESS;
+  bool rests = false;    ///< not an option: what bodies come to rest by, MPMField::choose_stress()
   Scheme scheme = USL;
   bool total = false;             ///< nodes are places of the reference configuration
   double most_distorted = 0.0;    ///< ratio of stretches that asks for a new reference, 0: never
@@ -88,7 +89,8 @@ struct MPMFieldOptions {
   /** Forces and strains have the gradients of the shape functions, the affine matrix has not. */
   bool strains_by_gradient() const
   {
-    return stress == GRADIENT_STRESS && MPM_NS::is_mls(shape, transfer);
+    return MPM_NS::is_mls(shape, transfer) &&
+        (stress == GRADIENT_STRESS || (stress == DEFAULT_STRESS && rests && !total));
   }
 
   bool watches_gain() const { return gain != GAIN_IGNORE; }

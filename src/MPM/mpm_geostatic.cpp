@@ -189,7 +189,7 @@ int MPMGeostatic::planes(const MPMField &of, int i, Part list[BAND]) const
   const double t = (height(i) - where.up * lattice.origin[where.axis]) / lattice.h;
   const int n = stencil.weights(t, plane, w, slope);
   const auto &o = of.options;
-  if (is_mls(o.shape, o.transfer) && o.stress != MPMFieldOptions::GRADIENT_STRESS)
+  if (is_mls(o.shape, o.transfer) && !o.strains_by_gradient())
     for (int j = 0; j < n; j++)    // moving least squares take these in the place of gradients
       slope[j] = shape_constants[o.shape].inv_moment * w[j] * (plane + j - t);
   for (int j = 0; j < n; j++) list[j] = {plane + j - first, w[j], slope[j]};

@@ -70,6 +70,9 @@ class MPMPhysics {
   /** Is all that it does to points and forces there before the momentum equation of a step whose stress is solved for, as what it
    *  reads of the motion is that of steps before? */
   virtual bool precedes_motion() const { return false; }
+  /** Does it bring bodies to rest, or solve for their state, in many small steps in which surfaces that are inclined to the lattice
+   *  give way with moving least squares? Stress is that of gradients by default then. Known when fixes are defined. */
+  virtual bool brings_to_rest() const { return false; }
   /** The pressure of nodes that an implicit step solves for together with the motion; null: there is none in this field. If
    *  joins_motion(), which is known when fixes are defined, the physics has its part in such steps by this alone. */
   virtual bool joins_motion() const { return false; }

@@ -37,6 +37,7 @@ void MPMPlan::make()
     return a->turn() < b->turn();
   });
 
+  for (auto *field : fields) field->choose_stress(physics);
   for (auto *field : fields) field->init(this);
   for (auto *action : actions) action->init_action();
   for (auto *other : physics) other->init_physics(*this);

@@ -53,8 +53,9 @@ MPMTangent::~MPMTangent() noexcept = default;
 void MPMTangent::init()
 {
   const auto &options = field.options;
-  const Transfer transfer = options.strains_by_gradient() ? TPIC : options.transfer;
-  mls = is_mls(options.shape, transfer);
+  // forces and gradients are those of these two, which are fast in the total frame, too
+  mls = is_mls(options.shape, options.transfer) && !options.strains_by_gradient();
+  const Transfer transfer = mls ? APIC : (has_domain(options.shape) ? options.transfer : PIC);
   with = field.kernels->transfer_total(dim, options.shape, transfer, true);
   // there are no fast ones for what fix mpm has in the updated frame only
   if (!with.p2g_force)

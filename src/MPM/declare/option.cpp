@@ -392,7 +392,8 @@ std::string Options::kept() const
 {
   std::string all;
   for (const auto &option : options)
-    if (option.kept) all += option.keyword + " " + text_of(option.values) + "\n";
+    if (option.kept && (!option.keeps || option.keeps()))
+      all += option.keyword + " " + text_of(option.values) + "\n";
   return all;
 }
 

@@ -174,6 +174,12 @@ class Option {
  public:
   /** Another value than in the restart file is an error: of several words, another first one. */
   Option &keep() { return set(kept, true); }
+  /** The same, where this holds when the file is written. */
+  Option &keep(const std::function<bool()> &f)
+  {
+    keeps = f;
+    return keep();
+  }
   /** Must not be given twice. */
   Option &once() { return set(single, true); }
   /** Called after each time the values have been read: they may be given again, for another one. */
@@ -189,6 +195,7 @@ class Option {
   bool kept = false, single = false;
   int where = -1;    // the argument with the keyword, as given last
   std::function<void()> after;
+  std::function<bool()> keeps;
 
   template <class T> Option &set(T &member, const T &value)
   {
