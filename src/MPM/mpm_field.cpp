@@ -158,10 +158,9 @@ void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
   chosen.rests = who != all.end();
   if (options.strains_by_gradient() == before || comm->me) return;
   if (before) {
-    utils::logmesg(lmp,
-                   "Fix mpm {}: stress mls again, the default of steps that do not bring bodies to "
-                   "rest\n",
-                   id());
+    utils::logmesg(lmp, "Fix mpm {}: stress mls again, the default {}\n", id(),
+                   alone ? "of steps that do not bring bodies to rest"
+                         : "with fix mpm/contact and fix mpm/pore");
     return;
   }
   const auto *const other = dynamic_cast<Fix *>(*who);
