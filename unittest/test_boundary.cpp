@@ -1820,6 +1820,8 @@ timestep 0.001
        {"fix w all mpm/boundary ylo stick velocity 0 0 0 displacement 0 0 0", "one of them"},
        {"fix w all mpm/boundary ylo stick velocity 1 NULL NULL velocity NULL 1 NULL",
         "velocity is given twice"},
+       {"fix w all mpm/boundary ylo stick displacement 1 NULL NULL displacement NULL 1 NULL",
+        "displacement is given twice"},
        {"fix w all mpm/boundary ylo slip displacement NULL 0 0", "allows NULL only"},
        {"fix w all mpm/boundary ylo stick displacement NULL NULL NULL",
         "leaves all components free"},

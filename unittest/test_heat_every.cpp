@@ -157,6 +157,21 @@ PARAMETER_TEST(Restart, Continues, const char *, Values("every 4", "every auto")
   EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
 }
 
+// between two conductions the power is that of the last one, also after a restart file
+TEST(Restart, KeepsThePower)
+{
+  const std::string scene =
+      bar(20, "every 10 xlo temperature 1.0 source v_s") + "variable s atom 3*x\ntimestep 2e-6\n";
+  Continued run(scene, 15,
+                "neighbor 0.005 bin\nvariable s atom 3*x\n" + scene.substr(scene.find("fix grid")),
+                3);
+  for (const int k : {0, 6}) {
+    const double power = run.whole.fix("heat")->compute_vector(k);
+    EXPECT_GT(power, 0.0);
+    EXPECT_NEAR(run.again.fix("heat")->compute_vector(k) / power, 1.0, 1e-12);
+  }
+}
+
 /** Of each of n steps: has it conducted heat? That of a bar with a flux through its left end. */
 static std::vector<int> conductions(Scene &run, int n)
 {

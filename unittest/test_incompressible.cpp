@@ -681,6 +681,7 @@ SERIAL_TEST(Incompressible, BadInput)
        {fix + "0.1 1000 viscosity -1", "viscosity"},
        {fix + "0.1 1000 transfer cubic", "cubic"},
        {fix + "0.1 1000 transfer flip 1.1", "flip"},
+       {fix + "0.1 1000 transfer flip 0.5 transfer apic", "transfer is given twice"},
        {fix + "0.1 1000 reflect 1.5", "reflect"},
        {fix + "0.1 1000 spread 2", "spread"},
        {fix + "0.1 1000 wall zlo slip", "zlo"},

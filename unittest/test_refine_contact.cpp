@@ -253,6 +253,23 @@ SERIAL_TEST(Rest, OnEachOther)
   }
 }
 
+// All lattices of a body have one form of the stress by default, also where one of them alone touches the other body
+SERIAL_TEST(Rest, OneFormOfTheStress)
+{
+  const auto lines = [](const std::string &scene) {
+    return lines_that_say(scene, ": stress gradient, the default").size();
+  };
+  const auto parts = blocks("a body of the coarse lattice");
+  const std::string scene = pile(parts, ""), rest = "fix rest all mpm/relax 1e-5\nrun 1\n";
+  EXPECT_EQ(lines(scene + rest), 0u);
+  EXPECT_EQ(lines(scene + "unfix c0\n" + rest), 3u);
+  // a line tells what has ended it
+  EXPECT_EQ(lines_that_say(scene + "unfix c0\n" + rest + "fix c0 all mpm/contact A0 B0\nrun 1\n",
+                           "stress mls again, the default with fix mpm/contact")
+                .size(),
+            3u);
+}
+
 // It slides on the other one with friction: the force is the coefficient of friction times its weight
 SERIAL_TEST(Slide, HasTheFrictionOfTheWeight)
 {

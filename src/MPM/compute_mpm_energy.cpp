@@ -49,8 +49,7 @@ void ComputeMPMEnergy::init()
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE,
                "Compute {} of style mpm/energy requires a fix mpm; fix mpm/mesh and fix "
-               "mpm/incompressible have energies "
-               "in their own vectors",
+               "mpm/incompressible have energies in their own vectors",
                id);
   if (find_accounts() != accounts)
     error->all(FLERR, Error::NOLASTLINE,

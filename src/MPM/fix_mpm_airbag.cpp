@@ -207,10 +207,10 @@ void FixMPMAirbag::flow(double dt)
   // the flow goes like the root of the difference of pressures: a step in which it could pass a large part of the gas would go far past the
   // pressure outside, and back in the next one
   const double passes = coefficient * vent * dt / gas.volume *
-      std::sqrt(gas.gamma * gas.R * std::max(gas.temperature, temperature) * to_square);
-  const int parts = open && vent > 0.0 ? (int) std::min(std::ceil(passes / PART), MOST_PARTS) : 1;
-  const double time = dt / std::max(parts, 1);
-  for (int k = 0; k < std::max(parts, 1); k++) {
+      std::sqrt(gas.gamma * gas.R * std::max({gas.temperature, temperature, rate[1]}) * to_square);
+  const int parts = open ? (int) std::clamp(std::ceil(passes / PART), 1.0, MOST_PARTS) : 1;
+  const double time = dt / parts;
+  for (int k = 0; k < parts; k++) {
     const BagGas middle = advance(gas, gas, 0.5 * time);
     const double goes = through_vent(middle) * time;
     gas = advance(gas, middle, time);

@@ -123,6 +123,7 @@ Options MPMBoundaryOptions::declare(int dim)
       .then([this] {
         by_displacement = true;
       })
+      .once()
       .standard("none");
   o.add("rotate",
         {numbers(center, 3, "ox oy oz", ANY_NUMBER, "distance", "a point on the axis of rotation"),

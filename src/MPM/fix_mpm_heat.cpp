@@ -1091,7 +1091,7 @@ double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
 }
 
 /* ----------------------------------------------------------------------
-   heat that has come in so far, and the power in the last step
+   heat that has come in so far, and the power in the last conduction
 ------------------------------------------------------------------------- */
 
 double FixMPMHeat::compute_scalar()
@@ -1147,17 +1147,28 @@ double FixMPMHeat::energy_at_hand() const
 void FixMPMHeat::write_restart(FILE *fp)
 {
   keep_totals(world, &past.through_faces, sizeof(Past) / sizeof(double));
+  compute_vector(0);
   if (comm->me) return;
-  const int size = sizeof(Past) + sizeof(waited);
+  const int size = sizeof(Past) + sizeof(waited) + (1 + size_vector) * sizeof(double);
+  const double length = size_vector;
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(&past, sizeof(Past), 1, fp);
   fwrite(&waited, sizeof(waited), 1, fp);
+  fwrite(&length, sizeof(double), 1, fp);
+  fwrite(power.data(), sizeof(double), size_vector, fp);
 }
 
+/** The power is that of the last conduction until the next one; with other surfaces or contacts it is that of others. */
 void FixMPMHeat::restart(char *buf)
 {
   if (comm->me == 0) memcpy(&past, buf, sizeof(Past));
-  memcpy(&waited, buf + sizeof(Past), sizeof(waited));
+  buf += sizeof(Past);
+  memcpy(&waited, buf, sizeof(waited));
+  buf += sizeof(waited);
+  double length;
+  memcpy(&length, buf, sizeof(double));
+  if (length == size_vector)
+    memcpy(power.data(), buf + sizeof(double), size_vector * sizeof(double));
 }
 
 double FixMPMHeat::memory_usage()

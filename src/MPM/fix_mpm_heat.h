@@ -127,7 +127,7 @@ class FixMPMHeat :
   enum { STEPS, NEWTON, LINEAR, NTOTAL };
   double iterations[NTOTAL] = {};    // of this run
   Past past = {};
-  // heat of the last step, and power in a stage of it, this rank's share: through faces, of sources, of givers, through
+  // heat of the last conduction, and power in a stage of it, this rank's share: through faces, of sources, of givers, through
   // surfaces, through contacts
   Heats in_step, present;
   Heats power;

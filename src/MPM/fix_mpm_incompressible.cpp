@@ -110,6 +110,7 @@ Options MPMIncompressibleOptions::declare(int dim)
       .then([this] {
         transfer_is_given = true;
       })
+      .once()
       .standard("auto (aflip 0.98 with solid, or a region of fix mpm/rigid)");
   o.add("reflect",
         {number(reflect, "R", FRACTION, "1",

@@ -52,6 +52,8 @@ struct MPMPoints;
 class MPMField : protected Pointers {
   MPMFieldOptions chosen;
 
+  bool has_contact() const;
+
  public:
   using Options = MPMFieldOptions;
 
