@@ -94,10 +94,16 @@ Options MPMImplicitOptions::declare()
                    "friction of walls is that of Coulomb where surfaces slip by much more than "
                    "this in a step")})
       .standard("1e-5 node spacings");
+  options.add("stabilize",
+              {number(stabilize, "C", NOT_NEGATIVE, "",
+                      "stiffness of nodes that points barely reach, in parts of the modulus of "
+                      "these points")});
   options.add("report", {yes_no(report)}, "forces before each Newton iteration to screen and log");
   options.refuse([=] {
     return OptionRules{
         {time != NEWMARK, "gamma", "is of Newmark's method: use newmark, or remove it"},
+        {stabilize > 0.0 && time != STATIC && time != EULER, "stabilize",
+         "is for static and euler: remove it"},
         {!keeps_acceleration(), "rho",
          "is of the methods with a damping of high frequencies: use alpha or hht, or remove it"},
         {time == HHT && rho < 0.5, "rho",
@@ -113,7 +119,7 @@ FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
   scalar_flag = vector_flag = 1;
-  size_vector = 11;
+  size_vector = 12;
   global_freq = 1;
   extscalar = extvector = 0;
   restart_global = 1;
@@ -193,6 +199,17 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
         "nodes with next to no mass are no problem in implicit steps: remove it"},
        {options.heats(), "heat", "the time step is not in its balance: remove it"},
        {options.every > 1, "every", "implicit steps are long already: use every 1"}});
+  if (stabilize > 0.0 && !may_stabilize(*field))
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/implicit stabilize is for points of shape quadratic or cubic of fix mpm {}, "
+        "without fix mpm/elements, and not around an axis: remove it",
+        field->id());
+  for (auto *other : plan.physics)
+    if (stabilize > 0.0 && other->node_pressure(*field))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit stabilize knows nothing of the pressure of fix {} {}: remove it",
+                 dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
   for (auto *other : plan.physics)
     if (other != this && !other->only_loads() && !other->precedes_motion() &&
         !other->joins_motion())
@@ -298,6 +315,14 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
   }
 }
 
+/** Can nodes that points barely reach have a stiffness of their own? */
+bool FixMPMImplicit::may_stabilize(const MPMField &of) const
+{
+  return (time == STATIC || time == EULER) &&
+      (of.options.shape == MPM_NS::QUADRATIC || of.options.shape == MPM_NS::CUBIC) &&
+      !of.options.axisymmetric && of.elements.empty();
+}
+
 void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::AFTER_MOMENTUM)
@@ -364,6 +389,7 @@ void FixMPMImplicit::step()
   last[RATIO] = std::max(now.ratio, now.water);
   last[PARTS] = now.parts;
   last[LAST_INDEFINITE] = now.indefinite;
+  last[STABILIZING] = now.stabilizing * force->mvv2e;
   total[INDEFINITE] += now.indefinite;
   std::string list;
   if ((report || !now.converged) && comm->me == 0)
@@ -378,8 +404,11 @@ void FixMPMImplicit::step()
         "above the largest load that bodies can bear, move a wall instead, or use euler{}",
         id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite,
         100.0 * now.reached, now.parts,
-        fields[0]->frame->is_total() || fields.size() > 1
-            ? ""
+        fields[0]->frame->is_total() || fields.size() > 1 ? ""
+            : may_stabilize(*fields[0]) && stabilize == 0.0
+            ? "; where surfaces turn or are inclined, nodes that points barely reach stop the "
+              "updated frame: use stabilize 1, or, for solids that keep their neighbors, fix mpm "
+              "... frame total"
             : "; slender solids that keep their neighbors need fix mpm ... frame total");
   if (report && comm->me == 0)
     utils::logmesg(lmp, "  implicit step {}:{} {} linear iterations, {} not definite, forces{}\n",
@@ -449,6 +478,7 @@ double FixMPMImplicit::compute_scalar()
 double FixMPMImplicit::compute_vector(int k)
 {
   static constexpr int SINCE_START[3] = {NEWTON, LINEAR, CUTS};
+  if (k == 11) return last[STABILIZING];
   if (k == 10) return total[MADE];
   if (k >= 8) return last[k == 8 ? PARTS : LAST_INDEFINITE];
   return k < 5 ? last[k] : total[SINCE_START[k - 5]];

@@ -62,6 +62,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
     RATIO,
     PARTS,
     LAST_INDEFINITE,
+    STABILIZING,
     NLAST
   };
   double last[NLAST] = {};    // of the last step, also of a run before
@@ -73,6 +74,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
 
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;
+  bool may_stabilize(const MPMField &) const;
   void step();
   void rest();
   void tell_of_turns();

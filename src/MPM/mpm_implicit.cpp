@@ -409,6 +409,19 @@ double MPMImplicit::negligible_forces(const std::vector<double> &u, double stiff
   return ROUND_OFF * stiffness * std::max(1.0, 4.0 * way / field.lattice.h);
 }
 
+/** Nodes that points barely reach get a stiffness by the moduli of the start of the step. Collective. */
+void MPMImplicit::begin_loose()
+{
+  std::vector<double> moduli;
+  for (auto &member : members) {
+    if (!member->loose) member->loose = std::make_unique<MPMLooseNodes>(lmp, member->field);
+    const std::vector<double> still(width * member->field.grid.nnodes(), 0.0);
+    member->tangent.linearize(still.data(), part * dt);
+    member->tangent.find_moduli(moduli);
+    member->loose->begin(options.stabilize, moduli);
+  }
+}
+
 /** What touches, when forces are in balance: false, on all ranks, if nothing has to be changed. */
 bool MPMImplicit::decide_contact(std::vector<double> &u, double unbalanced)
 {
@@ -590,6 +603,7 @@ void MPMImplicit::change_of_forces(const double *du, double *dforce)
   for (auto &member : members) {
     const int64_t first = width * member->first;
     member->tangent.change_of_forces(du + first, dforce + first);
+    if (member->loose) member->loose->add_forces(du + first, dforce + first);
   }
 }
 
@@ -602,6 +616,7 @@ bool MPMImplicit::find_forces(const double *u, double *force, double &carried)
     const int64_t first = width * member->first;
     double mine;
     good = member->tangent.forces(u + first, part * dt, force + first, mine) && good;
+    if (good && member->loose) member->loose->add_forces(u + first, force + first);
     carried += mine;
   }
   return good;
@@ -744,6 +759,13 @@ void MPMImplicit::find_blocks()
       blocks.insert(blocks.end(), of_member.begin(), of_member.end());
     }
   }
+  for (auto &member : members) {
+    if (!member->loose) continue;
+    const auto &stiffness = member->loose->diagonal();
+    for (std::size_t n = 0; n < stiffness.size(); n++)
+      for (int d = 0; d < width; d++)
+        blocks[width * width * (member->first + n) + (width + 1) * d] += stiffness[n];
+  }
   for (double &entry : blocks) entry *= late * part;
   for (int64_t n = 0; n < (int64_t) mass.size(); n++)
     for (int d = 0; d < width; d++)
@@ -813,8 +835,10 @@ void MPMImplicit::fill_levels()
       });
   std::vector<double> stiff = mass;
   for (double &m : stiff) m *= inertia;
+  const auto *const loose = members[0]->loose.get();
+  for (std::size_t n = 0; loose && n < stiff.size(); n++) stiff[n] += loose->diagonal()[n];
   for (auto *contact : contacts) contact->add_friction_stiffness(stiff.data());
-  multigrid->finish(*this, inertia > 0.0 || rubs ? stiff.data() : nullptr);
+  multigrid->finish(*this, inertia > 0.0 || rubs || loose ? stiff.data() : nullptr);
 }
 
 /** The same for tangents that are not symmetric. GMRES with restarts can come to where it gains nothing any more. */
@@ -1092,6 +1116,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
   for (auto &member : members)
     member->tangent.external_forces(outer.data() + width * member->first);
   if (carries) bear_carried();
+  if (options.stabilize > 0.0) begin_loose();
   if (options.time == MPMImplicitOptions::STATIC && now.failure.empty()) find_free_bodies();
   if (!now.failure.empty()) return std::vector<double>(members.size(), 0.0);
 
@@ -1134,6 +1159,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
   if (can_keep()) remember(u);
   if (joint) joint->end_step();
   if (now.converged) find_loads(u);
+  if (options.stabilize > 0.0) account_loose(u);
   return give_back(u);
 }
 
@@ -1231,6 +1257,19 @@ void MPMImplicit::find_loads(const std::vector<double> &u)
   for (int64_t k = 0; k < nreals(); k++) more_loads[k] -= loads[k];
 }
 
+/** Forces of nodes that points barely reach after the motion of the step, and their energy. Collective. */
+void MPMImplicit::account_loose(const std::vector<double> &u)
+{
+  double mine = 0.0;
+  loose_forces.assign(nreals(), 0.0);
+  for (auto &member : members) {
+    const int64_t first = width * member->first;
+    member->loose->add_forces(u.data() + first, loose_forces.data() + first);
+    mine += 0.5 * member->loose->twice_energy();
+  }
+  MPI_Allreduce(&mine, &now.stabilizing, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
+}
+
 void MPMImplicit::account()
 {
   const bool by_mean = options.moves_by_mean();
@@ -1246,6 +1285,11 @@ void MPMImplicit::account()
       const double of_loads = share * dt * more_loads[k] * 0.5 * (v + old);
       external += of_loads;
       internal -= push[k] * 0.5 * (v + old) - of_loads;
+      if (member.loose) {    // which is no energy of points
+        const double of_loose = dt * loose_forces[k] * 0.5 * (v + old);
+        internal += of_loose;
+        transfer += of_loose;
+      }
       if (!by_mean) continue;
       // points move with v, which is the mean velocity of the step already
       const double half = 0.5 * (v - old),
@@ -1276,7 +1320,9 @@ double MPMImplicit::memory_usage() const
                            &of_owned,  &of_system,    &turns,       &left,     &moved,
                            &solved,    &corrected,    &of_everyone, &rotations})
     bytes += list->capacity() * sizeof(double);
-  for (const auto &member : members) bytes += member->tangent.memory_usage();
+  bytes += loose_forces.capacity() * sizeof(double);
+  for (const auto &member : members)
+    bytes += member->tangent.memory_usage() + (member->loose ? member->loose->memory_usage() : 0.0);
   bytes += heavy.capacity() * sizeof(int64_t) + heavy_records.capacity() * sizeof(double *) +
       shared.memory_usage();
   return bytes;

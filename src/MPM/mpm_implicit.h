@@ -12,6 +12,7 @@
 #include "declare/option.h"
 #include "mpm_implicit_memory.h"
 #include "mpm_lattice_ranks.h"
+#include "mpm_loose_nodes.h"
 #include "mpm_node_system.h"
 #include "mpm_rows.h"
 #include "mpm_tangent.h"
@@ -47,7 +48,8 @@ struct MPMImplicitOptions {
   Preconditioner preconditioner = BLOCKS;
   double slip =
       0.0;    ///< in a step, from which on friction is that of Coulomb [distance]; 0: a share of the node spacing
-  bool report = false;    ///< residuals of each step go to the log
+  double stabilize = 0.0;    ///< stiffness of nodes that points barely reach, over the modulus
+  bool report = false;       ///< residuals of each step go to the log
 
   MPM_NS::Options declare();
   /** Are accelerations kept from step to step, in balance with a mean of the forces of both ends? */
@@ -92,14 +94,15 @@ class MPMImplicit : private MPMNodeSystem {
   struct Report {
     bool converged = false;
     int iterations = 0, linear = 0, cuts = 0;
-    int made = 0;               ///< levels, or factors, of a tangent
-    int indefinite = 0;         ///< iterations in which the energy had no minimum along some way
-    int parts = 0;              ///< of the step, that converged
-    double reached = 0.0;       ///< share of the step
-    double unbalanced = 0.0;    ///< sum of forces that are left [mass acceleration]
-    double ratio = 0.0;         ///< to all forces
-    double water = 0.0;         ///< of what a pressure of nodes leaves of its equations, the same
-    double asymmetry = 0.0;     ///< of the tangents
+    int made = 0;                ///< levels, or factors, of a tangent
+    int indefinite = 0;          ///< iterations in which the energy had no minimum along some way
+    int parts = 0;               ///< of the step, that converged
+    double stabilizing = 0.0;    ///< energy of nodes that points barely reach [mass velocity^2]
+    double reached = 0.0;        ///< share of the step
+    double unbalanced = 0.0;     ///< sum of forces that are left [mass acceleration]
+    double ratio = 0.0;          ///< to all forces
+    double water = 0.0;          ///< of what a pressure of nodes leaves of its equations, the same
+    double asymmetry = 0.0;      ///< of the tangents
     std::vector<double> residuals;    ///< sums of forces before each iteration of the last part
     std::string failure;
   };
@@ -142,7 +145,8 @@ class MPMImplicit : private MPMNodeSystem {
   struct Member {
     MPMField &field;
     MPMTangent tangent;
-    int64_t first = 0;    // of its nodes
+    std::unique_ptr<MPMLooseNodes> loose;    // null: they have no stiffness of their own
+    int64_t first = 0;                       // of its nodes
 
     Member(class LAMMPS *, MPMField &);
     int64_t end() const;
@@ -202,6 +206,7 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> push;    // impulses that are not of the forces of the start of the step
   std::vector<double> loads,
       more_loads;    // that follow points: at the start, and what is new at the end
+  std::vector<double> loose_forces;    // of nodes that points barely reach
   std::vector<double> residual, free, change, correction, trial, blocks, room, allowed;
 
   // contact in methods of second order (mpm_implicit_impact.cpp)
@@ -267,6 +272,8 @@ class MPMImplicit : private MPMNodeSystem {
   bool find_forces(const double *u, double *force, double &carried);
   double linearize(const double *u);
   void take_nodes();
+  void begin_loose();
+  void account_loose(const std::vector<double> &u);
   void find_heavy();
   void find_reach();
   void find_constraints();

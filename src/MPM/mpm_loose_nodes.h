@@ -1,0 +1,70 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_LOOSE_NODES_H
+#define LMP_MPM_LOOSE_NODES_H
+
+#include "mpm_stencil.h"
+#include "pointers.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** A stiffness of nodes that points barely reach, for implicit steps.
+ *
+ *  A node at the very end of the functions of a point has loads of the order of its weight w, and a stiffness like the square of the
+ *  gradient of w. Next to the corner of a body, where w = a^2 b^2/4 with distances a and b, it goes by 1/(a^2 + b^2), some 1e5 node
+ *  spacings, and turns the point that it sees. With the motion u of the nodes in the step and the linear one around each point
+ *
+ *    v_ip = sum_j N_jp u_j [1 + m r_jp . r_ip]
+ *
+ *  (r: from nodes to points, in node spacings, m: inverse of their second moment) it gets the energy
+ *
+ *    sum_p c M_p V_p/(2 h^2) sum_i N_ip s_i |u_i - v_ip|^2
+ *
+ *  with the modulus M of the point, and the share s of what the volume of the node lacks to a tenth of that of the fullest one. All linear
+ *  motions, and those of nodes with enough points, are free of it, and each step begins without any. */
+class MPMLooseNodes : protected Pointers {
+ public:
+  MPMLooseNodes(class LAMMPS *lmp, MPMField &field);
+
+  /** Start of a step: c, and moduli M [n] of points. Collective. */
+  void begin(double c, const std::vector<double> &moduli);
+  /** Adds forces after the motion u [node][dim], which is also their change, as they are linear [mass acceleration]. Collective. */
+  void add_forces(const double *u, double *force);
+  /** Twice the energy of this rank's points after the last motion. */
+  double twice_energy() const { return energy; }
+  /** Stiffness of nodes against their own motion where all others stand still, next to it [node]. */
+  const std::vector<double> &diagonal() const { return stiffness; }
+  double memory_usage() const;
+
+ private:
+  /** A node as a point sees it: its place in vectors, N, N s, and r. */
+  struct Node {
+    int64_t first;
+    double weight, lacking, r[3];
+  };
+  struct Point {
+    std::size_t end;    // of its nodes
+    double k;           // c M V/h^2
+  };
+  MPMField &field;
+  const int dim;
+  std::vector<Point> points;    // with any such node
+  std::vector<Node> nodes;      // those of these points, one after the other
+  std::vector<double> lacks, stiffness, motion, more;
+  std::vector<MPMStencil::Node> reached;
+  std::vector<double> left;
+  template <int DIM> void add_forces_of_points();
+  double energy = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+#endif
