@@ -263,7 +263,7 @@ SERIAL_TEST(Beam, StaysWhereItIs)
 // stiffness of their own they do neither
 SERIAL_TEST(Stabilize, InclinedSurfaces)
 {
-  expect_error(membrane("", "", 4, 40) + "run 8\n", "use stabilize 1");
+  expect_error(membrane("", "stabilize 0", 4, 40) + "run 8\n", "use stabilize 1");
   for (const int ppc : {2, 4}) {
     Scene total(membrane("frame total", "", ppc, 5) + "run 5\n"),
         run(membrane("", "stabilize 1", ppc, 5) + "run 5\n");
@@ -281,6 +281,32 @@ SERIAL_TEST(Stabilize, InclinedSurfaces)
   EXPECT_NEAR(
       measured("4 points, 40 steps", run.compute_scalar("low") / total.compute_scalar("low")), 1.0,
       0.002);
+}
+
+// by default from the first step on that finds no balance without: as if it was given for this step, also after a restart
+SERIAL_TEST(Stabilize, FromTheStepThatNeedsIt)
+{
+  const std::string scene = membrane("", "", 4, 40);
+  const std::string fixes = "neighbor 1.6 bin\n" +
+      replaced(replaced(scene.substr(scene.find("fix grid")),
+                        "create_points 1 region plate ppc 4 outside ignore\n", ""),
+               "group tip region tip\n", "");
+  Continued run(scene, 8, fixes, 2);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  EXPECT_EQ(run.whole.fix("solve")->compute_vector(11), run.again.fix("solve")->compute_vector(11));
+  EXPECT_GT(run.again.fix("solve")->compute_vector(11), 0.0);
+  EXPECT_LT(run.again.fix("solve")->compute_vector(0), 10.0);
+
+  EXPECT_EQ(lines_that_say(scene + "run 10\n", "step 8 found its balance only with").size(), 1u);
+  Scene eight(scene + "run 8\n"), seven(scene + "run 7\n");
+  EXPECT_EQ(seven.fix("solve")->compute_vector(11), 0.0);
+  EXPECT_GT(eight.fix("solve")->compute_vector(11), 0.0);
+  seven.commands("unfix solve\nfix solve all mpm/implicit static solver multigrid tolerance 1e-6 "
+                 "stabilize 1\nrun 1\n");
+  const auto a = eight.gather(), b = seven.gather();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); k++)
+    for (int d = 0; d < 2; d++) EXPECT_NEAR(a[k].x[d], b[k].x[d], 1e-9);
 }
 
 // linear motions are free of it: with nodes that see a thousandth of a cell, a body is turned, and drawn, to the same end without any energy

@@ -94,10 +94,15 @@ Options MPMImplicitOptions::declare()
                    "friction of walls is that of Coulomb where surfaces slip by much more than "
                    "this in a step")})
       .standard("1e-5 node spacings");
-  options.add("stabilize",
-              {number(stabilize, "C", NOT_NEGATIVE, "",
-                      "stiffness of nodes that points barely reach, in parts of the modulus of "
-                      "these points")});
+  options
+      .add("stabilize",
+           {number(stabilize, "C", NOT_NEGATIVE, "",
+                   "stiffness of nodes that points barely reach, in parts of the modulus of "
+                   "these points")})
+      .then([this] {
+        stabilize_is_given = true;
+      })
+      .standard("0 until a step finds no balance without, then 1");
   options.add("report", {yes_no(report)}, "forces before each Newton iteration to screen and log");
   options.refuse([=] {
     return OptionRules{
@@ -148,6 +153,7 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
 {
   fields = plan.fields;
   if (fields.size() > 1) check_bodies(plan);
+  if (!stabilize_is_given) choose_stabilize(plan);
   for (auto *field : fields) check_field(plan, *field);
   for (auto *field : fields) {
     field->keep_old = true;
@@ -323,6 +329,18 @@ bool FixMPMImplicit::may_stabilize(const MPMField &of) const
       !of.options.axisymmetric && of.elements.empty();
 }
 
+/** By default nodes get such a stiffness from the first step on that finds no balance without, also after a restart. */
+void FixMPMImplicit::choose_stabilize(const MPMPlan &plan)
+{
+  const auto &only = *fields[0];
+  const bool possible = fields.size() == 1 && may_stabilize(only) && !only.frame->is_total() &&
+      std::none_of(plan.physics.begin(), plan.physics.end(), [&](auto *other) {
+                          return other->node_pressure(only);
+                        });
+  stabilize = possible && total[STUCK] > 0.0 ? ENOUGH_TO_STABILIZE : 0.0;
+  stabilize_if_stuck = possible && stabilize == 0.0;
+}
+
 void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::AFTER_MOMENTUM)
@@ -391,6 +409,16 @@ void FixMPMImplicit::step()
   last[LAST_INDEFINITE] = now.indefinite;
   last[STABILIZING] = now.stabilizing * force->mvv2e;
   total[INDEFINITE] += now.indefinite;
+  if (now.stuck) {
+    total[STUCK]++;
+    if (now.converged && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix mpm/implicit {}: step {} found its balance only with a stiffness of nodes that "
+          "points barely reach, which steps have from here on: use stabilize 1 from the "
+          "start, or, for solids that keep their neighbors, fix mpm ... frame total",
+          id, update->ntimestep);
+  }
   std::string list;
   if ((report || !now.converged) && comm->me == 0)
     for (const double r : now.residuals) list += fmt::format(" {:.9g}", r / force->ftm2v);
@@ -405,7 +433,7 @@ void FixMPMImplicit::step()
         id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite,
         100.0 * now.reached, now.parts,
         fields[0]->frame->is_total() || fields.size() > 1 ? ""
-            : may_stabilize(*fields[0]) && stabilize == 0.0
+            : may_stabilize(*fields[0]) && stabilize == 0.0 && !now.stuck
             ? "; where surfaces turn or are inclined, nodes that points barely reach stop the "
               "updated frame: use stabilize 1, or, for solids that keep their neighbors, fix mpm "
               "... frame total"

@@ -51,7 +51,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   std::vector<MPMField *> fields;
   std::unique_ptr<MPMImplicit> solver;
   MPMImplicit::Accelerations kept;    // of points, of methods that need those of the step before
-  enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, MADE, NTOTAL };
+  enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, MADE, STUCK, NTOTAL };
   double total[NTOTAL] = {};    // so far
   enum {
     LAST_NEWTON,
@@ -75,6 +75,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;
   bool may_stabilize(const MPMField &) const;
+  void choose_stabilize(const MPMPlan &);
   void step();
   void rest();
   void tell_of_turns();

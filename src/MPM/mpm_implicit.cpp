@@ -80,8 +80,9 @@ MPMImplicit::make_members(LAMMPS *lmp, const std::vector<MPMField *> &fields)
 MPMImplicit::MPMImplicit(LAMMPS *lmp, const std::vector<MPMField *> &fields,
                          const MPMImplicitOptions &options, Accelerations &kept) :
     MPMNodeSystem(lmp, fields[0]->grid, fields[0]->lattice.dim),
-    field(*fields[0]), options(options), kept(kept), members(make_members(lmp, fields)),
-    tangent(members[0]->tangent), ranks(lmp, field.grid, *field.nodes.halo)
+    field(*fields[0]), options(options), kept(kept), stabilize(options.stabilize),
+    members(make_members(lmp, fields)), tangent(members[0]->tangent),
+    ranks(lmp, field.grid, *field.nodes.halo)
 {
   if (options.preconditioner == MPMImplicitOptions::MULTIGRID)
     multigrid = std::make_unique<SplineMultigrid>(
@@ -418,7 +419,7 @@ void MPMImplicit::begin_loose()
     const std::vector<double> still(width * member->field.grid.nnodes(), 0.0);
     member->tangent.linearize(still.data(), part * dt);
     member->tangent.find_moduli(moduli);
-    member->loose->begin(options.stabilize, moduli);
+    member->loose->begin(stabilize, moduli);
   }
 }
 
@@ -1116,7 +1117,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
   for (auto &member : members)
     member->tangent.external_forces(outer.data() + width * member->first);
   if (carries) bear_carried();
-  if (options.stabilize > 0.0) begin_loose();
+  if (stabilize > 0.0) begin_loose();
   if (options.time == MPMImplicitOptions::STATIC && now.failure.empty()) find_free_bodies();
   if (!now.failure.empty()) return std::vector<double>(members.size(), 0.0);
 
@@ -1156,10 +1157,23 @@ std::vector<double> MPMImplicit::step(double step_dt)
     if (impacts) begin_impacts();
   }
   if (!can_keep() || !go_on_from_before(u)) approach(u);
+  if (!now.converged && options.stabilize_if_stuck && stabilize == 0.0 && contacts.empty()) {
+    const Report alone = now;
+    stabilize = MPMImplicitOptions::ENOUGH_TO_STABILIZE;
+    forget();
+    const auto energies = step(step_dt);
+    now.stuck = true;
+    now.iterations += alone.iterations;
+    now.linear += alone.linear;
+    now.cuts += alone.cuts;
+    now.made += alone.made;
+    now.indefinite += alone.indefinite;
+    return energies;
+  }
   if (can_keep()) remember(u);
   if (joint) joint->end_step();
   if (now.converged) find_loads(u);
-  if (options.stabilize > 0.0) account_loose(u);
+  if (stabilize > 0.0) account_loose(u);
   return give_back(u);
 }
 

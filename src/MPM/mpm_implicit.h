@@ -49,7 +49,10 @@ struct MPMImplicitOptions {
   double slip =
       0.0;    ///< in a step, from which on friction is that of Coulomb [distance]; 0: a share of the node spacing
   double stabilize = 0.0;    ///< stiffness of nodes that points barely reach, over the modulus
-  bool report = false;       ///< residuals of each step go to the log
+  bool stabilize_is_given = false;
+  bool stabilize_if_stuck = false;    ///< from the first step on that finds no balance without
+  static constexpr double ENOUGH_TO_STABILIZE = 1.0;
+  bool report = false;    ///< residuals of each step go to the log
 
   MPM_NS::Options declare();
   /** Are accelerations kept from step to step, in balance with a mean of the forces of both ends? */
@@ -94,9 +97,11 @@ class MPMImplicit : private MPMNodeSystem {
   struct Report {
     bool converged = false;
     int iterations = 0, linear = 0, cuts = 0;
-    int made = 0;                ///< levels, or factors, of a tangent
-    int indefinite = 0;          ///< iterations in which the energy had no minimum along some way
-    int parts = 0;               ///< of the step, that converged
+    int made = 0;          ///< levels, or factors, of a tangent
+    int indefinite = 0;    ///< iterations in which the energy had no minimum along some way
+    int parts = 0;         ///< of the step, that converged
+    bool stuck =
+        false;    ///< there was no balance without a stiffness of nodes that points barely reach
     double stabilizing = 0.0;    ///< energy of nodes that points barely reach [mass velocity^2]
     double reached = 0.0;        ///< share of the step
     double unbalanced = 0.0;     ///< sum of forces that are left [mass acceleration]
@@ -205,7 +210,8 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> of_nodes, of_points;    // of affine points that move with the mean velocity
   std::vector<double> push;    // impulses that are not of the forces of the start of the step
   std::vector<double> loads,
-      more_loads;    // that follow points: at the start, and what is new at the end
+      more_loads;      // that follow points: at the start, and what is new at the end
+  double stabilize;    // MPMImplicitOptions::stabilize, or what a step has needed
   std::vector<double> loose_forces;    // of nodes that points barely reach
   std::vector<double> residual, free, change, correction, trial, blocks, room, allowed;
 
