@@ -48,8 +48,8 @@ void ComputeMPMEnergy::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
     error->all(FLERR, Error::NOLASTLINE,
-               "Compute {} of style mpm/energy requires a fix mpm; fix mpm/mesh and fix "
-               "mpm/incompressible have energies in their own vectors",
+               "Compute {} of style mpm/energy requires a fix mpm; fix mpm/mesh has its "
+               "energies in its own vector, as has fix mpm/incompressible",
                id);
   if (find_accounts() != accounts)
     error->all(FLERR, Error::NOLASTLINE,
