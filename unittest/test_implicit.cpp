@@ -737,6 +737,14 @@ TEST(Implicit, RanksAndRestart)
   }
 }
 
+// a step in parts, and again with a stiffness of nodes that points barely reach, where the uppermost of four ranks has no points
+TEST(Implicit, RanksWithoutPoints)
+{
+  OnRanks run(membrane("", "", 4, 40), "run 8\n", "processors 1 * 1\n");
+  EXPECT_GT(run.parallel.fix("solve")->compute_vector(11), 0.0);
+  EXPECT_LT(measured("difference", run.difference()), 1e-9);
+}
+
 TEST(Implicit, RanksWithMovingWallsAndPeriodicFaces)
 {
   for (const char *material :

@@ -1044,18 +1044,19 @@ void MPMImplicit::approach(std::vector<double> &u)
   const bool rests = options.time == MPMImplicitOptions::STATIC;
   std::vector<double> from_here = u, first;
   double part = 1.0, size;
+  bool in_parts = false;    // the same on ranks without nodes
   if (joint) joint->keep();
   while (true) {
     aim = std::min(1.0, now.reached + part);
     outer = whole_outer;
     if (aim < 1.0)
       for (int64_t k = 0; k < nreals(); k++) outer[k] -= (1.0 - aim) * first[k];
-    if (joint && !first.empty()) joint->set_part(aim);
+    if (joint && in_parts) joint->set_part(aim);
     reached_by_walls = rests ? now.reached : 1.0;
     for (int64_t k = 0; k < nreals() && rests; k++) held[k] = (aim - now.reached) * dt * wall[k];
     const int most = (int) options.most_iterations;
     const Outcome outcome =
-        newton(u, first.empty() ? most : std::min(most, (has_friction ? 3 : 1) * IN_A_PART));
+        newton(u, !in_parts ? most : std::min(most, (has_friction ? 3 : 1) * IN_A_PART));
     by_levels = by_levels && outcome == CONVERGED;
     if (outcome == CONVERGED) {
       now.parts++;
@@ -1071,7 +1072,8 @@ void MPMImplicit::approach(std::vector<double> &u)
     if (outcome == HOPELESS || part * options.most_parts < 1.0) return;
     u = from_here;
     if (joint) joint->go_back();
-    if (first.empty()) {
+    if (!in_parts) {
+      in_parts = true;
       outer = whole_outer;
       find_residual(u, size);
       first = residual;
