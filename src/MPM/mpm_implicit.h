@@ -163,6 +163,7 @@ class MPMImplicit : private MPMNodeSystem {
   MPMField &field;    // the first one
   const MPMImplicitOptions &options;
   Accelerations &kept;
+  double stabilize;    // MPMImplicitOptions::stabilize, or what a step has needed
   const std::vector<std::unique_ptr<Member>> members;
   MPMTangent &tangent;    // of the first one
   MPM_NS::ConjugateGradients solver;
@@ -210,8 +211,7 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> of_nodes, of_points;    // of affine points that move with the mean velocity
   std::vector<double> push;    // impulses that are not of the forces of the start of the step
   std::vector<double> loads,
-      more_loads;      // that follow points: at the start, and what is new at the end
-  double stabilize;    // MPMImplicitOptions::stabilize, or what a step has needed
+      more_loads;    // that follow points: at the start, and what is new at the end
   std::vector<double> loose_forces;    // of nodes that points barely reach
   std::vector<double> residual, free, change, correction, trial, blocks, room, allowed;
 
