@@ -176,6 +176,18 @@ void MPMImplicit::take_nodes()
   find_heavy();
 }
 
+/** Records of nodes, which hold trial motions meanwhile, have what they had at the start of the step. */
+void MPMImplicit::give_back_start()
+{
+  each_record([&](const Member &, int64_t n, double *record) {
+    record[3] = mass[n];
+    for (int d = 0; d < width; d++) {
+      record[d] = explicit_velocity[width * n + d];
+      record[4 + d] = before[width * n + d];
+    }
+  });
+}
+
 /* ----------------------------------------------------------------------
    A node that corners of domains, or nodes of elements, come to by a small share e has forces of the order e, and a stiffness of the order
    e^2: it moves by 1/e of what these do. Forces of nodes say how well those of corners are in balance when they are divided by e. Where e is round-off
@@ -1163,6 +1175,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
     const Report alone = now;
     stabilize = MPMImplicitOptions::ENOUGH_TO_STABILIZE;
     forget();
+    give_back_start();
     const auto energies = step(step_dt);
     now.stuck = true;
     now.iterations += alone.iterations;

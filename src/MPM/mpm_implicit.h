@@ -278,6 +278,7 @@ class MPMImplicit : private MPMNodeSystem {
   bool find_forces(const double *u, double *force, double &carried);
   double linearize(const double *u);
   void take_nodes();
+  void give_back_start();
   void begin_loose();
   void account_loose(const std::vector<double> &u);
   void find_heavy();
