@@ -432,7 +432,10 @@ void FixMPMImplicit::step()
         "above the largest load that bodies can bear, move a wall instead, or use euler{}",
         id, update->ntimestep, now.iterations, now.failure, list, now.ratio, now.indefinite,
         100.0 * now.reached, now.parts,
-        fields[0]->frame->is_total() || fields.size() > 1 ? ""
+        fields.size() > 1                  ? ""
+            : fields[0]->frame->is_total() ? may_stabilize(*fields[0]) && stabilize == 0.0
+                ? ", or stabilize 1 where nodes are next to loose"
+                : ""
             : may_stabilize(*fields[0]) && stabilize == 0.0 && !now.stuck
             ? "; where surfaces turn or are inclined, nodes that points barely reach stop the "
               "updated frame: use stabilize 1, or, for solids that keep their neighbors, fix mpm "
