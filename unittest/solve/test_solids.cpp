@@ -7,6 +7,7 @@
 // the number of points.
 
 #include "solid_scenes.h"
+#include "thread_ranks.h"
 
 #include "solve/envelope_factors.h"
 #include "solve/rim_factors.h"
@@ -17,11 +18,9 @@
 #include <Eigen/Dense>
 
 #include <array>
-#include <condition_variable>
 #include <cstdlib>
 #include <functional>
 #include <limits>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -332,48 +331,6 @@ TEST(EnvelopeFactors, SolveLikeDenseOnes)
       EXPECT_FALSE(factors.compute(A.sparseView())) << isa << ' ' << n;
     }
 }
-
-/** Ranks of a LAMMPS that are threads: what they give is put together in their order. */
-struct Threads {
-  std::mutex mutex;
-  std::condition_variable all_have_come;
-  std::vector<std::string> given;
-  int count = 0, turn = 0;
-  explicit Threads(int n) : given(n) {}
-
-  void meet()
-  {
-    std::unique_lock<std::mutex> lock(mutex);
-    const int now = turn;
-    if (++count == (int) given.size()) {
-      count = 0;
-      turn++;
-      all_have_come.notify_all();
-    } else
-      all_have_come.wait(lock, [&] {
-        return turn != now;
-      });
-  }
-};
-
-struct ThreadRank : LatticeRanks {
-  Threads &team;
-  const int mine;
-  std::vector<char> all;
-  ThreadRank(Threads &team, int mine) : team(team), mine(mine) {}
-  int number() const override { return team.given.size(); }
-  int me() const override { return mine; }
-  void sum(double *, int) override {}
-  const std::vector<char> &gather_bytes(const void *of, std::size_t bytes) override
-  {
-    team.given[mine].assign(static_cast<const char *>(of), bytes);
-    team.meet();
-    all.clear();
-    for (const auto &text : team.given) all.insert(all.end(), text.begin(), text.end());
-    team.meet();
-    return all;
-  }
-};
 
 /** A matrix on a lattice of n by m points in pieces of so many columns, a shift apart from singular. */
 Eigen::SparseMatrix<double> springs(int n, int m, int piece)

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 using namespace MPM_NS;
@@ -103,8 +104,9 @@ void RimFactors::start(const std::vector<LatticeIndex> &nodes, int dim, int widt
   width = width_in;
   std::vector<std::vector<int>> parts(1);    // nodes of each
   for (std::size_t i = 0; i < nodes.size(); i++) parts[0].push_back((int) i);
-  std::vector<std::vector<int>> chunks_of(nodes.size());
-  for (int count = 0; !parts.empty();) {
+  std::vector<std::vector<int>> nodes_of;    // of each chunk
+  std::vector<double> cost;
+  while (!parts.empty()) {
     const std::vector<int> part = std::move(parts.back());
     parts.pop_back();
     LatticeIndex low{FAR, FAR, FAR}, high{-FAR, -FAR, -FAR};
@@ -119,8 +121,8 @@ void RimFactors::start(const std::vector<LatticeIndex> &nodes, int dim, int widt
     const int length = high[along] - low[along] + 1;
     const double layer = (double) part.size() / length;
     if (part.size() * layer * layer <= MOST_OPERATIONS || length <= 4 * OVERLAP + 2) {
-      for (const int i : part) chunks_of[i].push_back(count);
-      count++;
+      nodes_of.push_back(part);
+      cost.push_back(part.size() * layer * layer);
       continue;
     }
     const int middle = low[along] + length / 2;
@@ -131,11 +133,51 @@ void RimFactors::start(const std::vector<LatticeIndex> &nodes, int dim, int widt
         if (nodes[i][along] >= from[half] && nodes[i][along] <= to[half]) parts.back().push_back(i);
     }
   }
+  std::vector<std::vector<Copy>> copies_of(nodes.size());
+  for (std::size_t k = 0; k < nodes_of.size(); k++)
+    for (std::size_t i = 0; i < nodes_of[k].size(); i++)
+      copies_of[nodes_of[k][i]].push_back({(int) k, (int) i});
   first.assign(1, 0);
-  chunk.clear();
-  for (const auto &of : chunks_of) {    // in ascending order
-    chunk.insert(chunk.end(), of.begin(), of.end());
-    first.push_back(chunk.size());
+  copies.clear();
+  for (const auto &of : copies_of) {    // chunks in ascending order
+    copies.insert(copies.end(), of.begin(), of.end());
+    first.push_back((int) copies.size());
+  }
+  give_to_ranks(nodes_of, cost);
+}
+
+/** The most expensive ones first, each to the rank that has least to do. */
+void RimFactors::give_to_ranks(const std::vector<std::vector<int>> &nodes_of,
+                               const std::vector<double> &cost)
+{
+  const int nchunks = (int) nodes_of.size(), nranks = number_of_ranks();
+  std::vector<int> order(nchunks), rank_of(nchunks);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return cost[a] > cost[b];
+  });
+  std::vector<double> load(nranks, 0.0);
+  for (const int k : order) {
+    rank_of[k] = (int) (std::min_element(load.begin(), load.end()) - load.begin());
+    load[rank_of[k]] += cost[k];
+  }
+  const bool shared = nchunks == 1;
+  begin_of.assign(nchunks, 0);
+  bytes.assign(nranks, 0);
+  chunks.clear();
+  chunks.resize(nchunks);
+  int64_t count = 0;
+  for (int p = 0; p < nranks; p++) {
+    const int64_t begin = count;
+    for (int k = 0; k < nchunks; k++) {
+      if (rank_of[k] != p) continue;
+      begin_of[k] = count;
+      count += (int64_t) nodes_of[k].size() * width;
+      if (!shared && nranks > 1 && p != ranks->me()) continue;
+      chunks[k].reset(new Chunk(shared ? ranks : nullptr));
+      chunks[k]->nodes = nodes_of[k];
+    }
+    bytes[p] = (int) ((count - begin) * sizeof(double));
   }
 }
 
@@ -143,7 +185,7 @@ bool RimFactors::together(int a, int b) const
 {
   for (int i = first[a]; i < first[a + 1]; i++)
     for (int j = first[b]; j < first[b + 1]; j++)
-      if (chunk[i] == chunk[j]) return true;
+      if (copies[i].chunk == copies[j].chunk) return true;
   return false;
 }
 
@@ -152,25 +194,33 @@ void RimFactors::add(int row, int column, const double *value)
   const int w = width;
   for (int i = first[row]; i < first[row + 1]; i++)
     for (int j = first[column]; j < first[column + 1]; j++) {
-      if (chunk[i] != chunk[j]) continue;
+      if (copies[i].chunk != copies[j].chunk || !chunks[copies[i].chunk]) continue;
+      auto &entries = chunks[copies[i].chunk]->entries;
+      const int at = copies[i].place * w, other = copies[j].place * w;
       for (int a = 0; a < w; a++)
         for (int b = 0; b < w; b++)
           if (row != column) {
-            entries.emplace_back(i * w + a, j * w + b, value[a * w + b]);
-            entries.emplace_back(j * w + b, i * w + a, value[a * w + b]);
+            entries.emplace_back(at + a, other + b, value[a * w + b]);
+            entries.emplace_back(other + b, at + a, value[a * w + b]);
           } else
-            entries.emplace_back(i * w + a, j * w + b, 0.5 * (value[a * w + b] + value[b * w + a]));
+            entries.emplace_back(at + a, other + b, 0.5 * (value[a * w + b] + value[b * w + a]));
     }
 }
 
 bool RimFactors::factorize()
 {
-  const int n = chunk.size() * width;
-  Eigen::SparseMatrix<double> A(n, n);
-  A.setFromTriplets(entries.begin(), entries.end());
-  entries = {};
-  from.resize(n);
-  return MPM_NS::factorize(std::move(A), factors);
+  bool good = true;
+  for (auto &chunk : chunks) {
+    if (!chunk) continue;
+    const int n = (int) chunk->nodes.size() * width;
+    Eigen::SparseMatrix<double> A(n, n);
+    A.setFromTriplets(chunk->entries.begin(), chunk->entries.end());
+    chunk->entries = {};
+    good = MPM_NS::factorize(std::move(A), chunk->factors) && good;
+  }
+  if (number_of_ranks() == 1) return good;
+  for (const char all_right : ranks->gather(std::vector<char>{good})) good = good && all_right;
+  return good;
 }
 
 /** Copies of a node share what it has, so that those in many chunks do not get too much. */
@@ -181,22 +231,35 @@ double RimFactors::share(int node) const
 
 void RimFactors::solve(const double *b, double *x)
 {
-  if (chunk.empty()) return;
-  for (int node = 0; node < size(); node++)
-    for (int i = first[node]; i < first[node + 1]; i++)
-      for (int a = 0; a < width; a++) from[i * width + a] = share(node) * b[node * width + a];
-  factors.solve(from.data(), from.data());
+  solutions.clear();
+  for (auto &chunk : chunks) {
+    if (!chunk) continue;
+    const std::size_t begin = solutions.size();
+    for (const int node : chunk->nodes)
+      for (int a = 0; a < width; a++) solutions.push_back(share(node) * b[node * width + a]);
+    chunk->factors.solve(solutions.data() + begin, solutions.data() + begin);
+  }
+  const double *all = solutions.data();
+  if (number_of_ranks() > 1 && chunks.size() > 1)
+    all = reinterpret_cast<const double *>(ranks->gather_sizes(all, bytes).data());
   for (int node = 0; node < size(); node++)
     for (int a = 0; a < width; a++) {
       double sum = 0.0;
-      for (int i = first[node]; i < first[node + 1]; i++) sum += from[i * width + a];
+      for (int i = first[node]; i < first[node + 1]; i++)
+        sum += all[begin_of[copies[i].chunk] + copies[i].place * width + a];
       x[node * width + a] = share(node) * sum;
     }
 }
 
 double RimFactors::memory_usage() const
 {
-  return (first.capacity() + chunk.capacity()) * sizeof(int) +
-      entries.capacity() * sizeof(Eigen::Triplet<double>) + from.capacity() * sizeof(double) +
-      factors.memory_usage();
+  double memory = (first.capacity() + bytes.capacity()) * sizeof(int) +
+      copies.capacity() * sizeof(Copy) + begin_of.capacity() * sizeof(int64_t) +
+      solutions.capacity() * sizeof(double);
+  for (const auto &chunk : chunks)
+    if (chunk)
+      memory += chunk->nodes.capacity() * sizeof(int) +
+          chunk->entries.capacity() * sizeof(Eigen::Triplet<double>) +
+          chunk->factors.memory_usage();
+  return memory;
 }

@@ -8,6 +8,7 @@
 
 #include "solve/spline_multigrid.h"
 
+#include "solve/block_rows.h"
 #include "solve/chebyshev.h"
 #include "solve/rim_factors.h"
 
@@ -17,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <numeric>
 #include <utility>
 
 using namespace MPM_NS;
@@ -26,7 +28,9 @@ static constexpr int FEW[] = {0, 0, 12000, 4000};
 
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+using Sparse = BlockRows::Sparse;
+using Part = CoarseParts::Part;
+using Block = MatrixBlock;
 
 /** The functions of twice the spacing that have a function in them along an axis, and how much of it. */
 int parents(int order, int i, int *parent, double *weight)
@@ -43,11 +47,6 @@ int parents(int order, int i, int *parent, double *weight)
     return odd ? give(2, {m, m + 1}, {0.75, 0.25}) : give(2, {m - 1, m}, {0.25, 0.75});
   return odd ? give(2, {m, m + 1}, {0.5, 0.5}) : give(3, {m - 1, m, m + 1}, {0.125, 0.75, 0.125});
 }
-
-struct Part {
-  int node;
-  double weight;
-};
 
 /** Calls f(index, weight) for all parents of a node. period: of the coarse level along each axis, 0: none. */
 template <class F>
@@ -69,12 +68,6 @@ void each_parent(int order, int dim, const LatticeIndex &index, const int *perio
         f(LatticeIndex{parent[0][i], parent[1][j], parent[2][k]},
           weight[0][i] * weight[1][j] * weight[2][k]);
 }
-
-/** A block of an assembled matrix. */
-struct Block {
-  int row, column;
-  double value[9];
-};
 
 /** Blocks in the order in which they came. A row has some ten of them, which are looked through. */
 struct Blocks {
@@ -189,8 +182,7 @@ struct SplineMultigrid::Levels {
 
   // from the nodes of this rank to those of its part of the first coarse level, and from these to the level
   LatticeNodes mine;
-  std::vector<int> first;    // [nodes + 1] range in parts
-  std::vector<Part> parts;
+  CoarseParts to_mine;
   std::vector<int> number, of_ranks;
   std::vector<double> partial, of_all;
 
@@ -216,22 +208,20 @@ struct SplineMultigrid::Levels {
       slots;    // places of entries in the values of the matrix: of one triangle, and of the other
 
   struct Level {
-    Sparse A, to_next;    // the latter: [unknown][unknown of the next level]
-    Eigen::VectorXd x, b;
+    BlockRows A;
+    CoarseParts to_next;
+    std::vector<double> x, b;
     // smoother, as on the finest level
     std::vector<double> inverse, work[3];    // [node][width][width]
-    std::vector<int> rim;                    // [unknown of the rim] which one it is
+    std::vector<int> rim;                    // nodes of the rim
     std::unique_ptr<RimFactors> rim_factors;
     std::vector<double> rim_b, rim_x;
     double largest = 0.0;
 
-    void product(const double *x, double *y) const
-    {
-      Eigen::Map<Eigen::VectorXd>(y, A.rows()) = A * Eigen::Map<const Eigen::VectorXd>(x, A.rows());
-    }
     void by_blocks(int width, const double *r, double *z);
   };
   std::vector<Level> coarse;
+  Sparse last;    // the matrix of the coarsest level, kept if that is all of the system
   EnvelopeFactors factors;
 
   Levels(const Grid &grid, LatticeRanks &ranks, int width, int order, int few, int all) :
@@ -271,11 +261,11 @@ struct SplineMultigrid::Levels {
   void start(int n, const int64_t *nodes);
   void flush();
   void add_masses(const double *mass);
-  void merge_ranks(LatticeNodes &all);
-  void send_blocks();
-  void assemble(int n);
+  void merge_ranks();
+  void number_blocks();
+  void assemble_whole(int n);
   bool refill();
-  void coarsen(LatticeNodes level);
+  void coarsen(LatticeNodes level, std::vector<int> rows);
   void invert_blocks(const double *given);
   void estimate_largest();
 
@@ -372,16 +362,16 @@ void SplineMultigrid::Levels::find_parents()
 {
   const auto &lattice = grid.lattice;
   for (int d = 0; d < dim; d++) period[d] = lattice.periodic[d] ? (lattice.ncell[d] + 1) / 2 : 0;
-  first.assign(1, 0);
+  to_mine = {};
   for (int64_t node = 0; node < grid.nnodes(); node++) {
     if (whole)
-      parts.push_back({mine.add(index_of(node)), 1.0});
+      to_mine.parts.push_back({mine.add(index_of(node)), 1.0});
     else
       each_parent(order, dim, index_of(node), period,
                   [&](const LatticeIndex &parent, double weight) {
-                    parts.push_back({mine.add(parent), weight});
+                    to_mine.parts.push_back({mine.add(parent), weight});
                   });
-    first.push_back(parts.size());
+    to_mine.end_function();
   }
   place.assign(mine.index.size(), -1);
 }
@@ -394,10 +384,10 @@ void SplineMultigrid::Levels::start(int n, const int64_t *of)
   held = false;
   for (const int64_t node : nodes) {
     held = held || !plain[node];
-    for (int k = first[node]; k < first[node + 1]; k++)
-      if (place[parts[k].node] < 0) {
-        place[parts[k].node] = local.size();
-        local.push_back(parts[k].node);
+    for (const auto &part : to_mine.of(node))
+      if (place[part.node] < 0) {
+        place[part.node] = local.size();
+        local.push_back(part.node);
       }
   }
   element.assign(local.size() * local.size() * width * width, 0.0);
@@ -477,9 +467,9 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
 
     o.G.assign(nc * ngrad, 0.0);
     for (int i = 0; i < n; i++)
-      for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
-        double *const g = o.G.data() + o.place[o.parts[k].node] * ngrad;
-        for (int l = 0; l < ngrad; l++) g[l] += o.parts[k].weight * gradient[i * ngrad + l];
+      for (const auto &part : o.to_mine.of(nodes[i])) {
+        double *const g = o.G.data() + o.place[part.node] * ngrad;
+        for (int l = 0; l < ngrad; l++) g[l] += part.weight * gradient[i * ngrad + l];
       }
     add(
         nc,
@@ -495,11 +485,11 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
   o.G.assign((std::size_t) nc * m * w, 0.0);
   for (int i = 0; i < n; i++) {
     const double *const P = o.projection_of(nodes[i]);
-    for (int k = o.first[nodes[i]]; k < o.first[nodes[i] + 1]; k++) {
-      double *const g = o.G.data() + (std::size_t) o.place[o.parts[k].node] * m * w;
+    for (const auto &part : o.to_mine.of(nodes[i])) {
+      double *const g = o.G.data() + (std::size_t) o.place[part.node] * m * w;
       for (int l = 0; l < ngrad; l++)
         for (int ab = 0; ab < w * w; ab++)
-          g[l * w * w + ab] += o.parts[k].weight * gradient[i * ngrad + l] * P[ab];
+          g[l * w * w + ab] += part.weight * gradient[i * ngrad + l] * P[ab];
     }
   }
   for (int J = 0; J < nc; J++) {
@@ -533,19 +523,20 @@ void SplineMultigrid::Levels::add_masses(const double *mass)
         PP[a * w + b] = 0.0;
         for (int c = 0; c < w; c++) PP[a * w + b] += P[c * w + a] * P[c * w + b];
       }
-    for (int i = first[node]; i < first[node + 1]; i++)
-      for (int j = first[node]; j < first[node + 1]; j++) {
-        if (parts[j].node > parts[i].node) continue;
-        auto &to = blocks.at(parts[i].node, parts[j].node);
+    for (const auto &i : to_mine.of(node))
+      for (const auto &j : to_mine.of(node)) {
+        if (j.node > i.node) continue;
+        auto &to = blocks.at(i.node, j.node);
         for (int ab = 0; ab < w * w; ab++)
-          to.value[ab] += parts[i].weight * parts[j].weight * mass[node] * PP[ab];
+          to.value[ab] += i.weight * j.weight * mass[node] * PP[ab];
       }
   }
 }
 
-/** All nodes and blocks of the first coarse level on all ranks. */
-void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
+/** The nodes of the first coarse level, of all ranks, and its blocks, and from there on all of the levels. */
+void SplineMultigrid::Levels::merge_ranks()
 {
+  LatticeNodes all;
   // nodes in the order of ranks, those that have a stiffness
   const int w = width;
   std::vector<char> used(mine.index.size(), 0);
@@ -553,7 +544,14 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
   std::vector<LatticeIndex> given;
   for (std::size_t k = 0; k < used.size(); k++)
     if (used[k]) given.push_back(mine.index[k]);
-  for (const auto &index : ranks.gather(given)) all.add(index);
+  const auto of_rank = ranks.gather(std::vector<int>{(int) given.size()});
+  const auto given_by_all = ranks.gather(given);
+  std::vector<int> rows{0};
+  auto index = given_by_all.begin();
+  for (const int n : of_rank) {
+    for (int k = 0; k < n; k++) all.add(*index++);
+    rows.push_back((int) all.index.size());
+  }
   number.assign(used.size(), -1);
   std::vector<int> list;
   for (std::size_t k = 0; k < used.size(); k++)
@@ -565,7 +563,7 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
   if (whole) {
     std::vector<Held> mine_held;
     for (int64_t node = 0; node < grid.nnodes(); node++) {
-      const int at = number[parts[first[node]].node];
+      const int at = number[to_mine.of(node).begin()->node];
       if (!grid.owns(node) || at < 0 || plain[node]) continue;
       mine_held.push_back({at, {}});
       std::copy_n(projection_of(node), w * w, mine_held.back().P);
@@ -575,16 +573,23 @@ void SplineMultigrid::Levels::merge_ranks(LatticeNodes &all)
   }
 
   coarse.emplace_back();
-  send_blocks();
-  assemble((int) all.index.size() * w);
+  number_blocks();
+  if (whole) {
+    ranks.gather(sent, of_all_blocks);
+    coarse[0].x.resize(all.index.size() * w);
+    coarse[0].b.resize(all.index.size() * w);
+    assemble_whole((int) all.index.size() * w);
+  } else {
+    blocks = {};
+    coarsen(std::move(all), std::move(rows));
+  }
 }
 
-/** Blocks of all ranks, lower ones, by the numbers of all nodes. */
-void SplineMultigrid::Levels::send_blocks()
+/** Blocks of this rank, lower ones, by the numbers of all nodes. */
+void SplineMultigrid::Levels::number_blocks()
 {
   const int w = width;
   sent = blocks.list;
-  if (!whole) blocks = {};
   for (auto &b : sent) {
     b.row = number[b.row];
     b.column = number[b.column];
@@ -595,10 +600,10 @@ void SplineMultigrid::Levels::send_blocks()
       for (int j = 0; j < w; j++) turned[i * w + j] = b.value[j * w + i];
     std::copy_n(turned, w * w, b.value);
   }
-  ranks.gather(sent, of_all_blocks);
 }
 
-void SplineMultigrid::Levels::assemble(int n)
+/** The matrix of a system that is factorized as a whole. */
+void SplineMultigrid::Levels::assemble_whole(int n)
 {
   const int w = width;
   std::vector<Eigen::Triplet<double>> entries;
@@ -607,22 +612,14 @@ void SplineMultigrid::Levels::assemble(int n)
     for (int i = 0; i < w; i++)
       for (int j = 0; j < w; j++) {
         const double value = b.value[i * w + j];
-        // other stiffnesses may have something there
-        if (value == 0.0 && !whole) continue;
         entries.emplace_back(b.row * w + i, b.column * w + j, value);
         if (b.row != b.column) entries.emplace_back(b.column * w + j, b.row * w + i, value);
       }
-  coarse[0].A.resize(n, n);
-  coarse[0].A.setFromTriplets(entries.begin(), entries.end());
+  last.resize(n, n);
+  last.setFromTriplets(entries.begin(), entries.end());
   slots.clear();
-  if (!whole) {
-    sent = {};
-    of_all_blocks = {};
-    return;
-  }
   const auto slot = [&](int row, int column) {
-    const int *const inner = coarse[0].A.innerIndexPtr(),
-                     *const outer = coarse[0].A.outerIndexPtr();
+    const int *const inner = last.innerIndexPtr(), *const outer = last.outerIndexPtr();
     return (int) (std::lower_bound(inner + outer[row], inner + outer[row + 1], column) - inner);
   };
   slots.reserve(2 * entries.size());
@@ -639,15 +636,16 @@ bool SplineMultigrid::Levels::refill()
 {
   const int w = width;
   const auto before = of_all_blocks;
-  send_blocks();
+  number_blocks();
+  ranks.gather(sent, of_all_blocks);
   const bool same = before.size() == of_all_blocks.size() &&
       std::equal(before.begin(), before.end(), of_all_blocks.begin(),
                  [](const Block &a, const Block &b) {
                    return a.row == b.row && a.column == b.column;
                  });
   if (!same) return false;
-  double *const values = coarse[0].A.valuePtr();
-  std::fill_n(values, coarse[0].A.nonZeros(), 0.0);
+  double *const values = last.valuePtr();
+  std::fill_n(values, last.nonZeros(), 0.0);
   const int *to = slots.data();
   for (const auto &b : of_all_blocks)
     for (int ij = 0; ij < w * w; ij++, to += 2) {
@@ -657,36 +655,45 @@ bool SplineMultigrid::Levels::refill()
   return true;
 }
 
-void SplineMultigrid::Levels::coarsen(LatticeNodes level)
+/** Levels from the first one on, whose blocks are those that were sent.  rows: [ranks + 1] nodes of each rank. */
+void SplineMultigrid::Levels::coarsen(LatticeNodes level, std::vector<int> rows)
 {
   int cells[3];
   std::copy_n(period, 3, cells);
   while (true) {
     auto &now = coarse.back();
-    const int n = now.A.rows();
-    now.x.resize(n);
-    now.b.resize(n);
-    if (n <= few) return;
+    now.A.assemble(ranks, width, rows, sent);
+    sent = {};
+    const int nodes = now.A.rows();
+    now.x.resize((std::size_t) nodes * width);
+    now.b.resize((std::size_t) nodes * width);
 
+    // the nodes of the next level belong to those who have the first of their parts
     int half[3];
     for (int d = 0; d < 3; d++) half[d] = (cells[d] + 1) / 2;
     LatticeNodes next;
-    std::vector<Eigen::Triplet<double>> entries;
-    for (std::size_t k = 0; k < level.index.size(); k++)
-      each_parent(order, dim, level.index[k], half, [&](const LatticeIndex &parent, double weight) {
-        const int to = next.add(parent);
-        for (int a = 0; a < width; a++)
-          entries.emplace_back((int) k * width + a, to * width + a, weight);
-      });
-    if (next.index.size() >= level.index.size()) return;
+    std::vector<int> next_rows{0};
+    if (nodes * width > few)
+      for (int p = 0; p < ranks.number(); p++) {
+        for (int k = rows[p]; k < rows[p + 1]; k++) {
+          each_parent(order, dim, level.index[k], half,
+                      [&](const LatticeIndex &parent, double weight) {
+                        now.to_next.parts.push_back({next.add(parent), weight});
+                      });
+          now.to_next.end_function();
+        }
+        next_rows.push_back((int) next.index.size());
+      }
+    if (nodes * width <= few || (int) next.index.size() >= nodes) {
+      last = now.A.matrix();
+      now.A = {};
+      return;
+    }
     smoother_of(now, level, cells);
-    now.to_next.resize(n, next.index.size() * width);
-    now.to_next.setFromTriplets(entries.begin(), entries.end());
-    const Sparse right = now.A * now.to_next;
-    Sparse A = Sparse(now.to_next.transpose()) * right;
+    sent = now.A.coarsened(now.to_next, (int) next.index.size());
     coarse.emplace_back();
-    coarse.back().A = std::move(A);
     level = std::move(next);
+    rows = std::move(next_rows);
     std::copy_n(half, 3, cells);
   }
 }
@@ -694,79 +701,79 @@ void SplineMultigrid::Levels::coarsen(LatticeNodes level)
 /** The blocks of nodes and of chunks of the rim of an assembled level. */
 void SplineMultigrid::Levels::smoother_of(Level &level, const LatticeNodes &nodes, const int *cells)
 {
-  const int w = width, nnodes = nodes.index.size();
-  std::vector<double> stiffness(nnodes, 0.0);
-  for (int i = 0; i < nnodes * w; i++) stiffness[i / w] += level.A.coeff(i, i);
-  const auto in_rim = rim_of(nodes, stiffness, dim, order + 1, cells);
+  const int w = width, ww = w * w, nnodes = nodes.index.size();
+  auto &A = level.A;
+  std::vector<double> own;
+  for (int node = A.begin(); node < A.end(); node++) {
+    const double *const D = A.find(node, node);
+    own.push_back(0.0);
+    for (int a = 0; D && a < w; a++) own.back() += D[a * w + a];
+  }
+  const auto in_rim = rim_of(nodes, A.of_all(own, 1), dim, order + 1, cells);
   std::vector<int> number(nnodes, -1);
   std::vector<LatticeIndex> rim_nodes;
-  level.inverse.assign((std::size_t) nnodes * w * w, 0.0);
-  for (int node = 0; node < nnodes; node++) {
+  for (int node = 0; node < nnodes; node++)
     if (in_rim[node]) {
       number[node] = rim_nodes.size();
       rim_nodes.push_back(nodes.index[node]);
-      for (int a = 0; a < w; a++) level.rim.push_back(node * w + a);
-      continue;
+      level.rim.push_back(node);
     }
-    Matrix D(w, w);
-    for (int a = 0; a < w; a++)
-      for (int b = 0; b < w; b++) D(a, b) = level.A.coeff(node * w + a, node * w + b);
-    if (D.trace() > 0.0)
-      Eigen::Map<Matrix>(level.inverse.data() + (std::size_t) node * w * w, w, w) = inverse_of(D);
-  }
   level.rim_factors.reset(new RimFactors(&ranks));
   level.rim_factors->start(rim_nodes, dim, w);
-  for (std::size_t k = 0; k < level.rim.size(); k += w) {
-    // blocks of the lower triangle: the columns of all rows of a node are the same but for zeros
-    const int node = level.rim[k] / w;
-    std::vector<int> columns;
-    for (int a = 0; a < w; a++)
-      for (Sparse::InnerIterator it(level.A, node * w + a); it; ++it)
-        if (const int j = it.col() / w; number[j] >= 0 && number[j] <= number[node])
-          columns.push_back(j);
-    std::sort(columns.begin(), columns.end());
-    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
-    for (const int j : columns) {
-      if (!level.rim_factors->together(number[node], number[j])) continue;
-      double value[9];
-      for (int a = 0; a < w; a++)
-        for (int b = 0; b < w; b++) value[a * w + b] = level.A.coeff(node * w + a, j * w + b);
-      level.rim_factors->add(number[node], number[j], value);
+  own.assign((std::size_t)(A.end() - A.begin()) * ww, 0.0);
+  std::vector<Block> of_rim;
+  for (int node = A.begin(); node < A.end(); node++) {
+    if (const double *const D = A.find(node, node); D && number[node] < 0) {
+      const Matrix given = Eigen::Map<const Matrix>(D, w, w);
+      if (given.trace() > 0.0)
+        Eigen::Map<Matrix>(own.data() + (std::size_t)(node - A.begin()) * ww, w, w) =
+            inverse_of(given);
     }
+    if (number[node] < 0) continue;
+    A.each(node, [&](int other, const double *value) {
+      if (other > node || number[other] < 0 ||
+          !level.rim_factors->together(number[node], number[other]))
+        return;
+      of_rim.push_back({number[node], number[other], {}});
+      std::copy_n(value, ww, of_rim.back().value);
+    });
   }
+  level.inverse = A.of_all(own, ww);
+  for (const auto &b : ranks.gather(of_rim)) level.rim_factors->add(b.row, b.column, b.value);
   usable = level.rim_factors->factorize() && usable;
   if (!usable) return;
-  level.rim_b.resize(level.rim.size());
-  level.rim_x.resize(level.rim.size());
+  level.rim_b.resize(level.rim.size() * w);
+  level.rim_x.resize(level.rim.size() * w);
 
-  std::vector<double> start(level.A.rows());
-  for (std::size_t i = 0; i < start.size(); i++) start[i] = noise(nodes.index[i / w], i % w);
+  const int64_t n = (int64_t) nnodes * w;
+  std::vector<double> start(n);
+  for (int64_t i = 0; i < n; i++) start[i] = noise(nodes.index[i / w], i % w);
   level.largest = largest_eigenvalue_of(
-      level.A.rows(), std::move(start),
+      n, std::move(start),
       [&](const double *x, double *y) {
-        level.product(x, y);
+        A.multiply(x, y);
       },
       [&](const double *x, double *y) {
         level.by_blocks(w, x, y);
       },
       [&](const double *x, const double *y) {
-        return Eigen::Map<const Eigen::VectorXd>(x, level.A.rows())
-            .dot(Eigen::Map<const Eigen::VectorXd>(y, level.A.rows()));
+        return std::inner_product(x, x + n, y, 0.0);
       });
 }
 
 void SplineMultigrid::Levels::Level::by_blocks(int w, const double *r, double *z)
 {
-  for (int i = 0; i < (int) A.rows(); i++) {
+  const int n = A.rows() * w;
+  for (int i = 0; i < n; i++) {
     double sum = 0.0;
     const int node = i / w;
     for (int b = 0; b < w; b++) sum += inverse[(std::size_t) i * w + b] * r[node * w + b];
     z[i] = sum;
   }
   if (rim.empty()) return;
-  for (std::size_t k = 0; k < rim.size(); k++) rim_b[k] = r[rim[k]];
+  for (std::size_t k = 0; k < rim.size(); k++) std::copy_n(r + rim[k] * w, w, rim_b.data() + k * w);
   rim_factors->solve(rim_b.data(), rim_x.data());
-  for (std::size_t k = 0; k < rim.size(); k++) z[rim[k]] = rim_x[k];
+  for (std::size_t k = 0; k < rim.size(); k++) std::copy_n(rim_x.data() + k * w, w, z + rim[k] * w);
 }
 
 /** Of nodes that are not in the rim. What is held has unity there, and nothing afterwards. */
@@ -790,7 +797,7 @@ void SplineMultigrid::Levels::invert_blocks(const double *given)
     const Matrix P = Eigen::Map<const Matrix>(projection_of(node), w, w);
     const Matrix rest = Matrix::Identity(w, w) - P, held = scale * rest.transpose() * rest;
     if (whole) {
-      const int k = parts[first[node]].node;
+      const int k = to_mine.of(node).begin()->node;
       auto &to = blocks.at(k, k);
       if (!grid.owns(node)) continue;
       held_blocks.push_back({k, k, {}});
@@ -877,27 +884,23 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
   o.flush();
   if (mass) o.add_masses(mass);
   if (!o.whole) o.factorize_rim(mass);
-  LatticeNodes all;
   bool again = o.again;
   if (again)
     o.usable = true;
   else
-    o.merge_ranks(all);
+    o.merge_ranks();
   if (again && !o.refill()) {
-    o.assemble((int) o.coarse[0].A.rows());
+    o.assemble_whole((int) o.last.rows());
     again = false;
   }
-  if (o.whole)
-    o.coarse.back().x = o.coarse.back().b = Eigen::VectorXd::Zero(o.coarse.back().A.rows());
-  else
-    o.coarsen(std::move(all));
   // symmetric: its rows are columns
-  const Sparse &last = o.coarse.back().A;
+  const Sparse &last = o.last;
   const Eigen::Map<const Eigen::SparseMatrix<double>> columns(
       last.rows(), last.cols(), last.nonZeros(), last.outerIndexPtr(), last.innerIndexPtr(),
       last.valuePtr());
   o.usable = o.usable && factorize(columns, o.factors, again);
   o.again = o.whole && o.usable;
+  if (!o.whole) o.last = Sparse();
   if (o.usable && !o.whole) o.estimate_largest();
 }
 
@@ -918,25 +921,34 @@ void SplineMultigrid::Levels::cycle(std::size_t which)
 {
   auto &level = coarse[which];
   if (which + 1 == coarse.size()) {
-    if (level.b.size() > 0) factors.solve(level.b.data(), level.x.data());
+    if (!level.b.empty()) factors.solve(level.b.data(), level.x.data());
     return;
   }
   const auto smooth_level = [&](bool from_zero) {
     chebyshev(
-        level.A.rows(), level.largest, level.b.data(), level.x.data(), from_zero, level.work,
+        level.b.size(), level.largest, level.b.data(), level.x.data(), from_zero, level.work,
         [&](const double *x, double *y) {
-          level.product(x, y);
+          level.A.multiply(x, y);
         },
         [&](const double *x, double *y) {
           level.by_blocks(width, x, y);
         });
   };
   auto &next = coarse[which + 1];
-  level.x.setZero();
+  std::fill(level.x.begin(), level.x.end(), 0.0);
   smooth_level(true);
-  next.b = level.to_next.transpose() * (level.b - level.A * level.x);
+  auto &rest = level.work[0];
+  level.A.multiply(level.x.data(), rest.data());
+  std::fill(next.b.begin(), next.b.end(), 0.0);
+  const int w = width;
+  for (int node = 0; node < level.A.rows(); node++)
+    for (const auto &part : level.to_next.of(node))
+      for (int a = 0; a < w; a++)
+        next.b[part.node * w + a] += part.weight * (level.b[node * w + a] - rest[node * w + a]);
   cycle(which + 1);
-  level.x += level.to_next * next.x;
+  for (int node = 0; node < level.A.rows(); node++)
+    for (const auto &part : level.to_next.of(node))
+      for (int a = 0; a < w; a++) level.x[node * w + a] += part.weight * next.x[part.node * w + a];
   smooth_level(false);
 }
 
@@ -965,8 +977,8 @@ void SplineMultigrid::precondition(const double *r, double *z)
     double left[3], force[3];
     for (int a = 0; a < w; a++) left[a] = r[node * w + a] - (o.whole ? 0.0 : o.rest[node * w + a]);
     o.project(node, left, true, force);
-    for (int k = o.first[node]; k < o.first[node + 1]; k++)
-      for (int a = 0; a < w; a++) partial[o.parts[k].node * w + a] += o.parts[k].weight * force[a];
+    for (const auto &part : o.to_mine.of(node))
+      for (int a = 0; a < w; a++) partial[part.node * w + a] += part.weight * force[a];
   }
   std::size_t kept = 0;
   for (std::size_t k = 0; k < o.number.size(); k++)
@@ -977,7 +989,7 @@ void SplineMultigrid::precondition(const double *r, double *z)
   partial.resize(kept * w);
   o.ranks.gather(partial, o.of_all);
   auto &coarse = o.coarse[0];
-  coarse.b.setZero();
+  std::fill(coarse.b.begin(), coarse.b.end(), 0.0);
   for (std::size_t k = 0; k < o.of_ranks.size(); k++)
     for (int a = 0; a < w; a++) coarse.b[o.of_ranks[k] * w + a] += o.of_all[k * w + a];
   o.cycle(0);
@@ -985,9 +997,9 @@ void SplineMultigrid::precondition(const double *r, double *z)
   for (int64_t node = 0; node < nnodes; node++) {
     if (!o.in_system[node]) continue;
     double motion[3] = {0.0, 0.0, 0.0}, free[3];
-    for (int k = o.first[node]; k < o.first[node + 1]; k++)
-      if (const int from = o.number[o.parts[k].node]; from >= 0)
-        for (int a = 0; a < w; a++) motion[a] += o.parts[k].weight * coarse.x[from * w + a];
+    for (const auto &part : o.to_mine.of(node))
+      if (const int from = o.number[part.node]; from >= 0)
+        for (int a = 0; a < w; a++) motion[a] += part.weight * coarse.x[from * w + a];
     o.project(node, motion, false, free);
     for (int a = 0; a < w; a++) z[node * w + a] += free[a];
   }
@@ -1050,7 +1062,7 @@ double SplineMultigrid::memory_usage() const
   const auto &o = *on;
   // a node of a hash map: what it has, and a pointer in it and to it
   constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
-  double bytes = o.parts.capacity() * sizeof(Part) + o.factors.memory_usage() +
+  double bytes = o.to_mine.memory_usage() + o.factors.memory_usage() +
       o.rim_factors.memory_usage() + o.plain.capacity() + o.in_system.capacity() +
       o.blocks.memory_usage() + o.rim_blocks.memory_usage() +
       (o.held_blocks.capacity() + o.sent.capacity() + o.of_all_blocks.capacity()) * sizeof(Block) +
@@ -1059,17 +1071,16 @@ double SplineMultigrid::memory_usage() const
   bytes += o.held_nodes.capacity() * sizeof(Levels::Held);
   for (const auto *list : {&o.rim, &o.mine, &o.of_whole})
     bytes += list->index.capacity() * sizeof(LatticeIndex) + list->number.size() * HASHED;
-  for (const auto *list : {&o.rim_number, &o.rim_of_ranks, &o.rim_local, &o.first, &o.number,
-                           &o.of_ranks, &o.local, &o.place})
+  for (const auto *list :
+       {&o.rim_number, &o.rim_of_ranks, &o.rim_local, &o.number, &o.of_ranks, &o.local, &o.place})
     bytes += list->capacity() * sizeof(int);
   for (const auto *list :
        {&o.projection, &o.inverse, &o.held_part, &o.work[0], &o.work[1], &o.work[2], &o.rest,
         &o.rim_element, &o.rim_x, &o.rim_b, &o.partial, &o.of_all, &o.element, &o.G, &o.T})
     bytes += list->capacity() * sizeof(double);
+  bytes += o.last.nonZeros() * (sizeof(double) + sizeof(int)) + o.last.rows() * sizeof(int);
   for (const auto &level : o.coarse) {
-    for (const auto *matrix : {&level.A, &level.to_next})
-      bytes += matrix->nonZeros() * (sizeof(double) + sizeof(int)) + matrix->rows() * sizeof(int);
-    bytes +=
+    bytes += level.A.memory_usage() + level.to_next.memory_usage() +
         (level.x.size() + level.b.size()) * sizeof(double) + level.rim.capacity() * sizeof(int);
     for (const auto *list : {&level.inverse, &level.work[0], &level.work[1], &level.work[2],
                              &level.rim_b, &level.rim_x})

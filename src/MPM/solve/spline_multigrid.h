@@ -29,8 +29,8 @@ namespace MPM_NS {
  *  factorized.
  *
  *  Symmetric, and positive definite if A is.  Tangents that are not symmetric count by their symmetric part.
- *  The finest level is distributed as the nodes are; coarse ones and the factors of the surface are the same on all ranks.
- *  Nothing depends on who has which points, but for round-off. */
+ *  The finest level is distributed as the nodes are.  Ranks have rows of the coarse ones (BlockRows) and chunks of the surfaces
+ *  each, and vectors of coarse levels whole.  Nothing depends on who has which points, but for round-off. */
 class SplineMultigrid {
  public:
   /** width: values of a node, 2 or 3.  order: of the splines, 1 to 3; other functions of points have coarse levels of these all the
