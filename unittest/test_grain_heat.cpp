@@ -211,6 +211,18 @@ SERIAL_TEST(BadInput, IsRefused)
   expect_error(replaced(scene, "fix hf grains", "fix hf all") + "run 1\n", "group of the grains");
   expect_error(replaced(scene, "fix hf grains heat/flow constant 500\n", "") + "run 1\n",
                "define a fix heat/flow");
+  // atoms of molecular dynamics have no radius
+  expect_error(replaced(scene, "diameter 0.02 density", "diameter 0 density") + "run 1\n",
+               "none with atoms of molecular dynamics");
+  expect_error(plane("lj", "p p", "0 10 0 20", 2, 0.3) +
+                   "fix prop all property/atom temperature heatflow ghost yes\n"
+                   "fix grid all mpm 1.0\nregion low block INF INF 0 8 INF INF\n"
+                   "create_points 1 region low ppc 2\ncreate_atoms 2 single 5 10 0\n"
+                   "set type 2 mass 1.0\ngroup one type 1\ngroup two type 2\n"
+                   "fix m one mpm/material density 1 neohookean 40 0.3 thermal conducting 1 1 1\n"
+                   "pair_style lj/cut 2.5\npair_coeff * * 1.0 1.0\npair_coeff 1 1 0.0 1.0\n"
+                   "fix hf two heat/flow constant 1\nfix heat all mpm/heat grains yes\nrun 1\n",
+               "none with atoms of molecular dynamics");
   const std::string without =
       replaced(replaced(scene, "heat radius 50", ""),
                "fix prop all property/atom temperature heatflow ghost yes\n", "");

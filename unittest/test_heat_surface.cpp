@@ -8,6 +8,7 @@
 // Fix mpm/heat region and surface: heat through surfaces of regions, and free surfaces.
 
 #include "heat_exact.h"
+#include "stl_testing.h"
 
 using namespace MPM_TEST;
 
@@ -185,6 +186,23 @@ SERIAL_TEST(Area, OfDisksAndSpheres)
           EXPECT_NEAR(Warm(run).heat() / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
         }
       }
+    }
+}
+
+// a mold of triangles around a ball warms it through all of its surface as one that is a sphere does, and what comes in is in the points
+SERIAL_TEST(Area, OfBodiesOfTriangles)
+{
+  const ScratchFile ball("ball.stl", ball_stl(40));
+  for (const char *kind : {"flux 1.0", "convection 1.0 1.0"})
+    for (const double offset : {0.0, 0.25}) {
+      Scene run(replaced(round(12, offset, 3, std::string("region around ") + kind, 0.0),
+                         "region around sphere 0 0 0 1 side out",
+                         "region around mpm/mesh " + ball.name + " 1 0 0 0 side out") +
+                "run 1\n");
+      const double power = run.fix_vector("heat", 10)[9];
+      EXPECT_NEAR(measured(strprintf("%s, offset %g", kind, offset), power / (4.0 * PI)), 1.0,
+                  0.02);
+      EXPECT_NEAR(Warm(run).heat() / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
     }
 }
 

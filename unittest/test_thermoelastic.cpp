@@ -542,6 +542,45 @@ PARAMETER_TEST(Gas, InAClosedBox, const char *, Values("si", "cgs"))
   EXPECT_NEAR(run.compute_vector()[10], 0.0, 1e-10 * pressure * 0.4 * m * m);
 }
 
+// The heat that an explosive releases is conducted to an inert solid next to it, in a closed box: none is lost, and in the end
+// both have one temperature
+SERIAL_TEST(Products, WarmWhatIsAround)
+{
+  const double h = 0.005, C = 1630.0 * 1000.0;
+  const std::string conducting =
+      "viscosity artificial 1.5 0.06 thermal conducting 1000 293 3.3e7\n";
+  Scene run(
+      plane("si", "f p", strprintf("0 0.1 0 %g", 4 * h), 2, 0.2 * h) +
+      strprintf("fix grid all mpm %g\n", h) +
+      bodies({{"one", "block 0 0.05 INF INF INF INF"}, {"two", "block 0.05 0.1 INF INF INF INF"}}) +
+      "fix m one mpm/material density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7e9 6930 "
+      "detonate 0 0 0 0 " +
+      conducting + "fix n two mpm/material density 1630 eos linear 1e12 " + conducting +
+      "fix b all mpm/boundary xlo xhi slip\nfix heat all mpm/heat stages 64\n"
+      "compute e all mpm/energy\nfix dt all mpm/dt 0.3\nrun 6000\n");
+  double least = 1e9, most = 0.0, brought = 0.0, sum = 0.0;
+  for (const char *name : {"m", "n"}) {
+    const auto *const material = run.material(name);
+    const int T = material->find_history("temperature"), heat = material->find_history("heat");
+    for (int i = 0; i < run.n(); i++) {
+      if (run.lmp->atom->type[i] != (name[0] == 'm' ? 1 : 2)) continue;
+      const double t = material->history[i][T];
+      least = std::min(least, t);
+      most = std::max(most, t);
+      sum += t / run.n();
+      if (heat >= 0) brought += material->history[i][heat] * run.lmp->atom->vfrac[i];
+    }
+  }
+  // the products have lost what the solid has got, but for what viscosities have made of both
+  EXPECT_NEAR(measured("warmest over coldest", most / least), 1.0, 0.01);
+  EXPECT_NEAR(measured("temperature", sum), 1365.0, 20.0);
+  EXPECT_NEAR(measured("heat that products have lost", -brought / (1e-3 * C * (sum - 293))), 1.0,
+              0.25);
+  const double *const e = run.compute_vector();
+  EXPECT_NEAR(e[14] / 7e6, 0.0, 1e-13);
+  EXPECT_NEAR(e[10] / 7e6, 0.0, 1e-13);
+}
+
 // units change nothing, nor do they change the coupling of heat and stress: a block that is compressed
 SERIAL_TEST(Units, ChangeNothing)
 {

@@ -51,11 +51,22 @@ void MPMGrainHeat::init()
         "for their group");
   fields = MPMField::all(lmp);
   for (const auto *mover : movers) {
-    int mine = 0, any;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (atom->vfrac[i] > 0.0 && (atom->mask[i] & mover->groupbit)) mine = 1;
-    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-    if (any)
+    int mine[2] = {0, 0}, any[2];    // points, atoms without a radius
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!(atom->mask[i] & mover->groupbit)) continue;
+      if (atom->vfrac[i] > 0.0)
+        mine[0] = 1;
+      else if (!atom->radius || !(atom->radius[i] > 0.0))
+        mine[1] = 1;
+    }
+    MPI_Allreduce(mine, any, 2, MPI_INT, MPI_MAX, world);
+    if (any[1])
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/heat grains: fix heat/flow {} has atoms without a radius in its group: "
+                 "points exchange heat with grains, and none with atoms of molecular dynamics: "
+                 "give it the group of the grains, or drop the keyword",
+                 mover->id);
+    if (any[0])
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/heat grains: fix heat/flow {} has material points in its group, whose "
                  "temperatures belong to fix mpm/heat: give it the group of the grains",

@@ -399,6 +399,16 @@ class ComposedMaterial : public Material {
     }
     double own[BATCH], brought[BATCH];
     find_conducted_heat(b, brought);
+    if (eos->info->finds_temperature) {
+      // the temperature at the start, which has this heat, belongs to the energy at the start
+      double *const energy = b.history[eos->history], *const heat = b.history[eos->history + 1];
+      for (int i = 0; i < b.n; i++) {
+        energy[i] += brought[i];
+        heat[i] += brought[i];
+      }
+      run(eos, b, t);
+      return;
+    }
     std::copy_n(b.heat, b.n, own);
     for (int i = 0; i < b.n; i++) b.heat[i] += brought[i];
     run(eos, b, t);

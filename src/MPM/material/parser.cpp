@@ -436,11 +436,10 @@ class Parser {
                ": 'weibull' does not go with 'expansion', which would change the volume to which a "
                "strength belongs: use 'random SIGMA'");
       if (eos.info->finds_temperature &&
-          (thermal.info->conduction || has_option(thermal, "gruneisen") ||
-           has_option(thermal, "melt")))
+          (has_option(thermal, "gruneisen") || has_option(thermal, "melt")))
         refuse(THERMAL,
                ": the temperature of detonation products follows from the internal energy of '" +
-                   title(eos) + "': use 'thermal adiabatic' without 'gruneisen' and 'melt'");
+                   title(eos) + "': use it without 'gruneisen' and 'melt'");
       if (expands && eos.info->expands)
         refuse(THERMAL,
                ": 'expansion' does not go with '" + title(eos) +
