@@ -344,6 +344,21 @@ SERIAL_TEST(Stabilize, LinearMotionsAreFree)
   }
 }
 
+// factors and levels have it, with what it does between nodes: solutions with factors of all are exact, and those of the steps before serve
+SERIAL_TEST(Stabilize, IsInTheFactors)
+{
+  for (const std::string method : {"static", "euler"}) {
+    Scene run(replaced(replaced(membrane("", "stabilize 1", 4, 40), "implicit static",
+                                "implicit " + method),
+                       "timestep 1.0", method == "euler" ? "timestep 1e4" : "timestep 1.0") +
+              "run 8\n");
+    const double newton = run.fix("solve")->compute_vector(0),
+                 linear = run.fix("solve")->compute_vector(1);
+    EXPECT_LE(measured(method + ": Newton iterations", newton), 12.0);
+    EXPECT_LE(measured(method + ": linear ones in each", linear / newton), 8.0);
+  }
+}
+
 // what it takes is in the ledger, as a loss of the transfers, and not of the integration of the laws
 SERIAL_TEST(Stabilize, Ledger)
 {

@@ -837,21 +837,21 @@ void MPMImplicit::fill_levels()
 {
   by_levels = true;
   std::vector<double> scaled;
-  tangent.each_point(
-      [&](int n, const int64_t *nodes, int ngrad, const double *gradient, const double *stiffness) {
-        if (late * part != 1.0) {
-          scaled.assign(stiffness, stiffness + (std::size_t) width * ngrad * width * ngrad);
-          for (double &entry : scaled) entry *= late * part;
-          stiffness = scaled.data();
-        }
-        multigrid->add_point(n, nodes, ngrad, gradient, stiffness);
-      });
+  const auto add = [&](int n, const int64_t *nodes, int ngrad, const double *gradient,
+                       const double *stiffness) {
+    if (late * part != 1.0) {
+      scaled.assign(stiffness, stiffness + (std::size_t) width * ngrad * width * ngrad);
+      for (double &entry : scaled) entry *= late * part;
+      stiffness = scaled.data();
+    }
+    multigrid->add_point(n, nodes, ngrad, gradient, stiffness);
+  };
+  tangent.each_point(add);
+  if (const auto *const loose = members[0]->loose.get()) loose->each_term(add);
   std::vector<double> stiff = mass;
   for (double &m : stiff) m *= inertia;
-  const auto *const loose = members[0]->loose.get();
-  for (std::size_t n = 0; loose && n < stiff.size(); n++) stiff[n] += loose->diagonal()[n];
   for (auto *contact : contacts) contact->add_friction_stiffness(stiff.data());
-  multigrid->finish(*this, inertia > 0.0 || rubs || loose ? stiff.data() : nullptr);
+  multigrid->finish(*this, inertia > 0.0 || rubs ? stiff.data() : nullptr);
 }
 
 /** The same for tangents that are not symmetric. GMRES with restarts can come to where it gains nothing any more. */

@@ -120,6 +120,32 @@ void MPMLooseNodes::add_forces(const double *u, double *force)
   for (int64_t k = 0; k < nreals; k++) force[k] += more[k];
 }
 
+void MPMLooseNodes::each_term(
+    const std::function<void(int, const int64_t *, int, const double *, const double *)> &f) const
+{
+  const double m = shape_constants[field.options.shape].inv_moment;
+  std::vector<int64_t> numbers;
+  std::vector<double> g, unity(dim * dim, 0.0);
+  const Node *begin = nodes.data();
+  for (const auto &point : points) {
+    const Node *const end = nodes.data() + point.end;
+    numbers.clear();
+    for (const Node *node = begin; node < end; node++) numbers.push_back(node->first / dim);
+    for (const Node *loose = begin; loose < end; loose++) {
+      if (!(loose->lacking > 0.0)) continue;
+      g.clear();
+      for (const Node *node = begin; node < end; node++) {
+        double linear = 1.0;
+        for (int d = 0; d < dim; d++) linear += m * node->r[d] * loose->r[d];
+        g.push_back((node == loose ? 1.0 : 0.0) - node->weight * linear);
+      }
+      for (int d = 0; d < dim; d++) unity[(dim + 1) * d] = point.k * loose->lacking;
+      f((int) numbers.size(), numbers.data(), 1, g.data(), unity.data());
+    }
+    begin = end;
+  }
+}
+
 double MPMLooseNodes::memory_usage() const
 {
   double bytes = points.capacity() * sizeof(Point) + nodes.capacity() * sizeof(Node) +

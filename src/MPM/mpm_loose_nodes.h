@@ -12,6 +12,7 @@
 #include "mpm_stencil.h"
 #include "pointers.h"
 
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -43,6 +44,11 @@ class MPMLooseNodes : protected Pointers {
   double twice_energy() const { return energy; }
   /** Stiffness of nodes against their own motion where all others stand still, next to it [node]. */
   const std::vector<double> &diagonal() const { return stiffness; }
+  /** Its terms, each that of a node i that lacks points as a point sees it, c (g_i . u)^2/2 with g_ij = delta_ij - dv_ip/du_j, for
+   *  SplineMultigrid::add_point(): f(n, nodes [n], 1, g [n], c times unity [dim][dim]). */
+  void
+  each_term(const std::function<void(int, const int64_t *, int, const double *, const double *)> &f)
+      const;
   double memory_usage() const;
 
  private:
