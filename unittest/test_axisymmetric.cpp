@@ -40,16 +40,18 @@ TEST(Axisymmetric, VolumesAreThoseOfRings)
 // points that were there before the fix have areas in the place of volumes: a wrong number of old, which now has a warning
 SERIAL_TEST(Axisymmetric, PointsOfThePlaneAreTold)
 {
-  const std::string body =
-      "region body block 1 3 1 5 INF INF\ncreate_points 1 region body spacing 0.25\n";
   const std::string fix =
       "fix grid all mpm 0.5 axisymmetric yes\nfix axis all mpm/boundary xlo slip\n";
   const std::string rest =
       "fix m all mpm/material density 2.0 neohookean 10.0 0.3\ntimestep 1e-3\nrun 0\n";
   const std::string start = plane("lj", "f f", "0 6 0 6", 1, 0.15);
   const std::string words = "same volume at all radii";
-  EXPECT_EQ(lines_that_say(start + body + fix + rest, words).size(), 1u);
-  EXPECT_EQ(lines_that_say(start + fix + body + rest, words).size(), 0u);
+  for (const char *radii : {"1 3", "1 2", "5 5.5"}) {
+    const auto body = strprintf(
+        "region body block %s 1 5 INF INF\ncreate_points 1 region body spacing 0.25\n", radii);
+    EXPECT_EQ(lines_that_say(start + body + fix + rest, words).size(), 1u) << radii;
+    EXPECT_EQ(lines_that_say(start + fix + body + rest, words).size(), 0u) << radii;
+  }
 }
 
 /* ----------------------------------------------------------------------

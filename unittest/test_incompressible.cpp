@@ -629,6 +629,34 @@ SERIAL_TEST(Drop, TwoPointsSpin)
     }
 }
 
+// what spreading adds to the energy of points, by a run without it: in the first step nothing else differs
+SERIAL_TEST(Spread, IsInTheEnergy)
+{
+  for (const char *units : {"si", "metal"})
+    for (const int dim : {2, 3})
+      for (const char *options : {"", " transfer pic", " reflect 0.5"}) {
+        const auto energy = [&](const char *spread, double *own) {
+          Scene run(box(dim, units, "f f f", "0 8 0 8 0 4", 1, 0.3) +
+                    "create_points 1 box spacing 0.5\n"
+                    "variable u atom 0.02*sin(3*x+y)\nvariable w atom 0.03*cos(x-2*y)\n"
+                    "displace_atoms all move v_u v_w 0\n"
+                    "variable vx atom 0.3*(y-4)\nvariable vy atom 0.3*(4-x)\n"
+                    "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 1 2.0 spread " +
+                    std::string(spread) + options +
+                    "\nfix g all gravity 0.25 vector 1 -2 0\ntimestep 1e-3\nrun 1\n");
+          double sum = run.fix("w")->compute_vector(KINETIC);
+          for (int i = 0; i < run.n(); i++)
+            for (int d = 0; d < 2; d++) sum -= run.lmp->atom->f[i][d] * run.x()[i][d];
+          if (own) *own = run.fix("w")->compute_vector(run.fix("w")->size_vector - 1);
+          return sum;
+        };
+        double own;
+        const double difference = energy("0.5", &own) - energy("0", nullptr);
+        EXPECT_GT(std::fabs(difference), 0.0);
+        EXPECT_NEAR(own / difference, 1.0, 1e-6) << units << dim << options;
+      }
+}
+
 // in all units: weight of a tank, fall of a drop
 SERIAL_TEST(Units, PressureAndForce)
 {
@@ -663,6 +691,11 @@ TEST(Block, RanksAndRestart)
     EXPECT_LT(measured("difference", run.difference()), 1e-9);
     Continued again(scene + fixes, 12, "neighbor 0.02 bin\n" + fixes, 20);
     EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+    const double spread = again.whole.fix("w")->compute_vector(14);
+    EXPECT_NE(spread, 0.0);
+    EXPECT_NEAR(again.again.fix("w")->compute_vector(14) / spread, 1.0, 1e-12);
+    EXPECT_NEAR(run.parallel.fix("w")->compute_vector(14) / run.serial.fix("w")->compute_vector(14),
+                1.0, 1e-6);
   }
 }
 

@@ -324,7 +324,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   time_integrate = 1;
   dynamic_group_allow = 0;
   scalar_flag = vector_flag = 1;
-  size_vector = 14 + 3 * region_ids.size();
+  size_vector = 15 + 3 * region_ids.size();
   global_freq = 1;
   extscalar = extvector = 0;
   several = !liquids.empty();
@@ -669,7 +669,7 @@ void FixMPMIncompressible::initial_integrate(int)
   const bool differ = std::fabs(dt - before) > DIFFERENT_DT * dt;
   dt_before = dt;
   const MPMFlowPoints points = points_now(dt);
-  double of_last[3];
+  double of_last[4];
   sum_last_step(cells.valid && (!grains || cells.visitors_in_reach()), of_last);
   cells.valid = of_last[0] == 0.0;
   if (transfer == AUTO) {
@@ -714,6 +714,7 @@ void FixMPMIncompressible::initial_integrate(int)
   if (spread > 0.0) find_shift();
   if (bodies) bodies->move(dt);
 
+  double of_shift[2] = {0.0, 0.0};
   const MPMFlowUpdate update_points = {flip,
                                        keeps ? old.data() : nullptr,
                                        reflect,
@@ -722,19 +723,21 @@ void FixMPMIncompressible::initial_integrate(int)
                                        regions.get(),
                                        inflow.get(),
                                        solids.get(),
-                                       transfer == AUTO ? unseen : nullptr};
+                                       transfer == AUTO ? unseen : nullptr,
+                                       of_shift};
   if (solids) solids->deform(velocity.data(), dt, viscosity);
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
+  energy_of_spread += force->mvv2e * of_shift[0] - of_shift[1];
 
   note_filling();
 }
 
-/** Number of ranks whose cells are not those of their points, and MPMFlowUpdate::squares of the last step of all ranks. */
+/** Number of ranks whose cells are not those of their points, MPMFlowUpdate::squares of the last step, and the energy of spreading, of all ranks. */
 void FixMPMIncompressible::sum_last_step(bool valid, double *all) const
 {
-  const double mine[3] = {valid ? 0.0 : 1.0, unseen[0], unseen[1]};
-  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  const double mine[4] = {valid ? 0.0 : 1.0, unseen[0], unseen[1], energy_of_spread};
+  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
 }
 
 /** Velocities after forces and viscosity of a duration, which go to star, and the pressure. */
@@ -1107,7 +1110,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
 /* ----------------------------------------------------------------------
    scalar: number of iterations; vector: these, what is left of the divergence (relative), largest |div v|, volume that
    points fill, number of wet cells, kinetic energy, largest speed, force on the six walls, iterations of the implicit viscosity,
-   and force on the regions
+   force on the regions, and energy that spreading has added
 ------------------------------------------------------------------------- */
 
 double FixMPMIncompressible::compute_scalar()
@@ -1134,7 +1137,9 @@ double FixMPMIncompressible::compute_vector(int k)
       if (cells.is_point(i))
         mine += 0.5 * force->mvv2e * atom->rmass[i] * MathExtra::lensq3(atom->v[i]);
   if (k == 13) return last.of_stress;
-  if (k > 13)
+  if (k == size_vector - 1)
+    mine = energy_of_spread;
+  else if (k > 13)
     mine = last.regions[k - 14];
   else if (k > 6)
     mine = last.walls[(k - 7) / 2][(k - 7) % 2];
@@ -1148,13 +1153,13 @@ void FixMPMIncompressible::write_restart(FILE *fp)
   tagint tag;
   double mine = stable_dt(tag), limit;
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
-  double of_last[3];
+  double of_last[4];
   sum_last_step(true, of_last);
   if (comm->me) return;
-  std::vector<double> state = {dt_before, limit, of_last[1], of_last[2], 0.0};
+  std::vector<double> state = {dt_before, limit, of_last[1], of_last[2], of_last[3], 0.0};
   if (regions) {
     const auto motion = regions->motion();
-    state[4] = (double) motion.size();
+    state[5] = (double) motion.size();
     state.insert(state.end(), motion.begin(), motion.end());
   }
   const int size = state.size() * sizeof(double);
@@ -1164,12 +1169,13 @@ void FixMPMIncompressible::write_restart(FILE *fp)
 
 void FixMPMIncompressible::restart(char *buf)
 {
-  double state[5];
+  double state[6];
   memcpy(state, buf, sizeof(state));
   dt_before = state[0];
   limit_before = state[1];
   for (int k = 0; k < 2; k++) unseen[k] = comm->me ? 0.0 : state[2 + k];
-  std::vector<double> motion((std::size_t) state[4]);
+  energy_of_spread = comm->me ? 0.0 : state[4];
+  std::vector<double> motion((std::size_t) state[5]);
   memcpy(motion.data(), buf + sizeof(state), motion.size() * sizeof(double));
   if (regions) regions->set_motion(motion);
 }

@@ -139,6 +139,7 @@ class FixMPMIncompressible :
   mutable bool told_of_bodies = false;
   bool told_of_large = false;
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
+  double energy_of_spread = 0.0;    // that spreading has added to points so far, of this rank
   double gone = 0.0;                // most that points have moved since neighbor lists were made
 
   struct {

@@ -324,8 +324,17 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
 
       double shift[dim] = {};
       if (update.shift && !solid) std::copy_n(at_point[of_shift], dim, shift);
-      if (update.shift && !solid && points.gradient)
-        move_in_field<dim>(shift, v, points.gradient[i]);
+      if (update.shift && !solid) {
+        double before = 0.0, after = 0.0, work = 0.0;
+        for (int c = 0; c < dim; c++) before += v[c] * v[c];
+        if (points.gradient) move_in_field<dim>(shift, v, points.gradient[i]);
+        for (int c = 0; c < dim; c++) {
+          after += v[c] * v[c];
+          work += points.f[i][c] * shift[c];
+        }
+        update.of_shift[0] += 0.5 * points.mass[i] * (after - before);
+        update.of_shift[1] += work;
+      }
 
       // The midpoint rule in the field of velocities, where divergences are none. With all of the change once more,
       // velocities are those in the middle of the step where points have been at its start, and paths are straight

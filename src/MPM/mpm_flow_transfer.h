@@ -52,6 +52,8 @@ struct MPMFlowUpdate {
   /** Gets two sums over the points of this rank, with their masses: of the squares of what cells do not see of velocities, and of
    *  h^2 d2v_c/dx_c^2, of which the former is a small share in a smooth flow; null: not asked for. With gradients and flip alone. */
   double *squares = nullptr;
+  /** Two sums over the points of this rank are added to it, of what the shift does: the change of the kinetic energy, and the work of forces on the way. */
+  double *of_shift = nullptr;
 };
 
 /** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a

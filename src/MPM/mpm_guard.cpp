@@ -205,7 +205,7 @@ void MPMGuard::check_points() const
 /** Points that create_points made before the fix have areas in the place of the volumes of rings, the same at all radii. */
 void MPMGuard::check_rings() const
 {
-  constexpr double SAME = 1.0e-9, FAR = 2.0;
+  constexpr double SAME = 1.0e-9, FAR = 1.01;
   constexpr double NONE = std::numeric_limits<double>::max();
   double mine[4] = {-NONE, -NONE, -NONE, -NONE}, all[4];    // most, minus least: volume, radius
   for (int i = 0; i < atom->nlocal; i++) {
