@@ -378,6 +378,26 @@ SERIAL_TEST(Stabilize, Ledger)
   }
 }
 
+// the log tells what parts of a step take, which are parts of all of it
+SERIAL_TEST(Beam, TellsOfItsTime)
+{
+  for (const char *solver : {"static", "static solver multigrid", "euler solver multigrid"}) {
+    const auto lines = lines_that_say(
+        beam(4, "frame total", 100.0, solver, "neohookean 1e8 0.3") + "run 3\n", " ms a step (");
+    ASSERT_EQ(lines.size(), 1u);
+    double all = 0.0;
+    for (const char *part :
+         {" % forces", " % tangents", " % preconditioners", " % linear systems"}) {
+      const auto end = lines[0].find(part);
+      ASSERT_NE(end, std::string::npos) << lines[0];
+      const auto begin = lines[0].find_last_of(" (", end - 1) + 1;
+      all += std::stod(lines[0].substr(begin, end - begin));
+    }
+    EXPECT_GT(measured("sum of shares, percent", all), 10.0) << lines[0];
+    EXPECT_LE(all, 102.0) << lines[0];
+  }
+}
+
 // of Newton's method, with a load that bends the beam by half of its length in one step: the last corrections; and
 // one load step more does not change the answer of a material that remembers nothing
 SERIAL_TEST(Beam, ConvergesQuadratically)

@@ -491,14 +491,22 @@ void FixMPMImplicit::post_run()
   const double made = total[MADE] - at_start[MADE];
   const std::string levels = made > 0.0 ? fmt::format("; multigrid made {} times", (int64_t) made)
                                         : "";
+  static constexpr const char *PARTS_OF_STEP[MPMImplicit::NPARTS] = {
+      "forces", "tangents", "preconditioners", "linear systems"};
+  std::string parts;
+  for (int k = 0; k < MPMImplicit::NPARTS; k++)
+    parts +=
+        fmt::format("{}{:.0f} % {}", k ? ", " : "",
+                    100.0 * solver->seconds_of((MPMImplicit::Part) k) / std::max(seconds, 1.0e-300),
+                    PARTS_OF_STEP[k]);
   utils::logmesg(lmp,
                  "Fix mpm/implicit {}: {:.2f} Newton iterations in a step, {:.1f} of the linear "
                  "solver in each; "
-                 "last ratio of forces {:.3g}; {:.3g} ms a step{}{}\n",
+                 "last ratio of forces {:.3g}; {:.3g} ms a step ({}){}{}\n",
                  id, (total[NEWTON] - at_start[NEWTON]) / steps,
                  (total[LINEAR] - at_start[LINEAR]) /
                      std::max(1.0, total[NEWTON] - at_start[NEWTON]),
-                 last[RATIO], 1000.0 * seconds / steps, levels, unstable);
+                 last[RATIO], 1000.0 * seconds / steps, parts, levels, unstable);
 }
 
 double FixMPMImplicit::compute_scalar()

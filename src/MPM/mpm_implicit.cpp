@@ -620,6 +620,20 @@ void MPMImplicit::change_of_forces(const double *du, double *dforce)
   }
 }
 
+MPMImplicit::Clock::Clock(MPMImplicit &of, Part which) :
+    of(of), which(which), outer(of.clock), start(platform::walltime())
+{
+  of.clock = this;
+}
+
+MPMImplicit::Clock::~Clock()
+{
+  const double passed = platform::walltime() - start;
+  of.seconds[which] += passed - within;
+  if (outer) outer->within += passed;
+  of.clock = outer;
+}
+
 /** Those of the stress after the motion u, see MPMTangent::forces(). */
 bool MPMImplicit::find_forces(const double *u, double *force, double &carried)
 {
@@ -638,6 +652,7 @@ bool MPMImplicit::find_forces(const double *u, double *force, double &carried)
 /** Tangents at the motion u; sets their asymmetry. */
 double MPMImplicit::linearize(const double *u)
 {
+  const Clock timed(*this, TANGENTS);
   double stiffness = 0.0;
   now.asymmetry = 0.0;
   for (auto &member : members) {
@@ -689,6 +704,7 @@ const double *MPMImplicit::part_of(const std::vector<double> &u)
 bool MPMImplicit::find_residual(const std::vector<double> &u, double &size,
                                 const std::vector<double> *vector, double *along)
 {
+  const Clock timed(*this, FORCES);
   double carried;
   if (joint) joint->set_pressure();
   if (!find_forces(part_of(u), inner.data(), carried)) return false;
@@ -763,6 +779,7 @@ bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
 /** Blocks of the diagonal of the present tangents. */
 void MPMImplicit::find_blocks()
 {
+  const Clock timed(*this, PRECONDITIONERS);
   if (members.size() == 1) {
     tangent.diagonal(blocks);
   } else {
@@ -789,6 +806,7 @@ void MPMImplicit::find_blocks()
 /** The same, inverted. */
 void MPMImplicit::prepare_blocks()
 {
+  const Clock timed(*this, PRECONDITIONERS);
   for (int64_t n = 0; n < (int64_t) mass.size(); n++) invert(width, &blocks[width * width * n]);
   by_levels = false;
 }
@@ -815,6 +833,7 @@ static void round_projection(int n, double *S)
  *  the lighter one for held. */
 void MPMImplicit::prepare_levels()
 {
+  const Clock timed(*this, PRECONDITIONERS);
   by_levels = false;
   std::vector<double> projection, unit(nreals());
   find_blocks();
@@ -835,6 +854,7 @@ void MPMImplicit::prepare_levels()
 /** Levels that have begun get what points and masses have. */
 void MPMImplicit::fill_levels()
 {
+  const Clock timed(*this, PRECONDITIONERS);
   by_levels = true;
   std::vector<double> scaled;
   const auto add = [&](int n, const int64_t *nodes, int ngrad, const double *gradient,
@@ -874,6 +894,7 @@ SolveReport MPMImplicit::solve_general(const double *b, double *x, const SolveGo
  *  must take the same way. */
 SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal)
 {
+  const Clock timed(*this, SYSTEMS);
   const auto attempt = [&]() {
     std::fill_n(x, nreals(), 0.0);
     return now.asymmetry <= SYMMETRIC && (!rubs || holds_bounds()) ? solver.solve(*this, b, x, goal)

@@ -137,6 +137,9 @@ class MPMImplicit : private MPMNodeSystem {
   /** Points have moved: walls look at where they are. Collective. */
   void check_contacts();
   const Report &report() const { return now; }
+  /** Parts of a step whose time is taken: forces of trial motions, tangents, what preconditions, and linear systems; seconds of this rank since init(). */
+  enum Part { FORCES, TANGENTS, PRECONDITIONERS, SYSTEMS, NPARTS };
+  double seconds_of(Part which) const { return seconds[which]; }
   /** Steps to come begin without what those before have told: for those of a restart file, which do not know it. */
   void forget()
   {
@@ -172,6 +175,22 @@ class MPMImplicit : private MPMNodeSystem {
   std::unique_ptr<MPM_NS::SplineMultigrid> multigrid;    // null: blocks of nodes
   bool by_levels = false;                                // does it precondition now?
   Report now;
+  double seconds[NPARTS] = {};
+
+  /** Adds the time of its life to that of a part, which others within do not. */
+  class Clock {
+   public:
+    Clock(MPMImplicit &, Part);
+    ~Clock();
+
+   private:
+    MPMImplicit &of;
+    const Part which;
+    Clock *const outer;
+    const double start;
+    double within = 0.0;
+  };
+  Clock *clock = nullptr;    // that runs
 
   // of the present step
 

@@ -205,6 +205,7 @@ void MPMImplicit::Joint::move(double s)
 /** Levels of the pressure with the moduli of the first tangents of a step, which serve all of it. */
 void MPMImplicit::Joint::prepare()
 {
+  const Clock timed(motion, PRECONDITIONERS);
   if (prepared) return;
   prepared = true;
   std::vector<double> moduli, diagonal(p.size(), 0.0);
@@ -300,6 +301,7 @@ void MPMImplicit::Joint::products(int n, const double *const *a, const double *c
 
 SolveReport MPMImplicit::Joint::solve(const std::vector<double> &u, const SolveGoal &goal)
 {
+  const Clock timed(motion, SYSTEMS);
   const int64_t n = motion.nreals();
   at = &u;
   prepare();

@@ -167,7 +167,10 @@ bool MPMImplicit::make_factors(const std::vector<double> &u)
   memory.drop_factors();
   taken = 0.0;
   tangent.keep_deformations(true);
-  memory.stiffness = tangent.linearize(part_of(u), part * dt);
+  {
+    const Clock timed(*this, TANGENTS);
+    memory.stiffness = tangent.linearize(part_of(u), part * dt);
+  }
   tangent.keep_deformations(false);
   memory.asymmetry = tangent.asymmetry();
   if (memory.asymmetry > SYMMETRIC) return false;
@@ -252,6 +255,7 @@ void MPMImplicit::share_forces()
 /** The correction of the motion by the forces that are left, in change: factors of a tangent, and what pairs tell of it. */
 void MPMImplicit::find_correction()
 {
+  const Clock timed(*this, SYSTEMS);
   share_forces();
   corrected.resize(solved.size());
   memory.pairs.correct(left.data(), solved.data(), corrected.data());
