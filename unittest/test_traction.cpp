@@ -616,6 +616,54 @@ SERIAL_TEST(Traction, TellsOfLostPoints)
   }
 }
 
+// a table in time (fix mpm/record): values between its rows, before, and after, and their integrals, also where the time step changes and after a restart
+TEST(Record, TableInTime)
+{
+  const ScratchFile file("record.csv",
+                         "time, a, b\n# none\n0.5, 1, 10\n1.0 3 10\n\n1.5;-1;\t20\r\n");
+  const auto scene = plane("si", "f f", "0 8 0 8", 1, 0.3) + "fix grid all mpm 1.0\n" +
+      "region body block 1 7 1 7 INF INF\ncreate_points 1 region body ppc 2\n"
+      "fix m all mpm/material density 2.0 linear 1e5 0.3\n";
+  const auto record = "fix r all mpm/record " + file.name;
+  const std::string load = "variable t equal f_r[1]\nregion top plane 0 7 0 0 -1 0\n"
+                           "fix load all mpm/traction region top traction v_t 0 0\n";
+  Scene run(scene + record + "\n" + record.substr(0, 4) + "s" + record.substr(5) +
+            " hold no start -0.25\n" + load + "timestep 1e-6\nthermo_style custom step time f_r\n");
+  // time, values, and integrals, of the other one with hold no, which is 0.25 ahead
+  const double rows[][7] = {
+      {0.0, 1.0, 10.0, -0.5, -5.0, 0.0, 0.0},   {0.25, 1.0, 10.0, -0.25, -2.5, 1.0, 0.0},
+      {0.5, 1.0, 10.0, 0.0, 0.0, 2.0, 0.375},   {0.75, 2.0, 10.0, 0.375, 2.5, 3.0, 1.0},
+      {1.25, 1.0, 15.0, 1.5, 8.125, -1.0, 1.5}, {1.5, -1.0, 20.0, 1.5, 12.5, 0.0, 1.5},
+      {2.5, -1.0, 20.0, 0.5, 32.5, 0.0, 1.5}};
+  for (const auto &row : rows) {
+    run.commands(strprintf("reset_timestep 0 time %.17g\nrun 0 post no\n", row[0]));
+    for (int k = 0; k < 4; k++)
+      EXPECT_NEAR(run.fix("r")->compute_vector(k), row[1 + k], 1e-12) << row[0] << " " << k;
+    EXPECT_NEAR(run.fix("s")->compute_vector(0), row[5], 1e-12) << row[0];
+    EXPECT_NEAR(run.fix("s")->compute_vector(2), row[6], 1e-12) << row[0];
+    EXPECT_NEAR(run.fix_vector("load", 7)[0], 6.0 * row[1], 1e-9);
+    EXPECT_EQ(run.fix("r")->compute_scalar(), run.fix("r")->compute_vector(0));
+  }
+  run.commands("reset_timestep 0 time 0.7\ntimestep 0.001\nrun 10\ntimestep 0.002\nrun 20\n");
+  EXPECT_NEAR(run.fix("r")->compute_vector(0), 2.0, 1e-9);
+  EXPECT_NEAR(run.evaluate("f_r[3]"), 0.375, 1e-9);
+
+  for (const Mistake &m : std::vector<Mistake>{{"", "two rows"},
+                                               {"1 2\n", "two rows"},
+                                               {"a b\nc d\n", "line 2: 'c' is not a number"},
+                                               {"1 2\n2 x\n", "line 2: 'x' is not a number"},
+                                               {"1 2\n2 nan\n", "line 2: 'nan' is not finite"},
+                                               {"1 2\n2 3 4\n", "line 2: there are 3 numbers"},
+                                               {"1 2\n1 3\n", "line 2: times must become larger"},
+                                               {"1\n2\n", "at least one value"}}) {
+    const ScratchFile bad("bad.txt", m.lines);
+    EXPECT_THAT(error_of(scene + "fix r all mpm/record " + bad.name + "\n"), HasSubstr(m.message));
+  }
+  EXPECT_THAT(error_of(scene + "fix r all mpm/record none.txt\n"), HasSubstr("cannot open"));
+  EXPECT_THAT(error_of(scene + "fix r all mpm/record\n"), HasSubstr("name of a file"));
+  EXPECT_THAT(error_of(scene + record + " hold maybe\n"), HasSubstr("hold"));
+}
+
 // a plane in the middle of a body is no surface: its load would act on the section, as would that of a step on what goes on above it
 SERIAL_TEST(Plane, ThroughABodyIsTold)
 {

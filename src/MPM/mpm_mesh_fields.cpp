@@ -115,12 +115,20 @@ void MPMMeshFields::find_data(const Mesh &mesh, const Data &wanted,
   const MeshData *found = nullptr;
   std::string known;
   bool elsewhere = false;
+  int times = 0;
   for (const auto &data : mesh.data) {
     elsewhere = elsewhere || (data.name == wanted.name && data.at_nodes != at_nodes);
     if (data.at_nodes != at_nodes) continue;
     known += " " + data.name;
-    if (data.name == wanted.name) found = &data;
+    if (data.name != wanted.name) continue;
+    found = &data;
+    times++;
   }
+  if (times > 1)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Create_points: the file has data {} for {} {} times, as of several steps: save "
+               "one of them",
+               wanted.name, at_nodes ? "nodes" : "elements", times);
   if (!found)
     error->all(
         FLERR, Error::NOLASTLINE, "Create_points: the file has no data {} for {}; it has{}{}",
@@ -150,7 +158,7 @@ void MPMMeshFields::find_data(const Mesh &mesh, const Data &wanted,
     for (std::size_t k = c; k < found->values.size(); k += width) {
       const double value = wanted.factor * found->values[k];
       const std::string wrong = std::isfinite(value) ? columns.wrong(column, value)
-                                                     : "is not finite";
+                                                     : "is not finite, or missing";
       if (!wrong.empty())
         error->all(FLERR, Error::NOLASTLINE, "Create_points: data {} have {:.8g} for {}, which {}",
                    wanted.name, value, wanted.quantity, wrong);

@@ -36,6 +36,7 @@
 #include "fix_mpm_mixture.h"
 #include "fix_mpm_pml.h"
 #include "fix_mpm_pore.h"
+#include "fix_mpm_record.h"
 #include "fix_mpm_relax.h"
 #include "fix_mpm_rigid.h"
 #include "fix_mpm_surface.h"
@@ -90,6 +91,7 @@ std::map<std::string, std::string> files()
   add("fix_mpm_traction", MPMTractionOptions().declare(3));
   add("fix_mpm_emit", MPMEmitOptions().declare(3));
   add("fix_mpm_absorb", MPMAbsorbOptions().declare());
+  add("fix_mpm_record", MPMRecordOptions().declare());
   add("mpm_point", MPMPointOptions().declare());
   add("pair_mpm_penalty", MPMPenaltyOptions().declare());
   add("pair_mpm_penalty_coeff", MPMPenaltyCoeff().declare());

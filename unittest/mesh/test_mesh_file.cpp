@@ -145,6 +145,59 @@ TEST(MeshFile, DataBecomeFields)
   }
 }
 
+// $ElementData and $NodeData of Gmsh, in all its formats
+TEST(MeshFile, DataOfGmsh)
+{
+  const auto section = [](const std::string &kind, const std::string &name, int width,
+                          const std::vector<int> &labels, MeshOutput::Kind output) {
+    MeshOutput o{output,
+                 strprintf("$%s\n1\n\"%s\"\n1\n0.5\n3\n7\n%d\n%d\n", kind.c_str(), name.c_str(),
+                           width, (int) labels.size())};
+    for (const int label : labels) {
+      o.i(label);
+      for (int k = 0; k < width; k++) o.put((label + 0.25 * k) * (k % 2 ? -1.0 : 1.0));
+    }
+    return o.all + "\n$End" + kind + "\n";
+  };
+  for (const bool old : {true, false})
+    for (const auto kind : {MeshOutput::TEXT, MeshOutput::LITTLE, MeshOutput::BIG}) {
+      // an order of its own, and numbers of elements that are left out
+      const std::string speed = section("ElementData", "the speed", 3, {2, 77, 1}, kind),
+                        number =
+                            section("NodeData", "number", 1, {9, 1, 2, 3, 4, 5, 6, 7, 8}, kind),
+                        part = section("ElementData", "part", 1, {2}, kind);
+      const ScratchFile file("data.mesh", gmsh(old, kind) + number + speed + part);
+      Scene run(space_2 + make(file.name, "elements", "data 'the speed' velocity"));
+      const auto points = run.gather();
+      for (int p = 0; p < 2; p++) {
+        EXPECT_EQ(points[p].v[0], p + 1.0);
+        EXPECT_EQ(points[p].v[1], -p - 1.25);
+        EXPECT_EQ(points[p].v[2], p + 1.5);
+      }
+      Scene at_nodes(space_2 + "fix p all property/atom d_n\n" +
+                     make(file.name, "mesh", "data number d_n factor number 2") +
+                     "\nvariable w atom id*d_n\ncompute s all reduce sum v_w\n"
+                     "thermo_style custom step c_s\nrun 0\n");
+      EXPECT_EQ(at_nodes.evaluate("c_s"), 2.0 * 285.0);
+      const std::string scene = space_2 + "fix p all property/atom d_n\n";
+      expect_error(scene + make(file.name, "elements", "data part d_n"), "missing");
+      const ScratchFile twice("twice.mesh", gmsh(old, kind) + part + number + part);
+      expect_error(scene + make(twice.name, "elements", "data part d_n"), "of several steps");
+      Scene not_used(space_2 + make(twice.name, "elements"));
+      EXPECT_EQ(not_used.lmp->atom->natoms, 2);
+    }
+  const std::string mesh = gmsh(true, MeshOutput::TEXT);
+  for (const Mistake &m : std::vector<Mistake>{
+           {"$NodeData\n1\n\"n\"\n0\n2\n0\n1\n", "three integers"},
+           {"$NodeData\n1\n\"n\"\n0\n3\n0\n10\n9\n", "out of range"},
+           {"$NodeData\n1\n\"n\"\n0\n3\n0\n1\n2000000000\n1 2.0\n", "is not an integer"},
+           {"$NodeData\n1\n\"n\"\n0\n3\n0\n1\n2\n1 2.0\n2 x\n$EndNodeData\n", "is not a number"},
+           {"$ElementData\n1\n\"n\"\n0\n3\n0\n1\n1\n1 2.0\n", "ends too early"}})
+    EXPECT_THAT(
+        failure(mesh + m.lines + (m.message == "is not an integer" ? "$EndNodeData\n" : "")),
+        HasSubstr(m.message));
+}
+
 // a cell of a mesh has what a row of a table has, and all ranks know it
 TEST(MeshFile, DataAreThoseOfTables)
 {

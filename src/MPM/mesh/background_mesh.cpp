@@ -103,6 +103,55 @@ void jacobian(const BackgroundMesh &mesh, const BackgroundMesh::Cell &cell, cons
       for (int b = 0; b < mesh.dim; b++) J[3 * a + b] += mesh.nodes[cell.node[k]][a] * dN[k][b];
 }
 
+/** The map of the natural coordinates of a square or cube to places, and whether it is linear. */
+void find_map(const BackgroundMesh &mesh, BackgroundMesh::Cell &cell)
+{
+  double bent = 0.0;
+  for (int a = 0; a < 3; a++) {
+    for (int m = 0; m < 8; m++) {
+      double sum = 0.0;
+      for (int k = 0; k < cell.nnode; k++) {
+        const int *const c = CORNER[k];
+        const int terms[8] = {1,           c[0],        c[1],        c[2],
+                              c[0] * c[1], c[1] * c[2], c[2] * c[0], c[0] * c[1] * c[2]};
+        // in the plane, all corners have the same third coordinate, and terms with it are others again
+        const bool there = mesh.dim == 3 || m < 3 || m == 4;
+        sum += there ? terms[m] * mesh.nodes[cell.node[k]][a] : 0.0;
+      }
+      cell.map[m][a] = sum / cell.nnode;
+      if (m > 3) bent = std::max(bent, std::fabs(cell.map[m][a]));
+    }
+  }
+  double size = 0.0;
+  for (int a = 0; a < 3; a++) size = std::max(size, cell.high[a] - cell.low[a]);
+  cell.parallel = bent < 1.0e-15 * size;
+}
+
+/** r = x less the place of xi, and J_ab = dx_a/dxi_b. */
+void map_back(const BackgroundMesh::Cell &cell, int dim, const double *x, const double *xi,
+              double *r, double *J)
+{
+  const auto &m = cell.map;
+  if (dim == 2) {
+    for (int a = 0; a < 2; a++) {
+      r[a] = x[a] - (m[0][a] + m[1][a] * xi[0] + (m[2][a] + m[4][a] * xi[0]) * xi[1]);
+      J[3 * a] = m[1][a] + m[4][a] * xi[1];
+      J[3 * a + 1] = m[2][a] + m[4][a] * xi[0];
+      J[3 * a + 2] = J[6 + a] = 0.0;
+    }
+    J[8] = 1.0;
+    return;
+  }
+  for (int a = 0; a < 3; a++) {
+    // those that go on along zeta
+    const double along = m[3][a] + m[5][a] * xi[1] + (m[6][a] + m[7][a] * xi[1]) * xi[0];
+    r[a] = x[a] - (m[0][a] + m[1][a] * xi[0] + (m[2][a] + m[4][a] * xi[0]) * xi[1] + along * xi[2]);
+    J[3 * a] = m[1][a] + m[4][a] * xi[1] + (m[6][a] + m[7][a] * xi[1]) * xi[2];
+    J[3 * a + 1] = m[2][a] + m[4][a] * xi[0] + (m[5][a] + m[7][a] * xi[0]) * xi[2];
+    J[3 * a + 2] = along;
+  }
+}
+
 constexpr double SIMPLEX[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 std::array<int, 4> key_of(const int *node, const int *local, int n)
@@ -187,6 +236,7 @@ void BackgroundMesh::add_cells(const Mesh &mesh, const std::string &part)
       largest = std::max(largest, std::sqrt(dot(normal, normal)));
     }
     cell.height = (simplex ? dim : 1.0) * volume / largest;
+    if (!simplex) find_map(*this, cell);
     cells.push_back(cell);
   }
   if (cells.empty())
@@ -290,17 +340,11 @@ double BackgroundMesh::natural(const Cell &cell, const double *x, double *xi, in
     return std::max(0.0, -lowest);
   }
 
-  // Newton's method; what is far away needs the direction only
+  // Newton's method, whose error is squared in each step; what is far away needs the direction only
 
-  double N[8], dN[8][3];
   for (int d = 0; d < 3; d++) xi[d] = 0.0;
   for (int step = 0; step < 30; step++) {
-    functions(dim, xi, N, dN);
-    for (int d = 0; d < dim; d++) {
-      r[d] = x[d];
-      for (int k = 0; k < cell.nnode; k++) r[d] -= N[k] * nodes[cell.node[k]][d];
-    }
-    jacobian(*this, cell, dN, J);
+    map_back(cell, dim, x, xi, r, J);
     solve(J, r, y);
     double most = 0.0;
     for (int d = 0; d < dim; d++) {
@@ -308,7 +352,7 @@ double BackgroundMesh::natural(const Cell &cell, const double *x, double *xi, in
       xi[d] = std::clamp(xi[d] + y[d], -2.0, 2.0);
       most = std::max(most, std::fabs(xi[d] - before));
     }
-    if (most < 1.0e-14) break;
+    if (cell.parallel || most < 1.0e-8) break;
   }
   double farthest = 0.0;
   for (int d = 0; d < dim; d++)
@@ -322,7 +366,7 @@ double BackgroundMesh::natural(const Cell &cell, const double *x, double *xi, in
 /** Shape functions and gradients at a place that is in the cell. */
 void BackgroundMesh::evaluate(const Cell &cell, const double *xi, Place &place) const
 {
-  double dN[8][3], J[9], y[3];
+  double dN[8][3], J[9];
   const bool simplex = is_simplex(cell, dim);
   if (simplex) {
     place.N[0] = 1.0;
@@ -330,19 +374,20 @@ void BackgroundMesh::evaluate(const Cell &cell, const double *xi, Place &place) 
       place.N[k] = xi[k - 1];
       place.N[0] -= xi[k - 1];
     }
+    jacobian(*this, cell, SIMPLEX, J);
   } else {
+    const double none[3] = {0.0, 0.0, 0.0};
+    double r[3];
     functions(dim, xi, place.N, dN);
+    map_back(cell, dim, none, xi, r, J);
   }
-  jacobian(*this, cell, simplex ? SIMPLEX : dN, J);
-  double transposed[9];
-  for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) transposed[3 * a + b] = J[3 * b + a];
-  for (int k = 0; k < cell.nnode; k++) {
-    double d[3] = {0.0, 0.0, 0.0};
-    for (int a = 0; a < dim; a++) d[a] = simplex ? SIMPLEX[k][a] : dN[k][a];
-    solve(transposed, d, y);
-    for (int a = 0; a < 3; a++) place.g[k][a] = a < dim ? y[a] : 0.0;
-  }
+  const double C[9] = MPM_COFACTORS(J), inv = 1.0 / dot(J, C);
+  const double(*const d)[3] = simplex ? SIMPLEX : dN;
+  for (int k = 0; k < cell.nnode; k++)
+    for (int a = 0; a < 3; a++)
+      place.g[k][a] = a < dim
+          ? inv * (C[3 * a] * d[k][0] + C[3 * a + 1] * d[k][1] + C[3 * a + 2] * d[k][2])
+          : 0.0;
 }
 
 /* ---------------------------------------------------------------------- */

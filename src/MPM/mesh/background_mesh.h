@@ -29,6 +29,9 @@ class BackgroundMesh {
     double
         height;    ///< volume over the area of its largest face (of a simplex: times the dimension)
     double low[3], high[3];
+    /** Of a square or cube, whose places are the sum of these times 1, xi, eta, zeta, xi eta, eta zeta, zeta xi, xi eta zeta. */
+    double map[8][3];
+    bool parallel;    ///< are sides that face each other parallel: is that map linear?
   };
   /** A side of a cell with no other cell behind it; nodes go around counterclockwise as seen from outside, in the
    *  plane with the mesh on the left. */

@@ -56,16 +56,34 @@ class Words {
 
   double real()
   {
-    if (binary) {
-      const double value = bytes<double>();
-      if (!std::isfinite(value)) fail("a number is not finite");
-      return value;
-    }
+    const double value = any_real();
+    if (!std::isfinite(value))
+      fail(binary ? "a number is not finite" : "'" + word + "' is not a number");
+    return value;
+  }
+
+  /** Also one that is not finite, which matters where it is used only. */
+  double any_real()
+  {
+    if (binary) return bytes<double>();
     char *end;
     need();
     const double value = strtod(word.c_str(), &end);
-    if (*end || !std::isfinite(value)) fail("'" + word + "' is not a number");
+    if (*end) fail("'" + word + "' is not a number");
     return value;
+  }
+
+  /** A line of its own, without the double quotes around it. */
+  std::string name_in_quotes()
+  {
+    std::string rest;
+    need();
+    rest_of_line(rest);
+    rest = word + rest;
+    rest.erase(rest.find_last_not_of(" \t\r") + 1);
+    if (rest.size() > 1 && rest.front() == '"' && rest.back() == '"')
+      return rest.substr(1, rest.size() - 2);
+    return rest;
   }
 
   /** Of a binary file, an int. */
@@ -154,6 +172,13 @@ struct Reader {
   std::unordered_map<int64_t, int> place;          // of the nodes, by number
   std::map<std::pair<int, int>, int> of_entity;    // 4.1: (dimension, entity) -> physical group
 
+  /** Data by the numbers of nodes or elements, which may come after them in the file. */
+  struct Data {
+    MeshData data;    // in the order of labels
+    std::vector<int64_t> labels;
+  };
+  std::vector<Data> data;
+
   void physical_names()
   {
     for (int64_t n = in.count(); n > 0; n--) {
@@ -219,6 +244,52 @@ struct Reader {
         if (parametric) in.skip_reals(dim);
         add_node(label, x);
       }
+    }
+  }
+
+  /** A name, real numbers (the time), and integers: step, components, and for how many. */
+  void numbers(bool at_nodes)
+  {
+    Data one;
+    one.data.at_nodes = at_nodes;
+    for (int64_t n = in.count(), k = 0; k < n; k++) {
+      const auto name = in.name_in_quotes();
+      if (k == 0) one.data.name = name;
+    }
+    for (int64_t n = in.count(); n > 0; n--) in.any_real();
+    const int64_t nintegers = in.count();
+    if (nintegers < 3) in.fail("data must have three integers before their values, or more");
+    in.integer();
+    one.data.width = (int) in.integer(1, 9);
+    int64_t n = in.count();
+    in.skip_integers(nintegers - 3);
+    const InBytes bytes(in, binary);
+    for (; n > 0; n--) {
+      one.labels.push_back(in.integer());    // also in binary files of format 4.1
+      for (int k = 0; k < one.data.width; k++) one.data.values.push_back(in.any_real());
+    }
+    data.push_back(std::move(one));
+  }
+
+  /** What is missing for a node or an element is not a number. Those of points, which are left out, are not looked for. */
+  void sort_data()
+  {
+    std::unordered_map<int64_t, int> element_place;
+    for (std::size_t k = 0; k < mesh.elements.size() && !data.empty(); k++)
+      element_place.emplace(mesh.elements[k].label, (int) k);
+    for (auto &one : data) {
+      const auto &places = one.data.at_nodes ? place : element_place;
+      const std::size_t width = one.data.width,
+                        n = one.data.at_nodes ? mesh.nodes.size() : mesh.elements.size();
+      std::vector<double> values(n * width, std::nan(""));
+      for (std::size_t k = 0; k < one.labels.size(); k++) {
+        const auto found = places.find(one.labels[k]);
+        if (found == places.end()) continue;
+        std::copy_n(one.data.values.begin() + (std::ptrdiff_t)(k * width), width,
+                    values.begin() + (std::ptrdiff_t)(found->second * width));
+      }
+      one.data.values.swap(values);
+      mesh.data.push_back(std::move(one.data));
     }
   }
 
@@ -331,7 +402,7 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
     if (one != 1 && !in.swapped)
       in.fail("the head of a binary file has no 1 for the order of bytes");
   }
-  Reader reader = {in, mesh, binary, {}, {}};
+  Reader reader = {in, mesh, binary, {}, {}, {}};
   in.expect("$EndMeshFormat");
 
   bool have_nodes = false, have_elements = false;
@@ -349,7 +420,9 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
       if (!have_nodes) in.fail("elements come before nodes");
       old ? reader.elements_2() : reader.elements_4();
       have_elements = true;
-    } else {    // comments, data, partitions, ...
+    } else if (section == "NodeData" || section == "ElementData")
+      reader.numbers(section == "NodeData");
+    else {    // comments, partitions, ...
       while (word != "$End" + section)
         if (!in.next(word)) in.fail("section $" + section + " has no end");
       continue;
@@ -357,6 +430,7 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
     in.expect("$End" + section);
   }
   if (!have_nodes || !have_elements) in.fail("the file has no nodes or no elements");
+  reader.sort_data();
   try {
     mesh.check_repeated("; Gmsh's format 2.2 repeats an element that is in two physical groups");
   } catch (const std::runtime_error &e) {
