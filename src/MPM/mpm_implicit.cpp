@@ -38,7 +38,8 @@ static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are no
 static constexpr int TURN = 1000;                   // iterations in which GMRES must gain something
 static constexpr int IN_A_PART = 15;                // Newton iterations, of a step that has failed
 static constexpr int DO_WELL = 15;                  // iterations with levels of other tangents
-static constexpr double SLIP = 1.0e-5;              // of friction, in node spacings
+static constexpr int TOO_OLD = 300;    // of these, after which levels of the present ones are tried
+static constexpr double SLIP = 1.0e-5;               // of friction, in node spacings
 static constexpr double SOFT = 0.1, HARDER = 0.1;    // the same at first, and its change
 static constexpr double NEARLY = 1.0e-3;             // of all forces, for that change
 static constexpr double MAY_GROW =
@@ -51,6 +52,8 @@ static constexpr double LOST = 1.0e12;    // times the first residual
 static constexpr double REACHED = 1.0e-9;    // in points
 // unknowns of a system that is factorized as a whole, which is faster than levels, by dimension
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};
+// the same with averages of the pressure, for which levels need many iterations
+static constexpr int WHOLE_WITH_AVERAGES[] = {0, 0, 60000, 15000};
 
 /* ---------------------------------------------------------------------- */
 
@@ -86,7 +89,8 @@ MPMImplicit::MPMImplicit(LAMMPS *lmp, const std::vector<MPMField *> &fields,
 {
   if (options.preconditioner == MPMImplicitOptions::MULTIGRID)
     multigrid = std::make_unique<SplineMultigrid>(
-        field.grid, ranks, width, stencil_order(field.options.shape), 0, WHOLE[width]);
+        field.grid, ranks, width, stencil_order(field.options.shape), 0,
+        (averages() ? WHOLE_WITH_AVERAGES : WHOLE)[width]);
 }
 
 MPMImplicit::~MPMImplicit() = default;
@@ -895,10 +899,13 @@ SolveReport MPMImplicit::solve_general(const double *b, double *x, const SolveGo
 SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal)
 {
   const Clock timed(*this, SYSTEMS);
-  const auto attempt = [&]() {
+  const auto attempt = [&](int most) {
+    auto within = goal;
+    within.most_iterations = std::min(most, goal.most_iterations);
     std::fill_n(x, nreals(), 0.0);
-    return now.asymmetry <= SYMMETRIC && (!rubs || holds_bounds()) ? solver.solve(*this, b, x, goal)
-                                                                   : solve_general(b, x, goal);
+    return now.asymmetry <= SYMMETRIC && (!rubs || holds_bounds()) && !(multigrid && averages())
+        ? solver.solve(*this, b, x, within)
+        : solve_general(b, x, within);
   };
   for (int again = 0; multigrid && again < 2; again++) {
     const bool made = !by_levels;
@@ -907,7 +914,7 @@ SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal
       now.made++;
       if (!multigrid->usable()) break;
     }
-    const auto solved = attempt();
+    const auto solved = attempt(made ? goal.most_iterations : TOO_OLD);
     if (solved.converged()) {
       if (solved.iterations > DO_WELL) by_levels = false;
       return solved;
@@ -919,7 +926,7 @@ SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal
   by_levels = false;
   find_blocks();
   prepare_blocks();
-  return attempt();
+  return attempt(goal.most_iterations);
 }
 
 MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterations)

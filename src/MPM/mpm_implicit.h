@@ -174,6 +174,8 @@ class MPMImplicit : private MPMNodeSystem {
   MPMLatticeRanks ranks;
   std::unique_ptr<MPM_NS::SplineMultigrid> multigrid;    // null: blocks of nodes
   bool by_levels = false;                                // does it precondition now?
+  /** Are pressures those around each point? The system is not symmetric then, by what moduli of these points differ. */
+  bool averages() const { return field.options.averages_stress(); }
   Report now;
   double seconds[NPARTS] = {};
 

@@ -35,6 +35,7 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -879,8 +880,83 @@ void MPMTangent::each_point(const UsePoint &use) const
       }
       for (int k = 0; k < nH; k++)
         for (int l = 0; l < nH; l++) stiffness[size * l + k] = V * K[nH * k + l];
+      if (averages && run.material)    // its pressure is that of each_average()
+        for (int k = 0; k < nH; k++)
+          for (int l = 0; l < nH; l++)
+            stiffness[size * l + k] -= V * volume_gradients[nH * i + l] * mean_tangents[nH * i + k];
       use((int) nodes.size(), nodes.data(), ngrad, gradients.data(), stiffness.data());
     }
+  if (averages) each_average(use);
+}
+
+/** A mean pressure p_I = sum_p N_Ip v_p dp_p/v_I works with the change of volume sum_p N_Ip V_p J G_p . H_p around its node. */
+void MPMTangent::each_average(const UsePoint &use) const
+{
+  struct Mean {
+    double volume = 0.0, weight = 0.0, modulus = 0.0;
+    std::vector<int64_t> nodes;
+    std::vector<double> changes;    // [nodes][dim] of the volume by their motion
+  };
+  const MPMStencil stencil(field);
+  const double scale = field.step_data().stress_scale, moment = mls_moment();
+  std::vector<MPMStencil::Node> reached;
+  std::vector<double> change;
+  std::vector<double> one(nL * nL, 0.0);
+  for (const auto *material : field.materials) {
+    std::unordered_map<int64_t, Mean> at;
+    std::vector<int64_t> order;
+    for (const auto &run : field.map->runs) {
+      if (run.material != material) continue;
+      for (bigint i = run.first; i < run.last; i++) {
+        const double *const g = &volume_gradients[nH * i], *const m = &mean_tangents[nH * i];
+        const double V = scale * atom->vfrac[i],
+                     around = nH > nL
+            ? 1.0 / field.frame->radius((int) i, field.frame->places()[i][0])
+            : 0.0;
+        double gm = 0.0, gg = 0.0;
+        for (int k = 0; k < nH; k++) {
+          gm += g[k] * m[k];
+          gg += g[k] * g[k];
+        }
+        collect(stencil, field, run.slot, (int) i, reached);
+        change.assign(reached.size() * dim, 0.0);
+        for (std::size_t j = 0; j < reached.size(); j++) {
+          const auto &node = reached[j];
+          for (int l = 0; l < dim; l++) {
+            const double gradient = mls ? -moment * node.weight * node.r[l] : node.gradient[l];
+            for (int a = 0; a < dim; a++) change[dim * j + a] += V * g[dim * l + a] * gradient;
+          }
+          if (nH > nL) change[dim * j] += V * g[nL] * around * node.weight;
+        }
+        for (const auto &node : reached) {
+          if (!(node.weight > 0.0)) continue;
+          if (!at.count(node.number)) order.push_back(node.number);
+          auto &mean = at[node.number];
+          mean.volume += node.weight * volumes[i];
+          mean.weight += node.weight * V;
+          mean.modulus += node.weight * volumes[i] * gm / gg;
+          for (std::size_t j = 0; j < reached.size(); j++) {
+            const auto found = std::find(mean.nodes.begin(), mean.nodes.end(), reached[j].number);
+            const std::size_t k = found - mean.nodes.begin();
+            if (found == mean.nodes.end()) {
+              mean.nodes.push_back(reached[j].number);
+              mean.changes.resize(mean.changes.size() + dim, 0.0);
+            }
+            for (int a = 0; a < dim; a++)
+              mean.changes[dim * k + a] += node.weight * change[dim * j + a];
+          }
+        }
+      }
+    }
+    for (const int64_t node : order) {
+      const auto &mean = at[node];
+      for (int l = 0; l < dim; l++)
+        for (int a = 0; a < dim; a++)
+          one[(dim + 1) * l * nL + (dim + 1) * a] =
+              std::max(0.0, mean.modulus / (mean.volume * mean.weight));
+      use((int) mean.nodes.size(), mean.nodes.data(), dim, mean.changes.data(), one.data());
+    }
+  }
 }
 
 /** Adds to the block [DIM][DIM] of a node minus its force by its own motion: g: gradient of its function at a point with the tangents K;

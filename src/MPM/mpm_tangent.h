@@ -152,6 +152,7 @@ class MPMTangent : protected Pointers {
   void differentiate_added(int first, int n, const double *H);
   void average(const MPMNodeScalar::TakeValues &take);
   void average_changes();
+  void each_average(const UsePoint &) const;
 
   void deform(int first, int n, const double *H);
   void find_piola(int first, int n, const double *H, const double *tau, double *P) const;
