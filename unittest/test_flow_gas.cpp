@@ -166,6 +166,22 @@ SERIAL_TEST(Slug, Units)
   }
 }
 
+// a region feels the gas, wherever in a cell it begins, and next to water the water
+SERIAL_TEST(Slug, OnRegion)
+{
+  for (const double place : {0.9, 0.92, 0.93, 0.72}) {
+    Scene run(slug(2, 4, 0.0) + strprintf("region end block %g INF INF INF INF INF\n", place) +
+              "fix w all mpm/incompressible 0.05 1 gas 10 1.4 outside 4 region end\n"
+              "timestep 1e-6\nrun 2\n");
+    auto *fix = run.fix("w");
+    EXPECT_NEAR(measured(strprintf("at %g: force over pressure times area", place),
+                         fix->compute_vector(14) / 1.2),
+                1.0, 1e-6);
+    EXPECT_NEAR(fix->compute_vector(15), 0.0, 1e-9);
+    if (place > 0.8) EXPECT_NEAR(gas(run, VOLUME), 0.2 * (0.3 + place - 0.7), 1e-3);
+  }
+}
+
 // omega^2 = 2 gamma p / (rho a^2 ln(b/a)) in 2d, 3 gamma p / (rho a^2 (1 - a/b)) in 3d
 SERIAL_TEST(Bubble, InAShell)
 {
@@ -230,6 +246,29 @@ SERIAL_TEST(Tube, AtRest)
   EXPECT_LT(error[1], 0.7 * error[0]);
 }
 
+// at rest: the head between the levels in and around a bell, and its lift, that of gas and walls in the water
+SERIAL_TEST(Bell, Lift)
+{
+  Scene run(
+      plane("si", "f f", "0 1 0 1", 1, 0.01) +
+      "region l block 0.3 0.36 0.2 0.66 INF INF\nregion r block 0.64 0.7 0.2 0.66 INF INF\n"
+      "region t block 0.3 0.7 0.6 0.66 INF INF\nregion bell union 3 l r t\n"
+      "region in block 0.3 0.7 0.2 0.66 INF INF side out\n"
+      "region below block 0.36 0.64 INF 0.3 INF INF\nregion low block INF INF INF 0.8 INF INF\n"
+      "region out intersect 2 in low\nregion water union 2 out below\n"
+      "create_points 1 region water spacing 0.01\n"
+      "fix w all mpm/incompressible 0.02 1000 gas 1e4 1.4 open yhi region bell\n"
+      "fix g all gravity 9.81 vector 0 -1 0\nfix drag all viscous 0.5\n"
+      "fix dt all mpm/dt 0.5 max 0.005\nrun 400\n");
+  const double V = gas(run, VOLUME), z = 0.6 - V / 0.28, level = 0.8 - 0.28 * (z - 0.3);
+  EXPECT_NEAR(
+      measured("pressure over that of the head", gas(run, HIGHEST) / (1e4 + 9810.0 * (level - z))),
+      1.0, 0.01);
+  EXPECT_NEAR(measured("lift over the weight of water",
+                       run.fix("w")->compute_vector(15) / (9810.0 * (0.072 + V))),
+              1.0, 0.04);
+}
+
 // pockets come and go, and the gas of a closed box stays what it was
 SERIAL_TEST(Splash, KeepsGas)
 {
@@ -278,11 +317,13 @@ TEST(Gas, RanksAndRestart)
     const auto scene = box(dim, "lj", dim == 3 ? "f f p" : "f f",
                            dim == 3 ? "0 1 0 1 0 0.5" : "0 1 0 1", 1, 0.02) +
         "region air sphere 0.5 0.4 0.25 0.2 side out\nregion low block INF INF INF 0.8 INF INF\n"
-        "region d intersect 2 air low\n" +
+        "region post block 0.87 INF INF INF INF INF\nregion free block 0.87 INF INF INF INF INF "
+        "side out\n"
+        "region d intersect 3 air low free\n" +
         strprintf("create_points 1 region d spacing %g\n", 0.5 * h) + "velocity all set 1 0 0\n";
     const auto fixes =
         strprintf("fix w all mpm/incompressible %g 1 tolerance 1e-12 gas 20 1.4 outside 10 open "
-                  "yhi\n",
+                  "yhi region post\n",
                   h) +
         "fix g all gravity 4 vector 0 -1 0\nfix dt all mpm/dt 0.3 every 1 max 0.01\n"
         "timestep 0.002\n";
@@ -290,7 +331,8 @@ TEST(Gas, RanksAndRestart)
     EXPECT_LT(measured("difference", run.difference()), 1e-9);
     EXPECT_EQ(gas(run.serial, COUNT), gas(run.parallel, COUNT));
     EXPECT_NEAR(gas(run.serial, HIGHEST), gas(run.parallel, HIGHEST), 1e-8);
-    Continued again(scene + fixes, 9, "neighbor 0.02 bin\n" + fixes, 14);
+    Continued again(scene + fixes, 9,
+                    "neighbor 0.02 bin\nregion post block 0.87 INF INF INF INF INF\n" + fixes, 14);
     EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
     EXPECT_EQ(gas(again.whole, HIGHEST), gas(again.again, HIGHEST));
     EXPECT_EQ(gas(again.whole, VOLUME), gas(again.again, VOLUME));

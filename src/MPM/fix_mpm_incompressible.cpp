@@ -584,7 +584,15 @@ void FixMPMIncompressible::check_gas() const
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: gas cannot be used with {}: remove these, or the keyword gas", style, id,
                other);
-  if (regions) gas->pockets.find_solid(regions.get());
+  if (!regions) return;
+  gas->pockets.find_solid(regions.get());
+  if (regions->n() > 1 && comm->me == 0 && !told_of_walls)
+    error->warning(
+        FLERR,
+        "Fix {} {}: forces on its regions are those of the water alone, without the gas, "
+        "as there are several: use a union of them as one region if you need these forces",
+        style, id);
+  told_of_walls = true;
 }
 
 double FixMPMIncompressible::value_of_gas(int k) const
@@ -1016,6 +1024,7 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
           }
         },
         1.0 / (1.0 + reflect), last.regions.data());
+    if (gas && regions->n() == 1) gas_rows->add_to_region(last.regions.data());
     for (double &f : last.regions) f /= pressure_to_psi * force->nktv2p;
   }
   pressure->extend_into_air(pressures, surface_psi());

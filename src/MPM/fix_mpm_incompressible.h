@@ -146,7 +146,7 @@ class FixMPMIncompressible :
   mutable double limit_before =
       0.0;                      // last stable_dt() with forces, on restart of all ranks; 0: none
   bool forces_known = false;    // they are cleared at the start of a run
-  mutable bool told_of_bodies = false;
+  mutable bool told_of_bodies = false, told_of_walls = false;
   bool told_of_large = false;
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
   double energy_of_spread = 0.0;    // that spreading has added to points so far, of this rank

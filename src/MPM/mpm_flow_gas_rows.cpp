@@ -11,6 +11,8 @@
 #include "mpm_flow_pressure.h"
 #include "mpm_node_system.h"
 
+#include "comm.h"
+
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -114,8 +116,23 @@ void MPMFlowGasRows::end(const double *x)
 double MPMFlowGasRows::at_wall(int axis, int side) const
 {
   double sum = 0.0;
-  for (int k = 0; k < gas.n(); k++) sum += (double) gas.pockets.cells_at(k, axis, side) * psi[k];
+  for (int k = 0; k < gas.n(); k++) sum += gas.pockets.cells_at(k, axis, side) * psi[k];
   return sum * std::pow(cells.lattice.h, cells.lattice.dim - 1);
+}
+
+/** All of the surface of a pocket is zero as a vector: a wall has what water and the box have not. */
+void MPMFlowGasRows::add_to_region(double *force) const
+{
+  const int dim = cells.lattice.dim;
+  const double area = std::pow(cells.lattice.h, dim - 1);
+  water.visit_surface([&](const MPMFlowLattice::Cell &cell, int side, double) {
+    const int pocket = gas.pockets.of(cell.near[side]);
+    const int64_t of = side % 2 ? cell.near[side] : cell.number;
+    if (pocket >= 0)
+      force[side / 2] += (side % 2 ? area : -area) * water.open(of, side / 2) * psi[pocket];
+  });
+  if (lmp->comm->me == 0)
+    for (int d = 0; d < dim; d++) force[d] += at_wall(d, 0) - at_wall(d, 1);
 }
 
 double MPMFlowGasRows::memory_usage() const

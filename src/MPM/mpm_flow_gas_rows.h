@@ -55,6 +55,8 @@ class MPMFlowGasRows {
 
   /** Integral of psi over the walls that gas touches; the same on all ranks. */
   double at_wall(int axis, int side) const;
+  /** Adds the integral of psi over the only region that there is, the share of this rank; positive into it. */
+  void add_to_region(double *force) const;
   double memory_usage() const;
 
  private:

@@ -55,6 +55,18 @@ bool MPMFlowPockets::step(int *index, int axis, int by) const
   return index[axis] >= 0 && index[axis] < ncell[axis];
 }
 
+/** Pocket next to a cell. */
+int MPMFlowPockets::next_to(const int *index) const
+{
+  int pocket = NONE;
+  for (int d = 0; d < cells.lattice.dim; d++)
+    for (int s = 0; s < 2; s++) {
+      int next[3] = {index[0], index[1], index[2]};
+      if (step(next, d, 2 * s - 1)) pocket = std::max(pocket, labels[place(next)]);
+    }
+  return pocket;
+}
+
 /** All cells that faces join with the first one. */
 void MPMFlowPockets::fill(int64_t first, int label)
 {
@@ -67,12 +79,13 @@ void MPMFlowPockets::fill(int64_t first, int label)
     int index[3];
     index_of(here, index);
     info.cells++;
-    info.room += rooms.empty() ? 1.0 : rooms[here];
+    const double room = rooms.empty() ? 1.0 : rooms[here];
+    info.room += room;
     for (int d = 0; d < cells.lattice.dim; d++)
       for (int s = 0; s < 2; s++) {
         int next[3] = {index[0], index[1], index[2]};
         if (!step(next, d, 2 * s - 1)) {
-          info.at[d][s]++;
+          info.at[d][s] += room;
           info.open = info.open || open[d][s];
           continue;
         }
@@ -91,17 +104,25 @@ void MPMFlowPockets::number()
   infos.clear();
   for (int64_t k = 0; k < size; k++)
     if (labels[k] == NONE && !(closed[k >> 6] >> (k & 63) & 1)) fill(k, n());
+  for (const int64_t k : cut) {
+    if (wet[k >> 6] >> (k & 63) & 1) continue;
+    int index[3];
+    index_of(k, index);
+    const int pocket = next_to(index);
+    if (pocket != NONE) infos[pocket].room += rooms[k];
+  }
 }
 
 bool MPMFlowPockets::find(const MPMFlowPressure &water)
 {
-  closed.assign((size + 63) / 64, 0);
+  wet.assign((size + 63) / 64, 0);
   for (const auto &cell : cells.cells)
     if (water.is_wet(cell.number)) {
       const int64_t k = place(cell.index);
-      closed[k >> 6] |= uint64_t(1) << (k & 63);
+      wet[k >> 6] |= uint64_t(1) << (k & 63);
     }
-  MPI_Allreduce(MPI_IN_PLACE, closed.data(), (int) closed.size(), MPI_UINT64_T, MPI_BOR, world);
+  MPI_Allreduce(MPI_IN_PLACE, wet.data(), (int) wet.size(), MPI_UINT64_T, MPI_BOR, world);
+  closed = wet;
   for (std::size_t k = 0; k < solid.size(); k++) closed[k] |= solid[k];
   const bool same = !infos.empty() && closed == closed_before;
   if (!same) {
@@ -179,17 +200,14 @@ void MPMFlowPockets::find_lattice(const MPMFlowPressure &water)
     if (!in) continue;
     of_lattice[k] = labels[place(index)];
     if (of_lattice[k] != NONE || solid.empty() || water.is_wet(k)) continue;
-    for (int d = 0; d < dim; d++)
-      for (int s = 0; s < 2; s++) {
-        int next[3] = {index[0], index[1], index[2]};
-        if (step(next, d, 2 * s - 1)) of_lattice[k] = std::max(of_lattice[k], labels[place(next)]);
-      }
+    of_lattice[k] = next_to(index);
   }
 }
 
 void MPMFlowPockets::find_solid(const MPMFlowRegions *regions)
 {
   solid.clear();
+  cut.clear();
   rooms.clear();
   if (!regions) return;
   const int dim = cells.lattice.dim;
@@ -223,6 +241,7 @@ void MPMFlowPockets::find_solid(const MPMFlowRegions *regions)
           if (!is_in((a + 0.5) / SAMPLES, (b + 0.5) / SAMPLES, (c + 0.5) / SAMPLES)) out++;
         }
     rooms[k] = (float) out / (float) all;
+    if (middle && out > 0) cut.push_back(k);
   }
 }
 
@@ -254,8 +273,9 @@ bool MPMFlowPockets::set_runs(const double *from, std::size_t n)
 
 double MPMFlowPockets::memory_usage() const
 {
-  return (closed.capacity() + closed_before.capacity() + solid.capacity()) * sizeof(uint64_t) +
-      rooms.capacity() * sizeof(float) + stack.capacity() * sizeof(int64_t) +
+  return (wet.capacity() + closed.capacity() + closed_before.capacity() + solid.capacity()) *
+      sizeof(uint64_t) +
+      rooms.capacity() * sizeof(float) + (stack.capacity() + cut.capacity()) * sizeof(int64_t) +
       (labels.capacity() + labels_before.capacity() + of_lattice.capacity()) * sizeof(int) +
       infos.capacity() * sizeof(Info) + of_before.capacity() * sizeof(Share);
 }

@@ -44,8 +44,8 @@ class MPMFlowPockets : protected Pointers {
   /** Volume of these cells that is not solid, in volumes of a cell. */
   double room_of(int pocket) const { return infos[pocket].room; }
   bool is_open(int pocket) const { return infos[pocket].open; }
-  /** Cells of a pocket at a wall of the box. */
-  bigint cells_at(int pocket, int axis, int side) const { return infos[pocket].at[axis][side]; }
+  /** Cells of a pocket at a wall of the box, by their open share. */
+  double cells_at(int pocket, int axis, int side) const { return infos[pocket].at[axis][side]; }
   const std::vector<Share> &shares() const { return of_before; }
 
   /** Pocket of a cell of the lattice of the flow, images beyond walls, too. */
@@ -60,16 +60,17 @@ class MPMFlowPockets : protected Pointers {
 
  private:
   struct Info {
-    bigint cells = 0, at[3][2] = {};
-    double room = 0.0;
+    bigint cells = 0;
+    double room = 0.0, at[3][2] = {};
     bool open = false;
   };
 
   const MPMFlowLattice &cells;
   int ncell[3];
   int64_t size;
-  std::vector<uint64_t> closed, closed_before, solid;    // bits of cells
-  std::vector<float> rooms;                              // of cells, with regions
+  std::vector<uint64_t> wet, closed, closed_before, solid;    // bits of cells
+  std::vector<int64_t> cut;                                   // solid cells that are open in part
+  std::vector<float> rooms;                                   // of cells, with regions
   std::vector<int> labels, labels_before, of_lattice;
   std::vector<int64_t> stack;
   std::vector<Info> infos;
@@ -82,6 +83,7 @@ class MPMFlowPockets : protected Pointers {
   }
   void index_of(int64_t place, int *index) const;
   bool step(int *index, int axis, int by) const;
+  int next_to(const int *index) const;
   void fill(int64_t first, int label);
   void number();
   std::map<int, bigint> nearest(int before) const;
