@@ -10,6 +10,7 @@
 
 #include "mpm_flow_air.h"
 #include "mpm_flow_bodies.h"
+#include "mpm_flow_gas_rows.h"
 #include "mpm_flow_grains.h"
 #include "mpm_flow_inflow.h"
 #include "mpm_flow_pressure.h"
@@ -73,6 +74,8 @@ static constexpr double FLIP_OF_BODIES = 0.98;
 // (root mean squares); nothing where it is more than the second one. Vortices, waves, and drops that swing, 16 cells or more in a wave, have 0.03 to 0.06;
 // what is left of flow in a fluid at rest, and what falls or splashes, has 0.2 to 3
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
+// entries at the end of the vector with gas
+static constexpr int GAS_VALUES = 5;
 // passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
@@ -182,6 +185,40 @@ Options MPMIncompressibleOptions::declare(int dim)
         solid_groups.push_back(solid_group);
       })
       .standard("none");
+  o.add("gas",
+        {number(gas_law.p, "p", POSITIVE, "pressure",
+                "pressure of the gas in closed pockets of a flow when it begins, absolute"),
+         number(gas_law.gamma, "gamma", {1.0, 10.0, true, true}, "1",
+                "ratio of specific heats, 1: constant temperature")})
+      .then([this] {
+        has_gas = true;
+        if (!outside_is_given) gas_law.outside = gas_law.p;
+      })
+      .once()
+      .standard("none");
+  o.add("outside",
+        {number(gas_law.outside, "p", POSITIVE, "pressure",
+                "pressure of open air, absolute, from which pressures of the flow count")})
+      .then([this] {
+        outside_is_given = true;
+      })
+      .once()
+      .standard("that of gas");
+  std::vector<OptionWord> open_faces = faces;
+  o.add("open",
+        {word(
+            [this] {
+              return open_face;
+            },
+            [this](int k) {
+              open_face = k;
+            },
+            open_faces)},
+        "air is open there; can be given more than once")
+      .then([this] {
+        open[open_face / 2][open_face % 2] = has_open = true;
+      })
+      .standard("none: all pockets are closed");
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
                 "share of an excess of points in a cell that goes elsewhere in a step")});
@@ -216,7 +253,16 @@ Options MPMIncompressibleOptions::declare(int dim)
          "cannot be used with implicit yes: use explicit viscosity, or leave solid out"},
         {!solid_groups.empty() && reflect > 0.0, "reflect",
          "would count forces of solids twice, and cannot be used with solid: leave it out"},
-        {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"}};
+        {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"},
+        {!has_gas, "outside", "is about the gas in pockets: add the keyword gas"},
+        {!has_gas, "open", "is about the gas in pockets: add the keyword gas"},
+        {has_gas && implicit, "gas",
+         "cannot be used with implicit yes: use explicit viscosity, or leave gas out"},
+        {has_gas && reflect > 0.0, "gas", "cannot be used with reflect: leave one of them out"},
+        {has_gas && !liquids.empty(), "gas",
+         "is next to one liquid, and cannot be used with liquid: leave one of them out"},
+        {has_gas && !solid_groups.empty(), "gas",
+         "cannot be used with solid: leave one of them out"}};
   });
   return o;
 }
@@ -318,13 +364,27 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     }
     solids = std::make_unique<MPMFlowSolids>(lmp, cells, bits);
   }
+  if (has_gas) {
+    for (int d = 0; d < dim; d++)
+      for (int s = 0; s < 2; s++)
+        if (open[d][s] && cells.lattice.periodic[d])
+          error->all(FLERR,
+                     "Fix mpm/incompressible open {}{}: the box is periodic there, and has no such "
+                     "face: use boundary f",
+                     (char) ('x' + d), s ? "hi" : "lo");
+    gas = std::make_unique<MPMFlowGas>(lmp, cells, *pressure, gas_law);
+    for (int d = 0; d < dim; d++) std::copy_n(open[d], 2, gas->pockets.open[d]);
+    gas_rows = std::make_unique<MPMFlowGasRows>(lmp, cells, *pressure, *gas);
+    pressure->nearest = NEAREST_SURFACE;
+    cells.wants_around = true;
+  }
   if (transfer == AUTO || transfer == APIC || transfer == AFLIP)
     state.declare(gradient, "mpm/incompressible:gradient", flow_slopes(dim));
 
   time_integrate = 1;
   dynamic_group_allow = 0;
   scalar_flag = vector_flag = 1;
-  size_vector = 15 + 3 * region_ids.size();
+  size_vector = 15 + 3 * region_ids.size() + (gas ? GAS_VALUES : 0);
   global_freq = 1;
   extscalar = extvector = 0;
   several = !liquids.empty();
@@ -398,6 +458,7 @@ void FixMPMIncompressible::init()
                "Fix {} {}: {} need a flow of one density: remove the keyword {}", style, id,
                grains ? "grains of fix mpm/immersed" : "points of fix mpm/emit",
                solids ? "solid" : "liquid");
+  if (gas) check_gas();
   if (solids) solids->init(fmt::format("Fix {} {}", style, id));
   pressure->sources = inflow ? &inflow->sources() : nullptr;
   force_reneighbor = neighbor->includegroup ? 1 : 0;
@@ -511,6 +572,37 @@ void FixMPMIncompressible::find_lightness(const MPMFlowPoints &points)
   pressure->lightness = &lightness;
 }
 
+/** What the volume of a pocket by the flow through its surface does not know of. */
+void FixMPMIncompressible::check_gas() const
+{
+  const char *const other = bodies     ? "bodies of fix mpm/rigid"
+      : regions && regions->any_move() ? "regions that move"
+      : grains                         ? "grains of fix mpm/immersed"
+      : inflow                         ? "points of fix mpm/emit"
+                                       : nullptr;
+  if (other)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: gas cannot be used with {}: remove these, or the keyword gas", style, id,
+               other);
+  if (!regions) return;
+  gas->pockets.find_solid(regions.get());
+  if (regions->n() > 1 && comm->me == 0 && !told_of_walls)
+    error->warning(
+        FLERR,
+        "Fix {} {}: forces on its regions are those of the water alone, without the gas, "
+        "as there are several: use a union of them as one region if you need these forces",
+        style, id);
+  told_of_walls = true;
+}
+
+double FixMPMIncompressible::value_of_gas(int k) const
+{
+  if (k == 0) return gas->count();
+  if (k == 1) return gas->highest();
+  if (k == 2) return gas->lowest();
+  return (k == 3 ? gas->volume() : gas->energy() / force->nktv2p);
+}
+
 /** Others in the same box that this flow would go through. */
 void FixMPMIncompressible::check_others() const
 {
@@ -550,6 +642,7 @@ void FixMPMIncompressible::setup(int)
   cells.sum(sums.data(), 3 * cells.lattice.dim + 1);
   find_velocities();
   pressure->find_wet(share);
+  if (gas && !gas->known()) gas->find(share, star.data());
   note_filling();
   forces_known = true;
 }
@@ -633,9 +726,10 @@ double FixMPMIncompressible::acceleration_of_stress() const
   return force->ftm2v / (force->nktv2p * density);
 }
 
-/** dt p/density of free surfaces by their tension; null: they have none. */
+/** dt p/density of free surfaces by their tension and by gas; null: they have none. */
 const std::vector<double> *FixMPMIncompressible::surface_psi() const
 {
+  if (gas) return &gas_rows->at_surface();
   return curved ? &at_surface : nullptr;
 }
 
@@ -695,6 +789,7 @@ void FixMPMIncompressible::initial_integrate(int)
     solids->give_forces(elastic);
   }
   pressure->find_wet(share);
+  if (gas) gas->find(share, star.data());
 
   find_flow(part * (differ ? before : dt));
   find_pressures(part * (differ ? before : dt) * acceleration_of_stress());
@@ -708,6 +803,7 @@ void FixMPMIncompressible::initial_integrate(int)
     find_flow(part * dt);
   }
   check_speed();
+  if (gas) gas->move(velocity.data(), dt);
   if (grains) grains->end(velocity);
   if (grains || inflow) pressure->set_mobility(nullptr);    // points spread among grains, too
 
@@ -770,14 +866,17 @@ void FixMPMIncompressible::find_flow(double duration)
                  style, id, update->dt, most);
     curved->find(share, duration * acceleration_of_stress() * tension, at_surface);
   }
+  if (gas)
+    gas_rows->begin(duration, duration * acceleration_of_stress(), curved ? &at_surface : nullptr);
   if (bodies) {
     double g[3];
     weight(g);
     MathExtra::scale3(force->ftm2v, g);
     bodies->begin(duration, g, *pressure);
   }
-  const auto report = pressure->project(star.data(), velocity.data(), known.data(),
-                                        {tolerance, rounding / h, most_iterations}, surface_psi());
+  const auto report =
+      pressure->project(star.data(), velocity.data(), known.data(),
+                        {tolerance, rounding / h, most_iterations}, surface_psi(), gas_rows.get());
   if (!report.converged())
     error->all(
         FLERR, Error::NOLASTLINE,
@@ -901,6 +1000,8 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
   for (int d = 0; d < cells.lattice.dim; d++)
     for (int s = 0; s < 2; s++) {
       last.walls[d][s] = pressure->at_wall(d, s) / (pressure_to_psi * force->nktv2p);
+      if (gas && comm->me == 0)
+        last.walls[d][s] += gas_rows->at_wall(d, s) / (pressure_to_psi * force->nktv2p);
       if (grains) last.walls[d][s] += grains->at_wall(d, s, before_forces, velocity) / force->ftm2v;
     }
   if (regions) {
@@ -923,6 +1024,7 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
           }
         },
         1.0 / (1.0 + reflect), last.regions.data());
+    if (gas && regions->n() == 1) gas_rows->add_to_region(last.regions.data());
     for (double &f : last.regions) f /= pressure_to_psi * force->nktv2p;
   }
   pressure->extend_into_air(pressures, surface_psi());
@@ -1110,7 +1212,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
 /* ----------------------------------------------------------------------
    scalar: number of iterations; vector: these, what is left of the divergence (relative), largest |div v|, volume that
    points fill, number of wet cells, kinetic energy, largest speed, force on the six walls, iterations of the implicit viscosity,
-   force on the regions, and energy that spreading has added
+   force on the regions, and energy that spreading has added; with gas: number of pockets that have some, highest and lowest pressure, volume, and energy
 ------------------------------------------------------------------------- */
 
 double FixMPMIncompressible::compute_scalar()
@@ -1137,7 +1239,8 @@ double FixMPMIncompressible::compute_vector(int k)
       if (cells.is_point(i))
         mine += 0.5 * force->mvv2e * atom->rmass[i] * MathExtra::lensq3(atom->v[i]);
   if (k == 13) return last.of_stress;
-  if (k == size_vector - 1)
+  if (gas && k >= size_vector - GAS_VALUES) return value_of_gas(k - (size_vector - GAS_VALUES));
+  if (k == size_vector - 1 - (gas ? GAS_VALUES : 0))
     mine = energy_of_spread;
   else if (k > 13)
     mine = last.regions[k - 14];
@@ -1156,11 +1259,16 @@ void FixMPMIncompressible::write_restart(FILE *fp)
   double of_last[4];
   sum_last_step(true, of_last);
   if (comm->me) return;
-  std::vector<double> state = {dt_before, limit, of_last[1], of_last[2], of_last[3], 0.0};
+  std::vector<double> state = {dt_before, limit, of_last[1], of_last[2], of_last[3], 0.0, 0.0};
   if (regions) {
     const auto motion = regions->motion();
     state[5] = (double) motion.size();
     state.insert(state.end(), motion.begin(), motion.end());
+  }
+  if (gas) {
+    const auto of_gas = gas->restart_data();
+    state[6] = (double) of_gas.size();
+    state.insert(state.end(), of_gas.begin(), of_gas.end());
   }
   const int size = state.size() * sizeof(double);
   fwrite(&size, sizeof(int), 1, fp);
@@ -1169,7 +1277,7 @@ void FixMPMIncompressible::write_restart(FILE *fp)
 
 void FixMPMIncompressible::restart(char *buf)
 {
-  double state[6];
+  double state[7];
   memcpy(state, buf, sizeof(state));
   dt_before = state[0];
   limit_before = state[1];
@@ -1178,6 +1286,14 @@ void FixMPMIncompressible::restart(char *buf)
   std::vector<double> motion((std::size_t) state[5]);
   memcpy(motion.data(), buf + sizeof(state), motion.size() * sizeof(double));
   if (regions) regions->set_motion(motion);
+  std::vector<double> of_gas((std::size_t) state[6]);
+  memcpy(of_gas.data(), buf + sizeof(state) + motion.size() * sizeof(double),
+         of_gas.size() * sizeof(double));
+  if (gas && !gas->restart(of_gas.data(), of_gas.size()))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: the gas in the restart file is that of a lattice with another node "
+               "spacing: use the same one",
+               style, id);
 }
 
 double FixMPMIncompressible::memory_usage()
@@ -1187,6 +1303,7 @@ double FixMPMIncompressible::memory_usage()
       (stick ? stick->memory_usage() : 0.0) + (grains ? grains->memory_usage() : 0.0) +
       (inflow ? inflow->memory_usage() : 0.0) + (solids ? solids->memory_usage() : 0.0);
   if (curved) bytes += curved->memory_usage();
+  if (gas) bytes += gas->memory_usage() + gas_rows->memory_usage();
   if (stress) bytes += stress->memory_usage();
   for (const auto *list :
        {&elastic, &at_surface, &potentials, &viscous_velocity, &before_forces, &mobility, &sums,

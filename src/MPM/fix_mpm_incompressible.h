@@ -16,6 +16,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 #define LMP_FIX_MPM_INCOMPRESSIBLE_H
 
 #include "declare/option.h"
+#include "mpm_flow_gas.h"
 #include "mpm_flow_lattice.h"
 #include "mpm_state.h"
 #include "mpm_step_limit.h"
@@ -27,6 +28,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 namespace LAMMPS_NS {
 class MPMFlowAir;
 class MPMFlowBodies;
+class MPMFlowGasRows;
 class MPMFlowGrains;
 class MPMFlowInflow;
 class MPMFlowPressure;
@@ -62,6 +64,11 @@ struct MPMIncompressibleOptions {
   };
   std::vector<Liquid> liquids;    ///< of other densities
   std::vector<std::string> solid_groups;
+  bool has_gas = false;
+  MPMFlowGasLaw gas_law;
+  bool outside_is_given = false;
+  bool open[3][2] = {};    ///< faces next to which is open air
+  bool has_open = false;
 
   MPM_NS::Options declare(int dim);
 
@@ -71,6 +78,7 @@ struct MPMIncompressibleOptions {
   std::string region_id;
   Liquid liquid;
   std::string solid_group;
+  int open_face = 0;
 };
 
 /** Flow of an incompressible fluid, with free surfaces: its points, on a staggered lattice of its own, with a pressure that
@@ -121,6 +129,8 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowGrains> grains;    // of fix mpm/immersed; null: none
   std::unique_ptr<MPMFlowInflow> inflow;    // of fix mpm/emit; null: none
   std::unique_ptr<MPMFlowSolids> solids;    // null: none
+  std::unique_ptr<MPMFlowGas> gas;          // in pockets; null: none
+  std::unique_ptr<MPMFlowGasRows> gas_rows;
   MPMRows gradient;    // [n][flow_slopes(dim)] of velocities of points, with apic
   std::vector<int> liquid_bits;
   std::vector<double> lightness,
@@ -136,7 +146,7 @@ class FixMPMIncompressible :
   mutable double limit_before =
       0.0;                      // last stable_dt() with forces, on restart of all ranks; 0: none
   bool forces_known = false;    // they are cleared at the start of a run
-  mutable bool told_of_bodies = false;
+  mutable bool told_of_bodies = false, told_of_walls = false;
   bool told_of_large = false;
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
   double energy_of_spread = 0.0;    // that spreading has added to points so far, of this rank
@@ -158,6 +168,8 @@ class FixMPMIncompressible :
   void find_lightness(const MPMFlowPoints &);
   void check_points();
   void check_others() const;
+  void check_gas() const;
+  double value_of_gas(int k) const;
   void check_solids();
   void check_stiffness();
   void check_depths();

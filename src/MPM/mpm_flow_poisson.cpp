@@ -9,6 +9,7 @@
 #include "mpm_flow_poisson.h"
 
 #include "mpm_flow_bodies.h"
+#include "mpm_flow_gas_rows.h"
 #include "mpm_node_system.h"
 
 #include <algorithm>
@@ -41,6 +42,7 @@ void MPMFlowPoisson::apply(const double *x, double *y)
   std::copy_n(x, n, rows.values.data());
   rows.sum_all(weight, sum.data());
   for (int i = 0; i < n; i++) y[i] = diagonal[i] * x[i] - sum[i];
+  if (gas) gas->add(x, y);
   if (!bodies) return;
   on_lattice(y, of_cells[1]);
   bodies->add(on_lattice(x, of_cells[0]), of_cells[1].data());

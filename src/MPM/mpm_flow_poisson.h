@@ -17,6 +17,7 @@
 
 namespace LAMMPS_NS {
 class MPMFlowBodies;
+class MPMFlowGasRows;
 
 /** The equations of the pressure by places of rows, with a cycle of multigrid as their preconditioner. On the finest level it
  *  is CellMultigrid::precondition(), but where an odd period has two neighbors of the same half:
@@ -31,6 +32,7 @@ class MPMFlowPoisson : public MPM_NS::LinearSystem {
   std::vector<double> diagonal, weight;     ///< [place], [place][side]
   MPM_NS::CellMultigrid multigrid;          ///< for these equations
   const MPMFlowBodies *bodies = nullptr;    ///< that the pressure moves; null: none
+  MPMFlowGasRows *gas = nullptr;            ///< in pockets; null: none
 
   void begin();    ///< all of these are there
 

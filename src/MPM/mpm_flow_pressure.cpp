@@ -9,6 +9,7 @@
 #include "mpm_flow_pressure.h"
 
 #include "mpm_flow_bodies.h"
+#include "mpm_flow_gas_rows.h"
 #include "mpm_flow_regions.h"
 
 #include "lammps.h"
@@ -60,8 +61,6 @@ double MPMFlowPressure::open_side(const MPMFlowLattice::Cell &cell, int side) co
   return of < 0 ? 1.0 : open(of, side / 2);
 }
 
-/** What flows through a side of a cell along its axis, per area, with what a wall in it carries along. Through a wall of the box goes but
- *  what moves there of a region. */
 double MPMFlowPressure::flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell,
                                      int side) const
 {
@@ -218,7 +217,8 @@ void MPMFlowPressure::find_levels()
 /* ---------------------------------------------------------------------- */
 
 SolveReport MPMFlowPressure::project(const double *before, double *after, double *known,
-                                     const SolveGoal &goal, const std::vector<double> *surface)
+                                     const SolveGoal &goal, const std::vector<double> *surface,
+                                     MPMFlowGasRows *gas)
 {
   const double h = cells.lattice.h;
   right_side.assign(size(), 0.0);
@@ -227,14 +227,18 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
     right_side[cell.number] = -outflow(before, cell) / h;
   }
   if (surface) find_lift(*surface);
+  if (gas) gas->load(before, lift, right_side);
   cells.publish(right_side.data(), 1);
   find_levels();
   poisson.multigrid.project(right_side.data());
   poisson.bodies = bodies;
+  poisson.gas = gas;
+  if (gas) gas->arrange(rows);
   solution.assign(2 * (std::size_t) rows.size(), 0.0);
   double *const load = solution.data() + rows.size();
   for (int i = 0; i < rows.size(); i++) load[i] = right_side[rows.cell_at(i)];
   const SolveReport report = method.solve(poisson, load, solution.data(), goal);
+  if (gas) gas->end(solution.data());
   to_cells(solution, psi);
   for (int64_t k = 0; surface && k < size(); k++) psi[k] += lift[k];
   subtract_gradient(psi, before, after, known, surface);

@@ -21,6 +21,7 @@
 
 namespace LAMMPS_NS {
 class MPMFlowBodies;
+class MPMFlowGasRows;
 class MPMFlowRegions;
 
 /** The pressure that makes a flow free of divergence: the Poisson equation on the cells that are wet.
@@ -80,10 +81,11 @@ class MPMFlowPressure : protected Pointers {
 
   /** Takes the divergence from velocities [cell][dim] of faces next to wet cells. known: [cell][dim] in which these are
    *  marked with 1, and others with 0. Both have values in owned cells only. surface: [cell][dim] psi of a free surface
-   *  between a cell and the one before it along an axis, of all cells; null: zero. */
+   *  between a cell and the one before it along an axis, of all cells; null: zero. gas: whose pressure is found with it, and that has surface; null: none. */
   MPM_NS::SolveReport project(const double *before, double *after, double *known,
                               const MPM_NS::SolveGoal &,
-                              const std::vector<double> *surface = nullptr);
+                              const std::vector<double> *surface = nullptr,
+                              MPMFlowGasRows *gas = nullptr);
   /** Displacements of faces that take points from where they fill more than all of a cell to where they leave some of it
    *  empty, and no surface is near: their divergence is rate (share - 1), but for what is farther than a few cells. As in
    *  T. Kugelstadt, A. Longva, N. Thuerey, J. Bender, IEEE Trans. Vis. Comput. Graph. 27 (2021) 2731. */
@@ -101,6 +103,17 @@ class MPMFlowPressure : protected Pointers {
                        const std::vector<double> *surface = nullptr) const;
   /** Integral of psi over the wall of an axis, the share of this rank. */
   double at_wall(int axis, int side) const;
+
+  /** What flows through a side of a cell along its axis, per area, with what a wall in it carries along. Through a wall of the box goes but
+   *  what moves there of a region. */
+  double flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell, int side) const;
+  /** Calls f(cell, side, weight) for all sides of wet cells of this rank that are free surfaces; weight: of psi there in the equation of the cell. */
+  template <class F> void visit_surface(const F &f) const
+  {
+    for (const auto &one : wet)
+      for (int s = 0; s < 2 * cells.lattice.dim; s++)
+        if (one.near[s] < 0 && one.weight[s] != 0.0) f(cells.cells[one.cell], s, one.weight[s]);
+  }
 
   double memory_usage() const;
 
@@ -132,7 +145,6 @@ class MPMFlowPressure : protected Pointers {
   void find_lift(const std::vector<double> &surface);
   double weight_to(int64_t wet_cell, int64_t other) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
-  double flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell, int side) const;
   double outflow(const double *velocity, const MPMFlowLattice::Cell &) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known, const std::vector<double> *surface = nullptr) const;
