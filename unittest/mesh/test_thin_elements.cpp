@@ -116,6 +116,15 @@ double radius(Scene &run)
   return sum / all.size();
 }
 
+/** A soft balloon, with or without a lattice. */
+std::string balloon_under_pressure(const std::string &file, bool lattice)
+{
+  return (lattice ? box(3, -0.3, 0.3, 0.05, "transfer flip 0.99")
+                  : MPM_TEST::box(3, "si", "f f f", "-0.3 0.3 -0.3 0.3 -0.3 0.3", 1, 0.02)) +
+      thin_body(file, "thickness 0.001", "neohookean 1e5 0.3", "compression no") +
+      (lattice ? "" : "fix move all nve\n");
+}
+
 }    // namespace
 
 // Forces are minus the gradient of the energy at large motions of all nodes, with and without compression, and with a gas
@@ -742,6 +751,43 @@ SERIAL_TEST(Airbag, SummaryTellsTheLimit)
   ASSERT_EQ(lines.size(), 1u);
   const double share = std::stod(lines[0].substr(lines[0].find("at the end ") + 11));
   EXPECT_NEAR(measured("share of the limit", share), 0.5, 0.05);
+}
+
+// gas of 100 bar on both sides of a soft balloon is a spring 134 times as stiff as its skin: the time step knows, with and without a
+// lattice, also before there is a first force: omega^2 = 3 gamma p/(R rho t) of breathing, and that of the skin
+TEST(Airbag, TimeStepKnowsTheGas)
+{
+  const ScratchFile file("ball.msh", sphere(3, 0.1));
+  const double omega = sqrt(3.0 * 1.4 * 1.0e7 / (0.1 * 1000.0 * 0.001));
+  for (const bool lattice : {true, false}) {
+    Scene run(balloon_under_pressure(file.name, lattice) +
+              "fix b all mpm/airbag e gas 1.0001e7 1.4 outside 1e7\nfix dt all mpm/dt 0.4\n"
+              "thermo_modify norm no\nrun 0\n");
+    const double first = run.lmp->update->dt;
+    EXPECT_NEAR(measured("limit/that of the gas", first / 0.4 * omega / 2.0), 1.0, 0.01);
+    run.commands("run 400\n");
+    EXPECT_NEAR(run.lmp->update->dt / first, 1.0, 1e-3);
+    // what the gas can give is that of 1000 Pa: half of the square of that over its stiffness
+    EXPECT_LT(measured("energy", run.evaluate("ke")), 1e6 / (2.0 * 1.4 * 1.0e7) * 4.09e-3);
+    EXPECT_NEAR(run.evaluate("f_b"), 500.0, 600.0);
+  }
+}
+
+// the check of time steps, also where the skin alone would allow this one
+SERIAL_TEST(Airbag, TimeStepAboveThatOfTheGas)
+{
+  const ScratchFile file("ball.msh", sphere(3, 0.1));
+  const std::string gas = "fix b all mpm/airbag e gas 1.0001e7 1.4 outside 1e7\n";
+  for (const bool lattice : {true, false}) {
+    const auto failure = [&](const std::string &more) {
+      Scene run;
+      return run.error(balloon_under_pressure(file.name, lattice) + more + "run 10\n");
+    };
+    EXPECT_EQ(failure("timestep 1.5e-4\n"), "");
+    EXPECT_THAT(failure(gas + "timestep 1.5e-4\n"), HasSubstr("by the stiffness of the gas in it"));
+    EXPECT_THAT(failure(gas + "fix dt all mpm/dt 0.4 min 1e-4\n"),
+                HasSubstr("or the gas of a fix mpm/airbag"));
+  }
 }
 
 // a bag that lies across periodic faces from the start holds what it holds elsewhere, and keeps it while it moves
