@@ -413,6 +413,9 @@ def write_files(folder, scene):
     with open(os.path.join(folder, "hare.obj"), "w", encoding="ascii") as file:
         file.write("".join("v %d %d %d\n" % corner for corner in CORNERS) +
                    "".join("f %d %d %d\n" % tuple(k + 1 for k in face) for face in FACES))
+    for name in ("elcentro.txt", "pressure.csv"):
+        with open(os.path.join(folder, name), "w", encoding="ascii") as file:
+            file.write("0.0 0.0\n0.01 2.0\n0.02 0.0\n".replace(" ", "," if name.endswith("csv") else " "))
     for name, content in IMAGES.items():
         with open(os.path.join(folder, name), "wb") as file:
             file.write(content)

@@ -594,9 +594,12 @@ SERIAL_TEST(Conduction, Laminates)
               })));
     EXPECT_NEAR(measured(strprintf("along, %d: error", n), conductivity(along.name, n) / 5.5 - 1.0),
                 0.0, 1e-6);
-    EXPECT_NEAR(measured(strprintf("across, %d, linear: error", n),
-                         conductivity(across.name, n, "linear") * 0.55 - 1.0),
-                0.0, 1e-6);
+    for (const char *shape : {"linear", "gimp", "cpdi"}) {
+      if (n > 16 && shape[0] != 'l') continue;    // dear
+      EXPECT_NEAR(measured(strprintf("across, %d, %s: error", n, shape),
+                           conductivity(across.name, n, shape) * 0.55 - 1.0),
+                  0.0, 1e-6);
+    }
     error[n == 32] =
         measured(strprintf("across, %d: error", n), conductivity(across.name, n) * 0.55 - 1.0);
   }

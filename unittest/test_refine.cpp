@@ -51,6 +51,41 @@ PARAMETER_TEST(Velocity, StaysLinear, Patch,
   EXPECT_LT(measured("change of velocity", worst), 1e-13);
 }
 
+// Creeping flow: a cylinder of radius 1 in the middle of one of radius 4, half of it, that moves feels a drag of
+// 4 pi mu U/(ln 4 - 15/17) per length. Small cells around it find this better than large cells everywhere
+SERIAL_TEST(Flow, AroundACylinder)
+{
+  const double exact = 4.0 * PI / (log(4.0) - 15.0 / 17.0), U = 1e-3;
+  double error[2];
+  for (const bool two : {false, true}) {
+    const std::string options = " transfer apic origin 0 0\n", make = " ppc 2 outside ignore fix ";
+    Scene run(plane("lj", "f f", "-5 5 0 5", 2, 0.3) +
+              "group a type 1\ngroup b type 2\nfix a a mpm 0.25" + options +
+              (two ? "fix b b mpm 0.125" + replaced(options, "0 0", "0.0625 0.0625") +
+                       "fix one all mpm/refine a b\n"
+                   : "") +
+              "region wall cylinder z 0 0 4 INF INF side out\n"
+              "region inside cylinder z 0 0 4 INF INF\n"
+              "region body cylinder z 0 0 1 INF INF\n"
+              "region around cylinder z 0 0 1 INF INF side out\n"
+              "region near block -2 2 0 2 INF INF\nregion far block -2 2 0 2 INF INF side out\n"
+              "region x intersect 3 inside around far\nregion y intersect 2 around near\n"
+              "create_points 1 region x" +
+              make + "a\ncreate_points " +
+              (two ? "2 region y" + make + "b" : "1 region y" + make + "a") +
+              "\ngroup a type 1\ngroup b type 2\n"
+              "fix m all mpm/material density 1 eos linear 25 viscosity newtonian 1\n"
+              "fix sym all mpm/boundary ylo slip\nfix w all mpm/boundary region wall stick\n"
+              "fix c all mpm/boundary region body stick velocity 1e-3 0 0\n"
+              "variable f equal f_c[1]\nfix mean all ave/time 1 50 50 v_f\n"
+              "fix d all mpm/dt 0.5 until 5\nrun 100000\n");
+    error[two] = measured(two ? "two lattices: error of the drag" : "one: error of the drag",
+                          -2.0 * run.fix("mean")->compute_scalar() / U / exact - 1.0);
+  }
+  EXPECT_LT(std::fabs(error[1]), 0.05);
+  EXPECT_LT(std::fabs(error[1]), 0.5 * std::fabs(error[0]));
+}
+
 // Uniform pressure in a box full of points gives no force on any node with linear functions, and next to none with others
 PARAMETER_TEST(Pressure, IsInBalance, Patch,
                Values(Patch{2, 2, "linear"}, Patch{2, 3, "quadratic"}, Patch{3, 2, "quadratic"},

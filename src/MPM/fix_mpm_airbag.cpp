@@ -165,6 +165,15 @@ double FixMPMAirbag::on_surface(double its_volume, double its_area, bool startin
   return over;
 }
 
+/** Of the gas; without heat, or at constant temperature with gamma 1. */
+double FixMPMAirbag::stiffness(double its_volume) const
+{
+  if (has_pressure || !(its_volume > 0.0)) return 0.0;
+  BagGas there = gas;
+  if (filled) there.expand(its_volume);
+  return gamma * (filled ? there.pressure() : p) / its_volume;
+}
+
 /* ----------------------------------------------------------------------
    gas that comes in and goes out in a step, by the midpoint rule in one or more parts of it
 ------------------------------------------------------------------------- */

@@ -60,6 +60,7 @@ class FixMPMAirbag : public Fix, private MPMAirbagOptions, private MPMElementsPr
 
   double on_surface(double volume, double area, bool starting) override;
   bool is_given() const override { return has_pressure; }
+  double stiffness(double volume) const override;
   void flow(double dt);
 };
 

@@ -353,6 +353,10 @@ std::string FixMPMDt::what_limits() const
   if (limit.other > 0.0) return fmt::format("the collision of grains {} and {}", tag, other);
   if (limit.other == 0.0) return fmt::format("the collision of grain {} with a wall", tag);
   if (tag == 0) return "a rigid body of fix mpm/rigid";
+  if (limit.speed == 0.0)
+    return fmt::format("point {} (its change of volume, other physics, or the gas of a fix "
+                       "mpm/airbag)",
+                       tag);
   return fmt::format("point {} (wave speed {:.6g})", tag, limit.speed);
 }
 

@@ -1327,11 +1327,13 @@ double FixMPMElements::stored_energy() const
    and a stiffness of rho c^2 at most for any strain is n c^2 times the mean of the largest
    eigenvalue of sum_k grad N_k x grad N_k at most, and that of the body is not larger. The lattice
    can only lower it: its velocities are a part of those that nodes can have, and its lumped mass is
-   not less than theirs.
+   not less than theirs. Bending and the gas add stiffness, so that squares add.
 ------------------------------------------------------------------------- */
 
 double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
 {
+  constexpr double LITTLE_GAS =
+      0.14;    // 1 % of the time step, less than what the bound has to spare
   double smallest = std::numeric_limits<double>::max(), c[BATCH];
   tag = 0;
   speed = 0.0;
@@ -1353,8 +1355,49 @@ double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
       speed = largest;
     }
   });
-  if (bending) smallest = 2.0 / hypot(2.0 / smallest, bending_frequency);
-  return smallest;
+  const double gas = gas_frequency();
+  if (tag == 0) return smallest;    // no elements here: those of other ranks tell
+  const double others = hypot(2.0 / smallest, bending ? bending_frequency : 0.0);
+  if (gas < LITTLE_GAS * others) return 2.0 / others;
+  if (gas > others) speed = 0.0;
+  return 2.0 / hypot(others, gas);
+}
+
+/* ----------------------------------------------------------------------
+   The gas in a closed surface is one spring between all of its nodes, of the stiffness k = -dp/dV along the gradient g of the
+   volume: omega^2 = k sum_i g_i^2/m_i. That of a thin bag is as small as the bag, whatever its mesh. The pressure of this
+   step need not be known yet
+------------------------------------------------------------------------- */
+
+double FixMPMElements::gas_frequency() const
+{
+  if (!pressure || !kind.closed || pressure->is_given()) return 0.0;
+  auto &to = const_cast<FixMPMElements *>(this)->sent;
+  to.assign(3 * ((std::size_t) atom->nlocal + atom->nghost), 0.0);
+  double mine[2] = {0.0, 0.0}, all[2];
+  for_faces([&](double weight, const double *const at[3], const int *node) {
+    double normal[3];
+    area_vector(dim, at, normal);
+    mine[0] += weight * dot(normal, at[0]) / dim;
+    for (int m = 0; m < dim; m++)
+      for (int d = 0; d < dim; d++) to[3 * (std::size_t) node[m] + d] += weight * normal[d] / dim;
+  });
+  for_curved_edges([&](const double(*x)[3], const int *node) {
+    double gradient[4][3] = {{0.0}};
+    mine[0] += curved_volume(dim, x, 1.0, gradient);
+    for (int m = 0; m <= dim; m++)
+      for (int d = 0; d < dim; d++) to[3 * (std::size_t) node[m] + d] += gradient[m][d];
+  });
+  std::vector<double> gradient(3 * (std::size_t) atom->nlocal, 0.0);
+  const_cast<FixMPMElements *>(this)->bring_home(gradient.data());
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit) {
+      const double *const g = &gradient[3 * (std::size_t) i];
+      mine[1] += dot(g, g) / atom->rmass[i];
+    }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  const double square = pressure->stiffness(fabs(all[0])) * all[1];
+  return sqrt(square * force->ftm2v / force->nktv2p);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -1364,13 +1407,18 @@ void FixMPMElements::check_dt() const
   tagint tag;
   double speed;
   const double limit = stable_dt_local(tag, speed);
-  if (!(update->dt <= limit))
+  if (update->dt <= limit) return;
+  if (speed == 0.0)
     error->one(
         FLERR,
-        "Time step {:.6g} is above the limit {:.6g} of fix mpm/elements {} at step {}: "
-        "element with node {}, wave speed {:.6g}; use timestep, fix mpm/dt, or a mesh without "
-        "small elements",
-        update->dt, limit, id, update->ntimestep, tag, speed);
+        "Time step {:.6g} is above the limit {:.6g} of fix mpm/elements {} at step {}, mostly by "
+        "the stiffness of the gas in it (fix mpm/airbag): use timestep, or fix mpm/dt",
+        update->dt, limit, id, update->ntimestep);
+  error->one(FLERR,
+             "Time step {:.6g} is above the limit {:.6g} of fix mpm/elements {} at step {}: "
+             "element with node {}, wave speed {:.6g}; use timestep, fix mpm/dt, or a mesh without "
+             "small elements",
+             update->dt, limit, id, update->ntimestep, tag, speed);
 }
 
 /* ----------------------------------------------------------------------

@@ -58,6 +58,8 @@ class MPMElementsPressure {
   virtual double on_surface(double volume, double area, bool starting) = 0;
   /** Does it depend on neither of these? */
   virtual bool is_given() const = 0;
+  /** How much it falls with a larger volume, -dp/dV, at this one. */
+  virtual double stiffness(double volume) const = 0;
 
  protected:
   ~MPMElementsPressure() = default;    // who it is owns itself
@@ -118,7 +120,8 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   const double *forces() const override { return force_on.data(); }
 
   /** Smallest stable time step of this rank's elements: 2/omega with a bound of the highest
-   *  frequency omega. tag: a node of that element, speed: its wave speed. */
+   *  frequency omega. tag: a node of that element, speed: its wave speed, 0: gas in a closed surface has the
+   *  larger part in it. On all ranks together. */
   double stable_dt_local(tagint &tag, double &speed) const;
 
   /** Stop when the time step is above that of an element. */
@@ -281,6 +284,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void add_bending();
   MPM_NS::BentTriangle bent_triangle(const double *row) const;
   double largest_bending_frequency() const;
+  double gas_frequency() const;
 };
 
 }    // namespace LAMMPS_NS

@@ -272,12 +272,6 @@ void FixMPMMesh::find_contact()
         "Fix mpm/mesh/contact {} cannot be used with transfer apic of fix mpm/mesh {}, in which "
         "elastic bodies gain energy with frame updated: use transfer flip",
         contact->id, id);
-  if (contact && forces->has_loads())
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/mesh/contact {} cannot be used with pressure or traction of fix mpm/mesh {}, "
-        "which do not know which body they load: use fix addforce",
-        contact->id, id);
   const std::size_t rows = count_bodies() * mesh->nodes.size();
   sums.resize(rows);
   before.resize(rows);
@@ -593,7 +587,7 @@ void FixMPMMesh::initial_integrate(int)
   points_to_nodes();
   if (steps == 0 && forces->has_loads())
     forces->warn_of_lost_loads(fmt::format("Fix mpm/mesh {}", id), [this](int node) {
-      return has_node[node] && ranks.first[node] && sums[node].mass > 0.0;
+      return has_node[node] && ranks.first[node] && mass_of_all(node) > 0.0;
     });
   find_velocities();
   nodes_to_points();
@@ -781,9 +775,19 @@ void FixMPMMesh::scale_motion(int i, double *L) const
       L[dim * e + d] = (scale * product(step, F, d, e) - F[3 * d + e]) / dt;
 }
 
+/** Of all bodies at a node. */
+double FixMPMMesh::mass_of_all(int node) const
+{
+  double mass = 0.0;
+  for (int body = 0; body < count_bodies(); body++)
+    mass += sums[body * mesh->nodes.size() + node].mass;
+  return mass;
+}
+
 /* ----------------------------------------------------------------------
    The work of a force is that at the mean of the velocities before and after the step, which is what it does to the kinetic
-   energy of the node
+   energy of the node. A load is of the body that is there; where two bodies meet at a loaded side, each has the share of its mass at
+   the node, so that the load neither presses them on each other nor parts them
 ------------------------------------------------------------------------- */
 
 void FixMPMMesh::find_velocities()
@@ -798,7 +802,7 @@ void FixMPMMesh::find_velocities()
     Node &mine = sums[row];
     before[row] = after[row] = {0.0, 0.0, 0.0};
     if (!(mine.mass > 0.0)) return;
-    forces->add_load(node, ranks.first[node], mine.load);
+    forces->add_load(node, mine.mass / mass_of_all(node), ranks.first[node], mine.load);
     for (int d = 0; d < dim; d++) {
       before[row][d] = mine.momentum[d] / mine.mass;
       after[row][d] = before[row][d] + impulse * (mine.force[d] + mine.load[d]) / mine.mass;

@@ -138,6 +138,7 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   const double *position(int i) const;
   int count_bodies() const;
   std::size_t rows_of(int i) const;
+  double mass_of_all(int node) const;
   MPMMeshBodies bodies();
   FixMPMMaterial *material_of(int i) const;
   void check_points();

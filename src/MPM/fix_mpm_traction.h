@@ -135,6 +135,9 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   double evenness_at_start = 1.0;
   double evenness() const;
   void look_for_curls();
+  bool told_of_stretch = false;
+  double mean_stretch() const;
+  void look_for_stretch();
   void define();
   void add_forces();
   void find_gradient(std::vector<double> &gradient);

@@ -297,8 +297,9 @@ void MPMConduction::init_layers()
           FLERR,
           "Fix mpm/heat: conductivities of materials in fix mpm {} are {:.3g} to {:.3g}, "
           "and with {} there are no means across their interfaces, through which too "
-          "much heat goes: use shape quadratic or cubic{}",
+          "much heat goes{}: use shape quadratic or cubic{}",
           field.id(), least, greatest, total ? "frame total" : "this shape",
+          steepest == 0.0 ? " unless they are in planes of nodes" : "",
           total ? " with frame updated" : "");
   }
   if (!can) {

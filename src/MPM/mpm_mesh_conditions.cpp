@@ -203,10 +203,10 @@ void MPMMeshForces::warn_of_lost_loads(const std::string &user,
 
 /* ---------------------------------------------------------------------- */
 
-void MPMMeshForces::add_load(int node, bool count, double *f)
+void MPMMeshForces::add_load(int node, double share, bool count, double *f)
 {
   if (place[node] < 0) return;
-  const double unit = 1.0 / force->nktv2p;
+  const double unit = share / force->nktv2p;
   for (const auto &mine : of_nodes[place[node]]) {
     auto &c = list[mine.condition];
     if (c.given.kind == MPMMeshCondition::PRESSURE || c.given.kind == MPMMeshCondition::TRACTION)

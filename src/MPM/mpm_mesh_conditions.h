@@ -75,8 +75,8 @@ class MPMMeshForces : protected Pointers {
    *  carries: does this rank count the node, and has it a mass? */
   void warn_of_lost_loads(const std::string &user, const std::function<bool(int)> &carries) const;
 
-  /** Force of all loads on a node [force]. Counts it for the output. */
-  void add_load(int node, bool count, double *force);
+  /** A share of the force of all loads on a node [force]. Counts it for the output. */
+  void add_load(int node, double share, bool count, double *force);
 
   /** Velocity v of a node as its conditions want it. The force on the body, with this mass per time, counts for the output;
    *  0: it does not. */
