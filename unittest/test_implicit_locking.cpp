@@ -164,6 +164,15 @@ SERIAL_TEST(Cook, RubberThatBends)
   EXPECT_NEAR(error(1.0, 70.0, 0.499, 5, 18.515), 0.0, 0.03);
 }
 
+// an average whose points are with several ranks is one for preconditioners
+TEST(Cook, TakesTheSameIterationsOnRanks)
+{
+  Scene run(membrane(4.0, 240.565, 0.4999, 4));
+  EXPECT_LT(measured("linear iterations in each",
+                     run.fix("solve")->compute_vector(1) / run.fix("solve")->compute_vector(0)),
+            18.0);
+}
+
 TEST(Locking, RanksAndRestart)
 {
   for (const char *options : {"locking pressure", "locking pressure shape cubic"}) {

@@ -871,6 +871,11 @@ void MPMImplicit::fill_levels()
     multigrid->add_point(n, nodes, ngrad, gradient, stiffness);
   };
   tangent.each_point(add);
+  tangent.each_mean([&](int64_t around, int material, const double sums[3], int n,
+                        const int64_t *nodes, const double *changes) {
+    const double of_part[] = {late * part * sums[0], sums[1], sums[2]};
+    multigrid->add_mean(around, material, of_part, n, nodes, changes);
+  });
   if (const auto *const loose = members[0]->loose.get()) loose->each_term(add);
   std::vector<double> stiff = mass;
   for (double &m : stiff) m *= inertia;

@@ -880,20 +880,19 @@ void MPMTangent::each_point(const UsePoint &use) const
       }
       for (int k = 0; k < nH; k++)
         for (int l = 0; l < nH; l++) stiffness[size * l + k] = V * K[nH * k + l];
-      if (averages && run.material)    // its pressure is that of each_average()
+      if (averages && run.material)    // its pressure is that of each_mean()
         for (int k = 0; k < nH; k++)
           for (int l = 0; l < nH; l++)
             stiffness[size * l + k] -= V * volume_gradients[nH * i + l] * mean_tangents[nH * i + k];
       use((int) nodes.size(), nodes.data(), ngrad, gradients.data(), stiffness.data());
     }
-  if (averages) each_average(use);
 }
 
 /** A mean pressure p_I = sum_p N_Ip v_p dp_p/v_I works with the change of volume sum_p N_Ip V_p J G_p . H_p around its node. */
-void MPMTangent::each_average(const UsePoint &use) const
+void MPMTangent::each_mean(const UseMean &use) const
 {
   struct Mean {
-    double volume = 0.0, weight = 0.0, modulus = 0.0;
+    double sums[3] = {0.0, 0.0, 0.0};    // N v M, N v, N V
     std::vector<int64_t> nodes;
     std::vector<double> changes;    // [nodes][dim] of the volume by their motion
   };
@@ -901,8 +900,8 @@ void MPMTangent::each_average(const UsePoint &use) const
   const double scale = field.step_data().stress_scale, moment = mls_moment();
   std::vector<MPMStencil::Node> reached;
   std::vector<double> change;
-  std::vector<double> one(nL * nL, 0.0);
-  for (const auto *material : field.materials) {
+  for (std::size_t number = 0; averages && number < field.materials.size(); number++) {
+    const auto *const material = field.materials[number];
     std::unordered_map<int64_t, Mean> at;
     std::vector<int64_t> order;
     for (const auto &run : field.map->runs) {
@@ -932,9 +931,9 @@ void MPMTangent::each_average(const UsePoint &use) const
           if (!(node.weight > 0.0)) continue;
           if (!at.count(node.number)) order.push_back(node.number);
           auto &mean = at[node.number];
-          mean.volume += node.weight * volumes[i];
-          mean.weight += node.weight * V;
-          mean.modulus += node.weight * volumes[i] * gm / gg;
+          mean.sums[0] += node.weight * volumes[i] * gm / gg;
+          mean.sums[1] += node.weight * volumes[i];
+          mean.sums[2] += node.weight * V;
           for (std::size_t j = 0; j < reached.size(); j++) {
             const auto found = std::find(mean.nodes.begin(), mean.nodes.end(), reached[j].number);
             const std::size_t k = found - mean.nodes.begin();
@@ -950,11 +949,8 @@ void MPMTangent::each_average(const UsePoint &use) const
     }
     for (const int64_t node : order) {
       const auto &mean = at[node];
-      for (int l = 0; l < dim; l++)
-        for (int a = 0; a < dim; a++)
-          one[(dim + 1) * l * nL + (dim + 1) * a] =
-              std::max(0.0, mean.modulus / (mean.volume * mean.weight));
-      use((int) mean.nodes.size(), mean.nodes.data(), dim, mean.changes.data(), one.data());
+      use(node, (int) number, mean.sums, (int) mean.nodes.size(), mean.nodes.data(),
+          mean.changes.data());
     }
   }
 }

@@ -97,6 +97,11 @@ class MPMTangent : protected Pointers {
   /** All points of this rank, those of a block one after the other. Around an axis ngrad is dim + 1, where the last entry is
    *  that of H_zz, of the first component alone. */
   void each_point(const UsePoint &) const;
+  /** Averages of the pressure (locking pressure) resist the changes b of the volume around nodes: sums of this rank's points for SplineMultigrid::add_mean(), which each_point() then
+   *  leaves out.  around: the node; material: its number; changes: [n][dim]. */
+  using UseMean = std::function<void(int64_t around, int material, const double sums[3], int n,
+                                     const int64_t *nodes, const double *changes)>;
+  void each_mean(const UseMean &) const;
   /** Largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry, or, of forces on points that change with H, of
    *  this change over a node spacing. Collective. */
   double asymmetry() const;
@@ -152,7 +157,6 @@ class MPMTangent : protected Pointers {
   void differentiate_added(int first, int n, const double *H);
   void average(const MPMNodeScalar::TakeValues &take);
   void average_changes();
-  void each_average(const UsePoint &) const;
 
   void deform(int first, int n, const double *H);
   void find_piola(int first, int n, const double *H, const double *tau, double *P) const;

@@ -69,6 +69,12 @@ void each_parent(int order, int dim, const LatticeIndex &index, const int *perio
           weight[0][i] * weight[1][j] * weight[2][k]);
 }
 
+/** A value [width] of a node. */
+struct NodeValue {
+  int node;
+  double value[3];
+};
+
 /** Blocks in the order in which they came. A row has some ten of them, which are looked through. */
 struct Blocks {
   std::vector<Block> list;
@@ -82,6 +88,29 @@ struct Blocks {
     list.push_back({row, column, {}});
     return list.back();
   }
+  /** c b b^T of the values b [width] of nodes, the lower triangle. */
+  void add_products(const NodeValue *begin, const NodeValue *end, double c, int width)
+  {
+    for (const NodeValue *row = begin; row < end; row++) {
+      if (row->node >= (int) rows.size()) rows.resize(row->node + 1);
+      if (rows.size() > place.size()) place.resize(rows.size(), -1);
+      auto &columns = rows[row->node];
+      for (const auto &[column, k] : columns) place[column] = k;
+      for (const NodeValue *column = begin; column < end; column++) {
+        if (column->node > row->node) continue;
+        int &k = place[column->node];
+        if (k < 0) {
+          k = (int) list.size();
+          columns.emplace_back(column->node, k);
+          list.push_back({row->node, column->node, {}});
+        }
+        double *const to = list[k].value;
+        for (int a = 0; a < width; a++)
+          for (int b = 0; b < width; b++) to[a * width + b] += c * row->value[a] * column->value[b];
+      }
+      for (const auto &[column, k] : columns) place[column] = -1;
+    }
+  }
   /** The same blocks, without values. */
   void zero()
   {
@@ -89,13 +118,15 @@ struct Blocks {
   }
   double memory_usage() const
   {
-    double bytes = list.capacity() * sizeof(Block) + rows.capacity() * sizeof(rows[0]);
+    double bytes = list.capacity() * sizeof(Block) + rows.capacity() * sizeof(rows[0]) +
+        place.capacity() * sizeof(int);
     for (const auto &row : rows) bytes += row.capacity() * sizeof(row[0]);
     return bytes;
   }
 
  private:
   std::vector<std::vector<std::pair<int, int>>> rows;    // columns, and places in the list
+  std::vector<int> place;                                // of the columns of a row, -1: none
 };
 
 /** Adds to one triangle of the element, blocks [number][number] of [W][W], what functions with the gradients [G] have by the stiffness C [G
@@ -124,6 +155,75 @@ void add_blocks(int number, F gradient_of, const double *C, double *element)
     }
   }
 }
+
+/** Means around nodes of which several ranks may have a part: sums that make their stiffness, and values of nodes, one mean after the other. */
+struct Means {
+  struct Head {
+    uint64_t around;
+    int kind, count;    // count: of values
+    double sums[3];
+  };
+  std::vector<Head> heads;
+  std::vector<NodeValue> values;
+
+  void clear()
+  {
+    heads.clear();
+    values.clear();
+  }
+  /** Calls f(begin, end, c) with the values of all ranks for each mean that no rank before this one has a part in.  Collective. */
+  template <class F> void each_of_all(LatticeRanks &ranks, const F &f) const
+  {
+    const auto counts = ranks.gather(std::vector<int>{(int) heads.size()});
+    const auto all = ranks.gather(heads);
+    const auto values_of_all = ranks.gather(values);
+    struct Part {
+      int head, rank;
+      std::size_t first;
+    };
+    std::vector<Part> parts;
+    std::size_t first = 0;
+    for (int p = 0; p < (int) counts.size(); p++)
+      for (int k = 0; k < counts[p]; k++) {
+        parts.push_back({(int) parts.size(), p, first});
+        first += all[parts.back().head].count;
+      }
+    const auto before = [&](const Part &a, const Part &b) {
+      const Head &x = all[a.head], &y = all[b.head];
+      return x.around != y.around ? x.around < y.around : x.kind < y.kind;
+    };
+    std::stable_sort(parts.begin(), parts.end(), before);
+    std::vector<NodeValue> joined;
+    for (std::size_t begin = 0, end; begin < parts.size(); begin = end) {
+      for (end = begin + 1; end < parts.size() && !before(parts[begin], parts[end]);) end++;
+      if (parts[begin].rank != ranks.me()) continue;
+      double sums[3] = {0.0, 0.0, 0.0};
+      joined.clear();
+      for (std::size_t k = begin; k < end; k++) {
+        const Head &head = all[parts[k].head];
+        for (int i = 0; i < 3; i++) sums[i] += head.sums[i];
+        for (int i = 0; i < head.count; i++) {
+          const NodeValue &value = values_of_all[parts[k].first + i];
+          auto found = k == begin
+              ? joined.end()
+              : std::find_if(joined.begin(), joined.end(), [&](const NodeValue &other) {
+                  return other.node == value.node;
+                });
+          if (found == joined.end())
+            joined.push_back(value);
+          else
+            for (int a = 0; a < 3; a++) found->value[a] += value.value[a];
+        }
+      }
+      if (sums[0] > 0.0 && sums[1] > 0.0 && sums[2] > 0.0)
+        f(joined.data(), joined.data() + joined.size(), sums[0] / (sums[1] * sums[2]));
+    }
+  }
+  double memory_usage() const
+  {
+    return heads.capacity() * sizeof(Head) + values.capacity() * sizeof(NodeValue);
+  }
+};
 
 /** A number at random that depends on the place alone. */
 double noise(const LatticeIndex &index, int a)
@@ -193,6 +293,7 @@ struct SplineMultigrid::Levels {
   std::vector<double> element, G, T;
   bool held = false;
   Blocks blocks;
+  Means means, rim_means;    // of nodes of this rank's part of the first level, and of the rim
 
   // of a system that is factorized as a whole, once it has been
   LatticeNodes of_whole;    // all of its nodes
@@ -307,6 +408,7 @@ bool SplineMultigrid::begin_again()
   auto &o = *on;
   if (!o.again) return false;
   o.blocks.zero();
+  o.means.clear();
   for (const auto &held : o.held_blocks) {
     auto &to = o.blocks.at(held.row, held.column);
     for (int ab = 0; ab < o.width * o.width; ab++) to.value[ab] += held.value[ab];
@@ -508,6 +610,35 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
   }
 }
 
+void SplineMultigrid::add_mean(int64_t around, int kind, const double sums[3], int n,
+                               const int64_t *nodes, const double *changes)
+{
+  auto &o = *on;
+  o.flush();
+  Means::Head head{lattice_key(o.index_of(around)), kind, 0, {sums[0], sums[1], sums[2]}};
+  Means::Head of_rim = head;
+  const std::size_t first = o.means.values.size();
+  for (int i = 0; i < n; i++) {
+    double free[3] = {0.0, 0.0, 0.0};
+    o.project(nodes[i], changes + (std::size_t) i * o.width, true, free);
+    for (const auto &part : o.to_mine.of(nodes[i])) {
+      int &at = o.place[part.node];
+      if (at < 0) {
+        at = (int) (o.means.values.size() - first);
+        o.means.values.push_back({part.node, {0.0, 0.0, 0.0}});
+      }
+      for (int a = 0; a < 3; a++) o.means.values[first + at].value[a] += part.weight * free[a];
+    }
+    if (o.rim_number[nodes[i]] < 0) continue;
+    o.rim_means.values.push_back({o.rim_number[nodes[i]], {free[0], free[1], free[2]}});
+    of_rim.count++;
+  }
+  head.count = (int) (o.means.values.size() - first);
+  for (std::size_t k = first; k < o.means.values.size(); k++) o.place[o.means.values[k].node] = -1;
+  o.means.heads.push_back(head);
+  if (of_rim.count) o.rim_means.heads.push_back(of_rim);
+}
+
 /** Each node on the rank that owns it. */
 void SplineMultigrid::Levels::add_masses(const double *mass)
 {
@@ -600,6 +731,16 @@ void SplineMultigrid::Levels::number_blocks()
       for (int j = 0; j < w; j++) turned[i * w + j] = b.value[j * w + i];
     std::copy_n(turned, w * w, b.value);
   }
+  int mine_too = !means.heads.empty();
+  const auto of_ranks = ranks.gather(std::vector<int>{mine_too});
+  if (std::find(of_ranks.begin(), of_ranks.end(), 1) == of_ranks.end()) return;
+  Means numbered = means;
+  for (auto &value : numbered.values) value.node = number[value.node];
+  Blocks more;
+  numbered.each_of_all(ranks, [&](const NodeValue *begin, const NodeValue *end, double c) {
+    more.add_products(begin, end, c, w);
+  });
+  sent.insert(sent.end(), more.list.begin(), more.list.end());
 }
 
 /** The matrix of a system that is factorized as a whole. */
@@ -829,6 +970,16 @@ void SplineMultigrid::Levels::factorize_rim(const double *mass)
       to.value[ab] +=
           held_part[(std::size_t) k * w * w + ab] + (mass ? mass[node] * PP(ab / w, ab % w) : 0.0);
   }
+  rim_means.each_of_all(ranks, [&](const NodeValue *begin, const NodeValue *end, double c) {
+    Blocks more;
+    more.add_products(begin, end, c, w);
+    for (const auto &b : more.list) {
+      if (!rim_factors.together(b.row, b.column)) continue;
+      auto &to = rim_blocks.at(b.row, b.column);
+      for (int ab = 0; ab < w * w; ab++) to.value[ab] += b.value[ab];
+    }
+  });
+  rim_means.clear();
   const auto of_all = ranks.gather(rim_blocks.list);
   rim_blocks = {};
   for (const auto &b : of_all) rim_factors.add(b.row, b.column, b.value);
@@ -1064,7 +1215,8 @@ double SplineMultigrid::memory_usage() const
   constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
   double bytes = o.to_mine.memory_usage() + o.factors.memory_usage() +
       o.rim_factors.memory_usage() + o.plain.capacity() + o.in_system.capacity() +
-      o.blocks.memory_usage() + o.rim_blocks.memory_usage() +
+      o.blocks.memory_usage() + o.rim_blocks.memory_usage() + o.means.memory_usage() +
+      o.rim_means.memory_usage() +
       (o.held_blocks.capacity() + o.sent.capacity() + o.of_all_blocks.capacity()) * sizeof(Block) +
       o.slots.capacity() * sizeof(int) +
       (o.rim_owned.capacity() + o.nodes.capacity()) * sizeof(int64_t);

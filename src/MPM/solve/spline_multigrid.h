@@ -51,6 +51,10 @@ class SplineMultigrid {
    *  l, which around an axis may be one more.  Points of the same nodes are best given one after the other. */
   void add_point(int n, const int64_t *nodes, int ngrad, const double *gradient,
                  const double *stiffness);
+  /** What this rank gives to a mean around a node: K gets c b b^T, with b [n][width] the change of a weighted volume by the motion of nodes, and c = s_0/(s_1
+   *  s_2), all of which are sums over ranks.  kind: means of the same node that are not the same. */
+  void add_mean(int64_t around, int kind, const double sums[3], int n, const int64_t *nodes,
+                const double *changes);
   /** mass: [node], of all ranks, times what makes it a stiffness; null where there is none.  system: A, whose product is wanted
    *  here (some ten times) and in precondition() (four times).  Collective. */
   void finish(LinearSystem &system, const double *mass);
