@@ -727,6 +727,14 @@ TEST(Sources, DetonationProductsConduct)
   // expanded, it is as if all had been there from the start
   compress(p, 2.0, 2000);
   EXPECT_NEAR(value(p, "temperature") / ((E - cold) / C * std::pow(2.0, -omega)), 1.0, 1e-4);
+  // what had burnt from the start is warm, and nothing was conducted to it
+  Point all("density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930 thermal conducting 1000 "
+            "293 1");
+  for (int i = 0; i < 3; i++) {
+    move_to(all, IDENTITY);
+    EXPECT_NEAR(value(all, "temperature"), hot, 1e-9 * hot);
+    EXPECT_EQ(value(all, "heat"), 0.0);
+  }
   // together with viscous heat, once
   const auto viscous =
       std::regex_replace(tnt, std::regex("thermal"), "viscosity newtonian 1e9 thermal");

@@ -184,6 +184,12 @@ class ComposedMaterial : public Material {
     }
     for (auto &row : b.A) std::fill(row, row + b.n, 0.0);
     clear_stress(b);
+    if (eos && eos->info->finds_temperature) {
+      // what had burnt from the start is warm without that anything has been conducted
+      run_eos(b, nullptr);
+      remember_heat(b);
+      return;
+    }
     if (!expands) {
       run(eos, b);
       return;
@@ -364,6 +370,12 @@ class ComposedMaterial : public Material {
   void find_temperature(Batch &b) const
   {
     run(thermal, b);
+    remember_heat(b);
+  }
+
+  /** What an internal energy knows of, see heated. */
+  void remember_heat(Batch &b) const
+  {
     for (int k = 0; k < nheated; k++)
       std::copy_n(b.history[thermal->history + k], b.n, b.history[heated + k]);
   }
