@@ -11,6 +11,7 @@
 
 #include "material/material.h"
 
+#include "law/damage.h"
 #include "law/heat_curve.h"
 #include "material/elastic_motion.h"
 #include "material/heat.h"
@@ -50,6 +51,7 @@ class ComposedMaterial : public Material {
     depend_on_temperature();
     melt_and_solidify();
     expand_by_conducted_heat();
+    expand_by_heat_of_fracture();
     for (const auto &range : definition.ranges) add(range);
     if (definition.shares_stress()) {
       viscous = variables.size();
@@ -305,6 +307,9 @@ class ComposedMaterial : public Material {
   /** First of nheated history variables with the temperature, and the molten fraction, that the internal
    *  energy of an equation of state knows of: conduction may have changed them since. -1: not needed. */
   int heated = -1, nheated = 0;
+  /** History variable with heat of a damaged point that its temperature has, and its internal energy has not got yet;
+   *  -1: not needed. */
+  int unspent = -1;
   /** History variable with the solid share to which the stress belongs, when what melts becomes a liquid with
    *  a viscosity of its own; else -1. molten: the one with the molten fraction. */
   int solid = -1, molten = -1;
@@ -363,7 +368,7 @@ class ComposedMaterial : public Material {
     if (damage) table->mean_stress(b, b.viscous_mean);
     run_eos(b, t);
     if (damage) add_energy(eos, b, b.volume_energy);
-    run(damage, b);
+    run_damage(b);
   }
 
   /** The thermal part, after all others. */
@@ -380,19 +385,25 @@ class ComposedMaterial : public Material {
       std::copy_n(b.history[thermal->history + k], b.n, b.history[heated + k]);
   }
 
-  /* ------------------------------------------------------------------ heat that is conducted */
+  /* ------------------------------------------------------------------ heat for an internal energy */
+
+  /** The thermal part of a material with an internal energy, or null. */
+  const UsedLaw *heating_of_energy() const
+  {
+    const UsedLaw *heating = nullptr;
+    bool expands = false;
+    for (const auto &law : laws) {
+      if (law.part == THERMAL) heating = &law;
+      if (law.part == EOS) expands = law.info->expands;
+    }
+    return expands ? heating : nullptr;
+  }
 
   /** A material with an internal energy, to which fix mpm/heat brings heat. */
   void expand_by_conducted_heat()
   {
-    const auto find = [this](Part part) {
-      return std::find_if(laws.begin(), laws.end(), [=](const auto &law) {
-        return law.part == part;
-      });
-    };
-    const auto heating = find(THERMAL), pressing = find(EOS);
-    if (heating == laws.end() || pressing == laws.end()) return;
-    if (!heating->info->conduction || !pressing->info->expands) return;
+    const UsedLaw *const heating = heating_of_energy();
+    if (!heating || !heating->info->conduction) return;
     heated = variables.size();
     nheated = heating->info->count_history(heating->parameters);
     for (int k = 0; k < nheated; k++) {
@@ -401,16 +412,61 @@ class ComposedMaterial : public Material {
     }
   }
 
-  /** The equation of state. Its internal energy gets what conduction has brought since the last step, too, as
-   *  heat of this one, which the temperature knows of already. */
+  /** A material with an internal energy and a damage, whose work is heat. */
+  void expand_by_heat_of_fracture()
+  {
+    const UsedLaw *const heating = heating_of_energy();
+    if (!heating || !heating->info->fracture_share) return;
+    if (!(heating->info->fracture_share(heating->parameters) > 0.0)) return;
+    unspent = variables.size();
+    variables.push_back({"unspent_heat", 0.0});
+  }
+
+  /** The damage. An internal energy gets the heat of it in the next step: had it got that in this one, its pressure would
+   *  not be the one that has done the work. */
+  void run_damage(Batch &b) const
+  {
+    if (unspent < 0) {
+      run(damage, b);
+      return;
+    }
+    double before[BATCH], *const rest = b.history[unspent];
+    std::copy_n(b.heat, b.n, before);
+    run(damage, b);
+    for (int i = 0; i < b.n; i++) rest[i] += b.heat[i] - before[i];
+  }
+
+  /** Adds what a damage has left for the internal energy. In tension, which a damaged point does not bear, that has the work
+   *  of the undamaged material, and takes it back on the way to compression. Less would come back if heat came on the way,
+   *  and the energy keep work that nobody has done: so this heat, and what is conducted to a failed point, waits. */
+  void spend_heat(Batch &b, double *brought) const
+  {
+    const History history = rows(b, *damage);
+    double *const rest = b.history[unspent], stored[BATCH] = {};
+    add_energy(eos, b, stored);
+    for (int i = 0; i < b.n; i++) {
+      const bool tension = stored[i] > history[law::REST_ENERGY][i];
+      if (history[law::DAMAGED][i] >= 1.0 || !tension) {
+        rest[i] += brought[i];
+        brought[i] = 0.0;
+      }
+      if (tension) continue;
+      brought[i] = rest[i];
+      rest[i] = 0.0;
+    }
+  }
+
+  /** The equation of state. Its internal energy gets what conduction has brought since the last step, and what the
+   *  damage has left for it, too, as heat of this one, which the temperature knows of already. */
   void run_eos(Batch &b, Tangent *t) const
   {
-    if (heated < 0) {
+    if (heated < 0 && unspent < 0) {
       run(eos, b, t);
       return;
     }
-    double own[BATCH], brought[BATCH];
-    find_conducted_heat(b, brought);
+    double own[BATCH], brought[BATCH] = {};
+    if (heated >= 0) find_conducted_heat(b, brought);
+    if (unspent >= 0) spend_heat(b, brought);
     if (eos->info->finds_temperature) {
       // the temperature at the start, which has this heat, belongs to the energy at the start
       double *const energy = b.history[eos->history], *const heat = b.history[eos->history + 1];
