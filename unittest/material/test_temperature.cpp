@@ -572,6 +572,138 @@ TEST(Vary, AdiabaticShear)
   EXPECT_EQ(value(cold, "temperature"), 293);
 }
 
+// the share of plastic work that is heat: of each step, that at the temperature with which it begins, whoever makes the heat,
+// and whatever else varies; the stress does not know of it
+TEST(Vary, ShareOfPlasticWork)
+{
+  const std::string start = "density 7830 eos ", thermal = " thermal adiabatic 477 293 0.5";
+  const double C = 7830 * 477.0;
+  for (const std::string &law : std::vector<std::string>{
+           "linear 162.7e9 strength j2 79.46e9 500e6", "shock 4600 1.4 2 strength j2 79.46e9 500e6",
+           "linear 162.7e9 strength johnson/cook 79.46e9 500e6 510e6 0.26 0.014 1 1 1793 293",
+           "linear 162.7e9 strength j2 79.46e9 500e6 damage johnson/cook 2 0 0 soften from 0",
+           "linear 162.7e9 strength j2 79.46e9 500e6 damage johnson/cook 2 0 0 soften energy 1e6"})
+    for (const std::string more : {"", " expansion 1e-5", " vary strength.G table 293 1 900 0.5"})
+      for (const std::string share :
+           {" vary CHI linear 0.002 293 293 750", " vary CHI table 293 1 350 1.6 500 0.4"}) {
+        if (has(law, "shock") && has(more, "expansion")) continue;
+        SCOPED_TRACE(law + more + share);
+        const bool table = has(share, "table"), broken = has(law, "damage");
+        const std::string all = start + law + thermal + (broken ? " fracture 0.5" : "") + more;
+        Point p(all + share + (broken ? std::regex_replace(share, std::regex("CHI"), "SHARE") : ""),
+                1, 0.01);
+        EXPECT_EQ(p.material.is_thermoelastic(), !more.empty());
+        const auto factor = [&](double T) {
+          if (!table) return 1 + 0.002 * (std::min(T, 750.0) - 293);
+          return T < 350 ? 1 + 0.6 * (T - 293) / 57 : T < 500 ? 1.6 - 1.2 * (T - 350) / 150 : 0.4;
+        };
+        double heat = 0.0, scale = 1e-3;
+        for (int i = 0; i < 3000; i++) {
+          const double T = value(p, "temperature"), work = p.work[PLASTIC] + p.work[FRACTURE];
+          steps(p, {0, 1e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0);
+          heat += 0.5 * factor(T) * (p.work[PLASTIC] + p.work[FRACTURE] - work);
+          scale = std::max(scale, heat);
+          ASSERT_NEAR(p.work[HEAT], heat, 1e-9 * scale) << i;
+          ASSERT_NEAR(C * (value(p, "temperature") - 293), heat, 1e-9 * scale);
+        }
+        EXPECT_GT(value(p, "temperature"), broken ? 360 : 390);
+        if (has(law, "shock")) EXPECT_NEAR(value(p, "heat"), heat, 1e-9 * heat);
+        if (broken || !more.empty() || has(law, "cook")) continue;
+        // dT/dW = CHI(T)/(density CP)
+        if (!table)
+          EXPECT_NEAR((value(p, "temperature") - 293) /
+                          (500 * std::expm1(0.5 * 0.002 * p.work[PLASTIC] / C)),
+                      1.0, 1e-3);
+        Point q(all, 1, 0.01);
+        steps(q, {0, 1e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0, 3000);
+        if (!has(law, "shock")) EXPECT_EQ(distance(stress_of(p), stress_of(q)), 0.0);
+      }
+}
+
+// a specific heat by a formula: the temperature has the heat that is its integral, through melting, too
+TEST(Vary, SpecificHeatByFormula)
+{
+  struct {
+    std::string formula;
+    std::function<double(double)> factor, integral;
+  } cases[] = {{"linear 0.001 300 200 900",
+                [](double T) {
+                  return 1 + 0.001 * (T - 300);
+                },
+                [](double T) {
+                  return T + 0.0005 * (T - 300) * (T - 300);
+                }},
+               {"power 2 300 200 900",
+                [](double T) {
+                  return T * T / 9e4;
+                },
+                [](double T) {
+                  return T * T * T / 27e4;
+                }},
+               {"exponential -0.003 300 200 900",
+                [](double T) {
+                  return std::exp(-0.003 * (T - 300));
+                },
+                [](double T) {
+                  return std::exp(-0.003 * (T - 300)) / -0.003;
+                }},
+               {"arrhenius -500 300 200 900",
+                [](double T) {
+                  return std::exp(-500 * (1 / T - 1 / 300.0));
+                },
+                {}}};
+  for (auto &c : cases) {
+    // without a closed form: by the rule of Simpson
+    if (!c.integral)
+      c.integral = [f = c.factor](double T) {
+        constexpr int N = 20000;
+        double sum = 0.0;
+        for (int k = 0; k <= N; k++)
+          sum += f(200 + k * (T - 200) / N) * (k == 0 || k == N ? 1 : k % 2 ? 4 : 2);
+        return sum * (T - 200) / (3 * N);
+      };
+    for (const std::string melts : {"", " melt 500 2e5", " melt 500 2e5 over 100"}) {
+      SCOPED_TRACE(c.formula + melts);
+      const std::string end = melts + " vary CP " + c.formula;
+      Point p("density 1000 eos linear 1e9 thermal conducting 900 300 50" + end);
+      std::vector<double> first, h;
+      for (std::size_t k = 0; k < p.material.history().size(); k++) first.push_back(p.history(k));
+      const int at = row(p.material, "temperature");
+      const auto sensible = [&](double T) {
+        const double inside = std::min(std::max(T, 200.0), 900.0);
+        return 900 * (c.integral(inside) - c.integral(200) + c.factor(inside) * (T - inside));
+      };
+      const auto heat = [&](double T) {
+        const double share = has(melts, "over") ? (T - 500) / 100 : T > 500;
+        return sensible(T) + (melts.empty() ? 0.0 : 2e5 * std::min(std::max(share, 0.0), 1.0));
+      };
+      // the curve is exact at the limits, and at some temperatures between them
+      first[at] = 200;
+      for (const double T : {120.0, 250.0, 310.0, 499.0, 550.0, 700.0, 900.0, 950.0}) {
+        const bool outside = T < 200 || T >= 900;
+        h = first;
+        p.material.warm(h.data(), heat(T));
+        EXPECT_NEAR(h[at] / T, 1.0, outside ? 1e-9 : 1e-5) << T;
+        EXPECT_NEAR(p.material.conduction(h.data()).capacity /
+                        (900 * c.factor(std::min(std::max(T, 200.0), 900.0))),
+                    1.0, T > 900 ? 1e-9 : 1e-3);
+        p.material.warm(h.data(), -heat(T));
+        EXPECT_NEAR(h[at], 200, 1e-9 * 200);
+      }
+      // by its own work
+      Point q("density 1000 eos linear 1e9 viscosity newtonian 1e12 thermal adiabatic 900 200" +
+              end);
+      for (int i = 0; i < 100; i++) {
+        steps(q, {0, 0.03, 0, 0.03, 0, 0, 0, 0, 0}, 0.001);
+        const double molten = melts.empty() ? 0.0 : 2e5 * value(q, "molten");
+        EXPECT_NEAR((sensible(value(q, "temperature")) + molten) * 1000, q.work[VISCOUS],
+                    1e-5 * 3.6e8);
+      }
+      EXPECT_NEAR(q.work[VISCOUS], 3.6e8, 0.01 * 3.6e8);
+    }
+  }
+}
+
 TEST(Vary, BadInputIsRefused)
 {
   const std::string bad = "linear 1 0.3 thermal adiabatic 1 300 vary ";
@@ -588,7 +720,12 @@ TEST(Vary, BadInputIsRefused)
        {bad + "E power 1 0 200 400", "absolute temperatures"},
        {bad + "E arrhenius 1 300 -1 400", "absolute temperatures"},
        {bad + "E table 1 1 2 1 vary E table 1 1 2 1", "given twice"},
-       {bad + "CHI table 1 1 2 1", "the coefficient of expansion can vary"},
+       {bad + "T0 table 1 1 2 1", "the coefficient of expansion can vary"},
+       {bad + "CHI linear 0.01 300 300 400", "it is 1.8 at the temperature 400"},
+       {bad + "SHARE table 1 1 2 1", "its value is 0"},
+       {bad + "CP linear -0.01 300 300 400", "it is 0 at the temperature 400"},
+       {bad + "CP exponential 1 300 300 310", "too much between its limits"},
+       {bad + "CP power 30 300 200 400", "too much between its limits"},
        {bad + "ALPHA table 1 1 2 1", "its value is 0"},
        {"eos tait 1 7 cutoff -0.1 thermal adiabatic 1 300 vary K table 1 1 2 0.5",
         "at the temperature 2, tait: PMIN is never reached"},
@@ -609,7 +746,7 @@ TEST(Vary, BadInputIsRefused)
        {"eos ideal/gas 1.4 energy 1 thermal adiabatic 1 1 vary E0 table 1 1 2 2", "new points"},
        // the list of what can vary has nothing that cannot
        {"eos linear 1 thermal adiabatic 1 1 expansion 1 vary X table 1 1 2 1",
-        "choose one of eos.K, thermal.CP, thermal.ALPHA$"}},
+        "choose one of eos.K, thermal.CP, thermal.CHI, thermal.ALPHA, thermal.SHARE$"}},
       "density 1 ");
 }
 

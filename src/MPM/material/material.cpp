@@ -32,6 +32,9 @@ namespace {
 /** The density of a material, as its laws declare their parameters. */
 constexpr Parameter DENSITY = {"", "density", "density", POSITIVE, REQUIRED, "reference density"};
 
+/** Of the specific heats at the limits of a formula. */
+constexpr double MOST_RATIO = 1e3;
+
 class ComposedMaterial : public Material {
  public:
   ComposedMaterial(const MaterialDefinition &definition, const LawTable *table) :
@@ -289,7 +292,7 @@ class ComposedMaterial : public Material {
   std::unique_ptr<const RandomParameter> random_density;    ///< when it differs from point to point
   bool shape_matters = false;                               ///< does a law look at F?
   bool speed_matters = false;    ///< does a viscosity look at batch.speed?
-  bool random_heat = false;      ///< does what the thermal part tells the others, too?
+  bool random_heat = false;      ///< does what the thermal part tells the others?
   /** First of six history variables with what viscosities added to the stress in the last step, for
    *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */
   int viscous = -1;
@@ -299,8 +302,7 @@ class ComposedMaterial : public Material {
   bool expands = false;                        ///< does it have thermal expansion?
   std::vector<WarmConductivity> conducting;    ///< those that depend on the temperature
   Conduction mean_conduction = {};             ///< without what differs from point to point
-  std::unique_ptr<const TemperatureFactor>
-      capacity_factor;    ///< of the specific heat, a table; or null
+  std::unique_ptr<const TemperatureFactor> capacity_factor;    ///< of the specific heat; or null
   struct {
     double point, latent, range;
   } melting = {};    ///< TMELT, LATENT, and DT of a thermal part
@@ -531,7 +533,7 @@ class ComposedMaterial : public Material {
       return law.part == THERMAL;
     });
     const bool varies = std::any_of(laws.begin(), laws.end(), [](const auto &law) {
-      return !law.warm.empty();
+      return law.part != THERMAL && !law.warm.empty();
     });
     if (part == laws.end()) return;    // the parser has seen to it that nothing varies
     expands = part->info->expansion && part->info->expansion(part->parameters) != 0.0;
@@ -899,10 +901,13 @@ class ComposedMaterial : public Material {
     LocalParameters(const LocalParameters &) = delete;
 
     /** At the point with the values history[0], history[stride], ... of its history variables, and the
-     *  temperature to which its stress belongs. */
+     *  temperature to which its stress belongs, or, of shares of heat alone, that of now. */
     const LawParameters &at(const double *history, int stride)
     {
-      return at(history, stride, material.seen < 0 ? 0.0 : history[material.seen * stride]);
+      const int row = material.seen >= 0 ? material.seen
+          : material.thermal             ? material.thermal->history
+                                         : -1;
+      return at(history, stride, row < 0 ? 0.0 : history[row * stride]);
     }
     const LawParameters &at(const double *history, int stride, double temperature)
     {
@@ -1072,12 +1077,26 @@ class ComposedMaterial : public Material {
                               std::string("random ") + name +
                                   ": not with melting over a range or a specific heat that varies");
     const double cp = thermal_value("CP");
-    law::HeatCurve::make(
-        of.parameters, capacity_factor ? capacity_factor->knots() : std::vector<double>(),
-        [&](double T) {
-          return capacity_factor ? cp * capacity_factor->at(T) : cp;
-        },
-        melting.point, melting.latent, melting.range);
+    const TemperatureFactor *const f = capacity_factor.get();
+    const bool by_formula = f && !f->is_table();
+    const auto c = [=](double T) {
+      return f ? cp * f->at(T) : cp;
+    };
+    // a formula: such that the heat from one temperature to the next is exact
+    const auto begin = [=](double T1, double T2) {
+      constexpr int PARTS = 8;
+      if (!by_formula) return c(T1);
+      const double width = (T2 - T1) / PARTS;
+      double mean = 0.0;
+      for (int k = 0; k < PARTS; k++) mean += f->mean(T1 + k * width, T1 + (k + 1) * width) / PARTS;
+      return cp * mean - 0.5 * (c(T2) - c(T1));
+    };
+    constexpr int MOST = LawParameters::MAX_TERMS - law::HeatCurve::MORE;
+    law::HeatCurve::make(of.parameters,
+                         by_formula ? f->spread(MOST)
+                             : f    ? f->knots()
+                                    : std::vector<double>(),
+                         c, begin, melting.point, melting.latent, melting.range);
   }
   law::HeatCurve heat_curve() const
   {
@@ -1128,6 +1147,8 @@ class ComposedMaterial : public Material {
   {
     if (random_density) return true;
     const LawInfo &info = *thermal->info;
+    for (const auto &w : thermal->warm)
+      if (is_share(w.declaration(info))) return true;
     for (const auto &r : thermal->random) {
       LawParameters p = thermal->parameters;
       r.of(p) *= 0.5;
@@ -1277,8 +1298,8 @@ class ComposedMaterial : public Material {
     const bool of_capacity = owner->part == THERMAL && is_capacity(declared);
     const bool of_conduction = owner->part == THERMAL && is_conductivity(declared);
     if (owner->part == THERMAL && !can_vary(*owner, declared))
-      refuse("of a thermal part, only CP, the conductivities, and the coefficient of expansion can "
-             "vary");
+      refuse("of a thermal part, only CP, CHI, SHARE, the conductivities, and the coefficient of "
+             "expansion can vary");
     if (declared.of_new_points)
       refuse("it is about the state of new points, which no temperature changes later: choose one "
              "of " +
@@ -1296,9 +1317,9 @@ class ComposedMaterial : public Material {
         if (law.part == EOS && law.info->finds_temperature)
           refuse("the temperature follows from the internal energy of '" + title(law) +
                  "', with a constant CP: leave 'vary' out");
-      if (!vary.factor.is_table()) refuse("the specific heat needs a table");
-      if (static_cast<int>(vary.factor.knots().size()) + law::HeatCurve::MORE >
-          LawParameters::MAX_TERMS)
+      if (vary.factor.is_table() &&
+          static_cast<int>(vary.factor.knots().size()) + law::HeatCurve::MORE >
+              LawParameters::MAX_TERMS)
         refuse("a table of the specific heat can have " +
                std::to_string(LawParameters::MAX_TERMS - law::HeatCurve::MORE) + " entries");
       capacity_factor = std::make_unique<const TemperatureFactor>(vary.factor);
@@ -1315,6 +1336,12 @@ class ComposedMaterial : public Material {
       if ((of_capacity || of_conduction) && !declared.range.contains(value))
         refuse("it is " + number(value) + " at the temperature " + number(T) +
                ", which is out of range");
+    }
+    if (of_capacity && !vary.factor.is_table()) {
+      const double low = vary.factor.at(vary.factor.knots().front()),
+                   high = vary.factor.at(vary.factor.knots().back());
+      if (high > MOST_RATIO * low || low > MOST_RATIO * high)
+        refuse("this formula changes the specific heat too much between its limits");
     }
     text += ", " + what + vary.text;
     varied.push_back({vary, owner, w});
@@ -1345,12 +1372,17 @@ class ComposedMaterial : public Material {
     const char *const name = declared.name;
     return name[0] == 'K' && (name[1] == '\0' || name[1] == '2' || name[1] == '3');
   }
+  /** Is it a share of work that becomes heat? */
+  static bool is_share(const Parameter &declared)
+  {
+    return !strcmp(declared.name, "CHI") || !strcmp(declared.option, "fracture");
+  }
   /** Can a parameter depend on the temperature? */
   static bool can_vary(const UsedLaw &law, const Parameter &declared)
   {
     if (declared.of_new_points || !strcmp(declared.unit, FLAG)) return false;
     return law.part != THERMAL || is_capacity(declared) || is_conductivity(declared) ||
-        !strcmp(declared.option, "expansion");
+        is_share(declared) || !strcmp(declared.option, "expansion");
   }
 
   /** Knots of all factors of a law, and some temperatures between them: what parameters must be
