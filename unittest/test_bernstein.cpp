@@ -81,6 +81,58 @@ TEST(BernsteinKernels, AgreeWithReference)
   }
 }
 
+// a point on the low side of its block that rounding puts into the cell before, of which the tile has one node only
+TEST(BernsteinKernels, PointsOnFacesOfBlocks)
+{
+  for (const char *isa : {"reference", "baseline", "avx2", "avx512"}) {
+    const MPMKernels *table = MPMKernels::select(isa);
+    if (!table) continue;
+    for (int dim : {2, 3}) {
+      const auto kernels = table->transfer_total(dim, BERNSTEIN, APIC, true);
+      const int n = 5, side = block_side(dim), base[3] = {3 * side - 1, -1, -2 * side - 1};
+      const TransferStep step = {0.5, 2.0, {0.3, -0.2, 0.1}, 0.01, 0.9, 1.3, 0.7};
+      Reals x(3 * n), v(3 * n), f(3 * n), C(9 * n), vol0(n, 0.3), mass(n, 0.7), P(9 * n);
+      for (int p = 0; p < n; p++)
+        for (int a = 0; a < 3; a++)
+          x[3 * p + a] = step.origin[a] + step.h * (base[a] + 1) - 1e-15 * p;
+      Reals tile(8 * MAX_TILE_NODES, 0.0);
+      int box[6] = {127, 127, 127, -127, -127, -127};
+      const PointRows rows = {x.data(),    v.data(), f.data(), C.data(), nullptr,  vol0.data(),
+                              mass.data(), x.data(), nullptr,  0,        x.data(), P.data()};
+      kernels.p2g(rows, step, 0, n, base, tile.data(), box);
+      for (int a = 0; a < dim; a++) {
+        EXPECT_EQ(box[a], 1) << isa;
+        EXPECT_EQ(box[3 + a], 1) << isa;
+      }
+      double sum = 0.0;
+      for (int k = 3; k < 8 * MAX_TILE_NODES; k += kernels.nreal) sum += tile[k];
+      EXPECT_NEAR(sum, n * 0.7, 1e-14);
+    }
+  }
+}
+
+// the same in a run: a bar with points on faces of cells, and of which some are those of blocks; none of its last ones, which would have
+// nodes without mass
+SERIAL_TEST(Bernstein, PointsOnFacesOfCells)
+{
+  for (const double origin : {0.9625, 0.9375, 0.8625, 0.8375, 0.7625, 0.7375, 0.6625, 0.6375}) {
+    Scene run(plane("lj", "f p", "0 1.5 0 0.2", 1, 0.005) +
+              "region bar block 0 1 INF INF INF INF\ncreate_points 1 region bar spacing 0.025\n" +
+              strprintf("fix grid all mpm 0.05 origin %g 0 frame total shape bernstein\n", origin) +
+              "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1 1 1\n"
+              "fix heat all mpm/heat\ntimestep 1e-4\nrun 0\n");
+    const auto before = run.gather();
+    run.commands("run 20\n");
+    const auto after = run.gather();
+    EXPECT_EQ(before.size(), after.size());
+    EXPECT_NEAR(Totals(after).mass, 0.2, 1e-12);
+    const auto *const m =
+        dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_style("^mpm/material$")[0]);
+    const int T = m->find_history("temperature");
+    for (int i = 0; i < run.n(); i++) EXPECT_NEAR(m->history[i][T], 1.0, 1e-12);
+  }
+}
+
 // a stretch of a block between a wall and a grip, as in test_total.cpp, and a patch: affine velocity
 // fields are exact, whatever the cells
 SERIAL_TEST(Bernstein, AffineFieldsAreExact)

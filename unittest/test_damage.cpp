@@ -101,6 +101,45 @@ TEST(Deletion, IsOff)
   EXPECT_GT(failed, 8);
 }
 
+// a plate that breaks, and whose heat of fracture makes it expand: all of it is in the temperature and in the internal
+// energy, the ledger closes, and laws make no more errors than without that heat
+TEST(Heat, OfFractureIsInTheInternalEnergy)
+{
+  double laws[2];
+  int k = 0;
+  for (const char *thermal : {"adiabatic 1e-3 300 0", "adiabatic 1e-3 300 0 fracture 0.8",
+                              "conducting 1e-3 300 1e-3 0 fracture 0.8"}) {
+    SCOPED_TRACE(thermal);
+    const bool hot = k > 0;
+    Scene run(replaced(plate("",
+                             std::string("damage rankine 6.0 soften energy 1.0 after friction "
+                                         "0.3 thermal ") +
+                                 thermal),
+                       "eos linear 100.0", "eos shock 10 1.5 2") +
+              (k == 2 ? "fix heat all mpm/heat\n" : "") + "compute e all mpm/energy\nrun 0\n");
+    const double start = run.compute_scalar();
+    run.commands("run 200\n");
+    const double *const e = run.compute_vector();
+    EXPECT_NEAR(measured("residual", e[10] / start), 0.0, 1e-13);
+    EXPECT_GT(measured("work of fracture", e[11] / start), 0.5);
+    const double error = measured("error of laws", e[13] / start);
+    const auto T = history(run, "temperature"), heat = history(run, "heat");
+    const auto left = hot ? history(run, "unspent_heat") : std::vector<double>(T.size());
+    double temperature = 0.0, energy = 0.0;
+    const double volume = 0.25;
+    for (std::size_t i = 1; i < T.size(); i++) {
+      temperature += volume * 1e-3 * (T[i] - 300.0);
+      energy += volume * (heat[i] + left[i]);
+    }
+    EXPECT_NEAR(temperature / start, e[4] / start, 1e-12);
+    EXPECT_NEAR(energy / start, e[4] / start, 1e-12);
+    EXPECT_NEAR(e[4] / start, hot ? 0.8 * e[11] / start : 0.0, 1e-12);
+    if (k < 2) laws[k] = std::fabs(error);
+    k++;
+  }
+  EXPECT_LT(laws[1], 1.2 * laws[0]);
+}
+
 /* ---------------------------------------------------------------------- */
 
 // strengths are a matter of position and seed; a run on many ranks is that on one

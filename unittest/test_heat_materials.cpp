@@ -183,6 +183,36 @@ SERIAL_TEST(Table, OfTheSpecificHeat)
   for (int i = 0; i < run.n(); i++) EXPECT_NEAR(integral(TABLE_T, TABLE_C, warm.T(i)), 1.4, 1e-6);
 }
 
+// The same by a formula, whose heat is that of the integral
+SERIAL_TEST(Formula, OfTheSpecificHeat)
+{
+  const char *const formula = "conducting 1.0 0 1.0 vary CP exponential 0.5 0 0 3";
+  const auto heat = [](double T) {
+    return std::expm1(0.5 * T) / 0.5;
+  };
+  for (const double dt : {0.25, 20.0}) {
+    const int n = 20;
+    Scene run(bar_of(formula, n, "stages 64"));
+    Warm warm(run);
+    warm.set([](const double *x) {
+      return 0.9 + 0.8 * std::cos(PI * x[0]);
+    });
+    const auto enthalpy = [&] {
+      double sum = 0.0;
+      for (int i = 0; i < run.n(); i++) sum += run.mass()[i] * heat(warm.T(i));
+      return over_ranks(sum);
+    };
+    const double before = enthalpy();
+    run_to(run, 0.1, dt / (n * n));
+    EXPECT_NEAR(measured("enthalpy", enthalpy() / before), 1.0, 1e-6);
+  }
+  Scene run(bar_of(formula, 10, "source v_s"));
+  run.commands("variable s equal 2.0\n");
+  run_to(run, 0.7, 0.01);
+  Warm warm(run);
+  for (int i = 0; i < run.n(); i++) EXPECT_NEAR(heat(warm.T(i)), 1.4, 5e-6);
+}
+
 // Melting over a range: heat that comes evenly, and the front of a wide range against a narrow one
 SERIAL_TEST(MeltingRange, TemperatureFollowsHeat)
 {
@@ -462,8 +492,8 @@ SERIAL_TEST(BadInput, IsRefused)
   refused("conducting 1 0 1 orthotropic 1 -1", "K3");
   refused("conducting 1 0 1 orthotropic 1 1 axes 1 0 0 2 0 0", "not parallel");
   refused("conducting 1 0 1 vary thermal.K table 0 1 1 -1", "out of range");
-  refused("conducting 1 0 1 vary CP linear 0.1 0 0 1", "needs a table");
+  refused("conducting 1 0 1 vary CP linear -1.5 0 0 1", "out of range");
   refused("conducting 1 0 1 vary CP table 0 1 1 0", "out of range");
-  refused("conducting 1 0 1 vary CHI table 0 1 1 0.5", "can vary");
+  refused("conducting 1 0 1 vary T0 table 0 1 1 0.5", "can vary");
   refused("conducting 1 0 1 vary CP table 0 1 1 2 random CP normal 0.1 1 7", "random CP");
 }

@@ -112,6 +112,25 @@ PARAMETER_TEST(EndsOfShapes, LetThroughAll, const char *,
   }
 }
 
+// faces of the box have their area with Bernstein polynomials, whose nodes are of two kinds
+SERIAL_TEST(AreaOfFaces, OfBernstein)
+{
+  for (const int dim : {2, 3})
+    for (const double offset : {0.0, 0.5, 1.0}) {
+      const double h = 0.1;
+      Scene run((dim == 2 ? plane("lj", "f p", "0 1 0 0.4", 1, 0.01)
+                          : space("lj", "f p p", "0 1 0 0.4 0 0.6", 1, 0.01)) +
+                strprintf("create_points 1 box spacing %g\n"
+                          "fix grid all mpm %g origin %g 0 %s shape bernstein frame total\n",
+                          0.5 * h, h, -offset * h, dim == 3 ? "0" : "") +
+                "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0 1.0\n"
+                "fix heat all mpm/heat xlo flux 1.0 xhi flux 2.0\ntimestep 1e-4\nrun 1\n");
+      const double *const power = run.fix_vector("heat", 7), area = dim == 2 ? 0.4 : 0.24;
+      EXPECT_NEAR(measured(strprintf("%dd, %g", dim, offset), power[0] / area), 1.0, 1e-9);
+      EXPECT_NEAR(power[1] / area, 2.0, 1e-9);
+    }
+}
+
 // One end is heated, the other one held
 PARAMETER_TEST(Ends, HaveTheirTemperature, const char *,
                Values("shape linear", "shape gimp", "shape cpdi", "shape cubic", "frame total"))

@@ -355,11 +355,24 @@ double MPMHeatFaces::circle(int64_t node) const
 
 /* ---------------------------------------------------------------------- */
 
+/** Cross section of a line of nodes along an axis, in those of a cell: 1, but with Bernstein polynomials a node at the side of a cell
+ *  has 4/3 of a spacing along an axis, and one in the middle 2/3. */
+double MPMHeatFaces::width(int64_t node, int axis) const
+{
+  if (field.options.shape != BERNSTEIN) return 1.0;
+  int index[3];
+  double width = 1.0;
+  field.grid.node_index(node, index);
+  for (int d = 0; d < field.lattice.dim; d++)
+    if (d != axis) width *= (index[d] & 1 ? 2.0 : 4.0) / 3.0;
+  return width;
+}
+
 void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<double> &capacity,
                            const std::vector<double> &volume, const MPMHeatBody *body) const
 {
   const Grid &grid = field.grid;
-  const double cell = grid.lattice.cell_volume();
+  const double cell = width(line.node[0], face.axis) * grid.lattice.cell_volume();
   std::fill_n(line.weight, MOST, 0.0);
   double part[MOST] = {}, most = 0.0, there = 0.0, full = 0.0;
   for (int k = 0; k < face.n; k++) {

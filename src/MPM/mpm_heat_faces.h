@@ -151,6 +151,7 @@ class MPMHeatFaces : protected Pointers {
 
   void prepare(const Face &, Line &, const std::vector<double> &capacity,
                const std::vector<double> &volume, const MPMHeatBody *) const;
+  double width(int64_t node, int axis) const;
   double circle(int64_t node) const;
   bool weigh_by_surface(const Face &, Line &, const MPMHeatBody *) const;
   void find_groups();

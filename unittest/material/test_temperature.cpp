@@ -312,7 +312,7 @@ TEST(Expansion, BadInputIsRefused)
        {"eos linear 1 strength elastic 1 damage rankine 1 weibull 5 1 7 thermal adiabatic 1 1 "
         "expansion 1",
         "random SIGMA"},
-       {"eos shock 1 1 1 strength elastic 1 thermal adiabatic 1 1 fracture 1", "would not get"},
+       {"eos shock 1 1 1 strength elastic 1 thermal adiabatic 1 1 fracture 1", "add a part damage"},
        {"eos linear 1 strength elastic 1 thermal adiabatic 1 1 fracture 1", "add a part damage"},
        {"linear 1 0 thermal conducting 1 1 1 fracture 0.5", "add a part damage"},
        {"linear 1 0 thermal adiabatic 1 -40 gruneisen 1", "T0 above zero"},
@@ -572,6 +572,138 @@ TEST(Vary, AdiabaticShear)
   EXPECT_EQ(value(cold, "temperature"), 293);
 }
 
+// the share of plastic work that is heat: of each step, that at the temperature with which it begins, whoever makes the heat,
+// and whatever else varies; the stress does not know of it
+TEST(Vary, ShareOfPlasticWork)
+{
+  const std::string start = "density 7830 eos ", thermal = " thermal adiabatic 477 293 0.5";
+  const double C = 7830 * 477.0;
+  for (const std::string &law : std::vector<std::string>{
+           "linear 162.7e9 strength j2 79.46e9 500e6", "shock 4600 1.4 2 strength j2 79.46e9 500e6",
+           "linear 162.7e9 strength johnson/cook 79.46e9 500e6 510e6 0.26 0.014 1 1 1793 293",
+           "linear 162.7e9 strength j2 79.46e9 500e6 damage johnson/cook 2 0 0 soften from 0",
+           "linear 162.7e9 strength j2 79.46e9 500e6 damage johnson/cook 2 0 0 soften energy 1e6"})
+    for (const std::string more : {"", " expansion 1e-5", " vary strength.G table 293 1 900 0.5"})
+      for (const std::string share :
+           {" vary CHI linear 0.002 293 293 750", " vary CHI table 293 1 350 1.6 500 0.4"}) {
+        if (has(law, "shock") && has(more, "expansion")) continue;
+        SCOPED_TRACE(law + more + share);
+        const bool table = has(share, "table"), broken = has(law, "damage");
+        const std::string all = start + law + thermal + (broken ? " fracture 0.5" : "") + more;
+        Point p(all + share + (broken ? std::regex_replace(share, std::regex("CHI"), "SHARE") : ""),
+                1, 0.01);
+        EXPECT_EQ(p.material.is_thermoelastic(), !more.empty());
+        const auto factor = [&](double T) {
+          if (!table) return 1 + 0.002 * (std::min(T, 750.0) - 293);
+          return T < 350 ? 1 + 0.6 * (T - 293) / 57 : T < 500 ? 1.6 - 1.2 * (T - 350) / 150 : 0.4;
+        };
+        double heat = 0.0, scale = 1e-3;
+        for (int i = 0; i < 3000; i++) {
+          const double T = value(p, "temperature"), work = p.work[PLASTIC] + p.work[FRACTURE];
+          steps(p, {0, 1e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0);
+          heat += 0.5 * factor(T) * (p.work[PLASTIC] + p.work[FRACTURE] - work);
+          scale = std::max(scale, heat);
+          ASSERT_NEAR(p.work[HEAT], heat, 1e-9 * scale) << i;
+          ASSERT_NEAR(C * (value(p, "temperature") - 293), heat, 1e-9 * scale);
+        }
+        EXPECT_GT(value(p, "temperature"), broken ? 360 : 390);
+        if (has(law, "shock")) EXPECT_NEAR(value(p, "heat"), heat, 1e-9 * heat);
+        if (broken || !more.empty() || has(law, "cook")) continue;
+        // dT/dW = CHI(T)/(density CP)
+        if (!table)
+          EXPECT_NEAR((value(p, "temperature") - 293) /
+                          (500 * std::expm1(0.5 * 0.002 * p.work[PLASTIC] / C)),
+                      1.0, 1e-3);
+        Point q(all, 1, 0.01);
+        steps(q, {0, 1e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0, 3000);
+        if (!has(law, "shock")) EXPECT_EQ(distance(stress_of(p), stress_of(q)), 0.0);
+      }
+}
+
+// a specific heat by a formula: the temperature has the heat that is its integral, through melting, too
+TEST(Vary, SpecificHeatByFormula)
+{
+  struct {
+    std::string formula;
+    std::function<double(double)> factor, integral;
+  } cases[] = {{"linear 0.001 300 200 900",
+                [](double T) {
+                  return 1 + 0.001 * (T - 300);
+                },
+                [](double T) {
+                  return T + 0.0005 * (T - 300) * (T - 300);
+                }},
+               {"power 2 300 200 900",
+                [](double T) {
+                  return T * T / 9e4;
+                },
+                [](double T) {
+                  return T * T * T / 27e4;
+                }},
+               {"exponential -0.003 300 200 900",
+                [](double T) {
+                  return std::exp(-0.003 * (T - 300));
+                },
+                [](double T) {
+                  return std::exp(-0.003 * (T - 300)) / -0.003;
+                }},
+               {"arrhenius -500 300 200 900",
+                [](double T) {
+                  return std::exp(-500 * (1 / T - 1 / 300.0));
+                },
+                {}}};
+  for (auto &c : cases) {
+    // without a closed form: by the rule of Simpson
+    if (!c.integral)
+      c.integral = [f = c.factor](double T) {
+        constexpr int N = 20000;
+        double sum = 0.0;
+        for (int k = 0; k <= N; k++)
+          sum += f(200 + k * (T - 200) / N) * (k == 0 || k == N ? 1 : k % 2 ? 4 : 2);
+        return sum * (T - 200) / (3 * N);
+      };
+    for (const std::string melts : {"", " melt 500 2e5", " melt 500 2e5 over 100"}) {
+      SCOPED_TRACE(c.formula + melts);
+      const std::string end = melts + " vary CP " + c.formula;
+      Point p("density 1000 eos linear 1e9 thermal conducting 900 300 50" + end);
+      std::vector<double> first, h;
+      for (std::size_t k = 0; k < p.material.history().size(); k++) first.push_back(p.history(k));
+      const int at = row(p.material, "temperature");
+      const auto sensible = [&](double T) {
+        const double inside = std::min(std::max(T, 200.0), 900.0);
+        return 900 * (c.integral(inside) - c.integral(200) + c.factor(inside) * (T - inside));
+      };
+      const auto heat = [&](double T) {
+        const double share = has(melts, "over") ? (T - 500) / 100 : T > 500;
+        return sensible(T) + (melts.empty() ? 0.0 : 2e5 * std::min(std::max(share, 0.0), 1.0));
+      };
+      // the curve is exact at the limits, and at some temperatures between them
+      first[at] = 200;
+      for (const double T : {120.0, 250.0, 310.0, 499.0, 550.0, 700.0, 900.0, 950.0}) {
+        const bool outside = T < 200 || T >= 900;
+        h = first;
+        p.material.warm(h.data(), heat(T));
+        EXPECT_NEAR(h[at] / T, 1.0, outside ? 1e-9 : 1e-5) << T;
+        EXPECT_NEAR(p.material.conduction(h.data()).capacity /
+                        (900 * c.factor(std::min(std::max(T, 200.0), 900.0))),
+                    1.0, T > 900 ? 1e-9 : 1e-3);
+        p.material.warm(h.data(), -heat(T));
+        EXPECT_NEAR(h[at], 200, 1e-9 * 200);
+      }
+      // by its own work
+      Point q("density 1000 eos linear 1e9 viscosity newtonian 1e12 thermal adiabatic 900 200" +
+              end);
+      for (int i = 0; i < 100; i++) {
+        steps(q, {0, 0.03, 0, 0.03, 0, 0, 0, 0, 0}, 0.001);
+        const double molten = melts.empty() ? 0.0 : 2e5 * value(q, "molten");
+        EXPECT_NEAR((sensible(value(q, "temperature")) + molten) * 1000, q.work[VISCOUS],
+                    1e-5 * 3.6e8);
+      }
+      EXPECT_NEAR(q.work[VISCOUS], 3.6e8, 0.01 * 3.6e8);
+    }
+  }
+}
+
 TEST(Vary, BadInputIsRefused)
 {
   const std::string bad = "linear 1 0.3 thermal adiabatic 1 300 vary ";
@@ -588,7 +720,12 @@ TEST(Vary, BadInputIsRefused)
        {bad + "E power 1 0 200 400", "absolute temperatures"},
        {bad + "E arrhenius 1 300 -1 400", "absolute temperatures"},
        {bad + "E table 1 1 2 1 vary E table 1 1 2 1", "given twice"},
-       {bad + "CHI table 1 1 2 1", "the coefficient of expansion can vary"},
+       {bad + "T0 table 1 1 2 1", "the coefficient of expansion can vary"},
+       {bad + "CHI linear 0.01 300 300 400", "it is 1.8 at the temperature 400"},
+       {bad + "SHARE table 1 1 2 1", "its value is 0"},
+       {bad + "CP linear -0.01 300 300 400", "it is 0 at the temperature 400"},
+       {bad + "CP exponential 1 300 300 310", "too much between its limits"},
+       {bad + "CP power 30 300 200 400", "too much between its limits"},
        {bad + "ALPHA table 1 1 2 1", "its value is 0"},
        {"eos tait 1 7 cutoff -0.1 thermal adiabatic 1 300 vary K table 1 1 2 0.5",
         "at the temperature 2, tait: PMIN is never reached"},
@@ -609,7 +746,7 @@ TEST(Vary, BadInputIsRefused)
        {"eos ideal/gas 1.4 energy 1 thermal adiabatic 1 1 vary E0 table 1 1 2 2", "new points"},
        // the list of what can vary has nothing that cannot
        {"eos linear 1 thermal adiabatic 1 1 expansion 1 vary X table 1 1 2 1",
-        "choose one of eos.K, thermal.CP, thermal.ALPHA$"}},
+        "choose one of eos.K, thermal.CP, thermal.CHI, thermal.ALPHA, thermal.SHARE$"}},
       "density 1 ");
 }
 
@@ -636,6 +773,122 @@ TEST(Sources, WorkOfDamage)
       EXPECT_NEAR(p.work[HEAT], heat, 1e-9 * (heat + 1));
       EXPECT_NEAR(2700 * 900 * (value(p, "temperature") - 293), heat, 1e-6 * (heat + 1));
     }
+}
+
+// the heat of a damage is in the internal energy as it is in the temperature, and raises the pressure. A point that is torn
+// apart and pushed together again: work of the pressure is what is stored, and what is set free
+TEST(Sources, WorkOfDamageRaisesThePressure)
+{
+  constexpr double SHARE = 0.6, CP = 900;
+  const struct {
+    std::string eos;
+    double density, gamma;
+  } cases[] = {{"shock 5000 1.4 2", 2700, 2},
+               {"polynomial 7e10 8e10 5e10 2 1.5 6e10 0", 2700, 2},
+               {"stiffened/gas 4.4 3e10", 1000, 3.4}};
+  for (const auto &c : cases)
+    for (const std::string kind : {"adiabatic 900 300 0.8", "conducting 900 300 50 0.8"})
+      for (const std::string soft : {"", " soften energy 5e5"}) {
+        SCOPED_TRACE(c.eos + " " + kind + soft);
+        // a gas follows the isentrope: no work by the trapezoidal rule
+        const bool gas = has(c.eos, "gas"), conducts = has(kind, "conducting");
+        Point p(joined("density ", c.density, " eos ", c.eos,
+                       " strength elastic 26e9 damage rankine 2e9", soft, " thermal ", kind,
+                       " fracture ", SHARE),
+                1, 0.01);
+        const auto heat = [&p] {
+          return value(p, "heat") + value(p, "unspent_heat");
+        };
+        move_to(p, IDENTITY);
+        const double stored0 = p.stored_energy();
+        double work = 0.0, brought = 0.0;
+        const auto steps_to = [&](double J) {
+          const double from = p.batch.J[0];
+          for (int i = 1; i <= 50; i++) {
+            const double Jold = p.batch.J[0], old = p.pressure();
+            if (conducts && value(p, "damage") == 1.0) {
+              warm_to(p, value(p, "temperature") + 0.1);
+              brought += c.density * CP * 0.1;
+            }
+            move_to(p, isotropic(std::cbrt(from + i * (J - from) / 50)));
+            work -= 0.5 * (old + p.pressure()) * (p.batch.J[0] - Jold);
+            const double q = SHARE * p.work[FRACTURE] + brought;
+            if (!gas && (soft.empty() || value(p, "damage") == 0.0))
+              EXPECT_NEAR(p.stored_energy() - stored0 + p.work[FRACTURE], work, 1e-9 * 2e7);
+            EXPECT_NEAR(heat(), q, 1e-9 * 2e7);
+            EXPECT_NEAR(c.density * CP * (value(p, "temperature") - 300), q, 1e-9 * 2e7);
+          }
+        };
+        steps_to(1.08);
+        EXPECT_EQ(value(p, "damage"), 1.0);
+        const double set_free = p.work[FRACTURE];
+        EXPECT_GT(set_free, 1e7);
+        EXPECT_NEAR(p.pressure(), 0.0, 1.0);
+        const double before = work - p.stored_energy();
+        steps_to(1.0);
+        steps_to(0.97);
+        steps_to(1.0);
+        move_to(p, IDENTITY);
+        if (!gas) EXPECT_NEAR(work - p.stored_energy(), before, 1e-9 * 2e7);
+        EXPECT_EQ(p.work[FRACTURE], set_free);
+        EXPECT_NEAR(p.work[HEAT], SHARE * set_free, 1e-9 * set_free);
+        EXPECT_EQ(value(p, "unspent_heat"), 0.0);
+        const double thermal = SHARE * set_free + brought;
+        EXPECT_NEAR(p.pressure() / (c.gamma * thermal), 1.0, 0.05);
+      }
+}
+
+// the same in any motion, with plastic work, to second order in the step as without heat; plastic work that is heat in
+// tension brings an error that has nothing to do with that of the damage, so that there is none of it here
+TEST(Sources, WorkOfDamageWithPlasticWork)
+{
+  const std::string start = "density 7850 eos shock 4600 1.4 2 strength j2 77e9 490e6 damage ";
+  for (const char *damage : {"johnson/cook 0.004 0.002 -1.5 soften from 0.2 after friction 0.4",
+                             "johnson/cook 0.004 0.002 -1.5 after none", "rankine 4e8",
+                             "rankine 4e8 soften energy 1e4 after friction 0.4"})
+    for (const double chi : {0.0, 0.8}) {
+      SCOPED_TRACE(joined(damage, " ", chi));
+      const auto material =
+          make(joined(start, damage, " thermal adiabatic 460 293 ", chi, " fracture 0.7"));
+      double error[3] = {}, scale = 0.0;
+      for (int level = 0; level < 3; level++) {
+        MaterialPoint p(*material, 1, 0.01);
+        const int n = 500 << 2 * level;
+        for (int i = 0; i < n; i++) {
+          const double t = 2 * M_PI * (i + 0.5) / n, c = std::cos(t), s = std::sin(t);
+          steps(p, {0.03 * c, 0.05 * c, 0, 0.01 * c, -0.002 * s, 0.02 * s, 0, 0, 0.01 * c},
+                1.0 / n);
+          const double accounted = p.stored_energy() + p.work[PLASTIC] + p.work[FRACTURE];
+          error[level] = std::max(error[level], std::fabs(accounted - p.power));
+          scale = std::max(scale, p.power);
+          const double heat = chi * p.work[PLASTIC] + 0.7 * p.work[FRACTURE];
+          ASSERT_NEAR(value(p, "heat") + value(p, "unspent_heat"), heat, 1e-9 * scale);
+          ASSERT_NEAR(7850 * 460 * (value(p, "temperature") - 293), heat, 1e-9 * scale);
+        }
+        EXPECT_EQ(value(p, "damage"), 1.0);
+        EXPECT_GT(p.work[FRACTURE], 0.01 * scale);
+      }
+      for (int level = 0; level < 3 && chi == 0.0; level++)
+        EXPECT_LT(error[level], 6e-5 / (1 << 4 * level) * scale) << level;
+    }
+  // detonation products bear no tension, but break by shear: their temperature follows from the energy
+  Point p(
+      "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930 strength j2 3e9 1e8 damage "
+      "johnson/cook 0.05 0 0 thermal conducting 1000 293 1 0.9 fracture 0.5");
+  move_to(p, IDENTITY);
+  const double start_T = value(p, "temperature"), E = value(p, "energy");
+  steps(p, {0, 1e-3, 0, 1e-3, 0, 0, 0, 0, 0}, 1.0, 100);
+  EXPECT_EQ(value(p, "damage"), 1.0);
+  const double heat = 0.9 * p.work[PLASTIC] + 0.5 * p.work[FRACTURE];
+  EXPECT_GT(0.5 * p.work[FRACTURE], 1e-3 * heat);
+  EXPECT_NEAR(value(p, "heat"), heat, 1e-9 * heat);
+  const double J = p.batch.J[0];
+  EXPECT_NEAR(J, 1.0, 0.01);
+  const auto cold = [](double J) {
+    return 371.2e9 / 4.15 * std::exp(-4.15 * J) + 3.231e9 / 0.95 * std::exp(-0.95 * J);
+  };
+  EXPECT_NEAR(1630 * 1000 * (value(p, "temperature") - start_T),
+              value(p, "energy") - E - cold(J) + cold(1.0), 1e-9 * E);
 }
 
 // all that any law dissipates warms its point: the share CHI of plastic work, and all viscous work
@@ -727,6 +980,14 @@ TEST(Sources, DetonationProductsConduct)
   // expanded, it is as if all had been there from the start
   compress(p, 2.0, 2000);
   EXPECT_NEAR(value(p, "temperature") / ((E - cold) / C * std::pow(2.0, -omega)), 1.0, 1e-4);
+  // what had burnt from the start is warm, and nothing was conducted to it
+  Point all("density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930 thermal conducting 1000 "
+            "293 1");
+  for (int i = 0; i < 3; i++) {
+    move_to(all, IDENTITY);
+    EXPECT_NEAR(value(all, "temperature"), hot, 1e-9 * hot);
+    EXPECT_EQ(value(all, "heat"), 0.0);
+  }
   // together with viscous heat, once
   const auto viscous =
       std::regex_replace(tnt, std::regex("thermal"), "viscosity newtonian 1e9 thermal");

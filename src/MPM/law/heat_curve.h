@@ -21,7 +21,8 @@ namespace MPM_NS::law {
 namespace {
 
   /** Enthalpy per mass as a function H(T) of the temperature: between knots the specific heat is linear in
-   *  T, before the first and behind the last one constant. The knots are the terms {T, specific heat, its
+   *  T, before the first and behind the last one constant. (Of a formula, it jumps at knots by what makes the heat
+   *  from one to the next exact.) The knots are the terms {T, specific heat, its
    *  slope, H} of the parameters of a thermal part. Where melting takes no range, a knot without specific
    *  heat is the end of the solid, and the next one, at the same temperature, the beginning of the melt.
    *
@@ -33,11 +34,11 @@ namespace {
     const LawParameters &p;
     double melt, latent, over;
 
-    /** Makes the knots, from a specific heat c(T) with straight lines between these temperatures and constant
-     *  outside of them. */
-    template <class Capacity>
-    static void make(LawParameters &p, std::vector<double> T, const Capacity &c, double melt,
-                     double latent, double over)
+    /** Makes the knots, from a specific heat c(T) that is constant outside of these temperatures. Between two of them a
+     *  straight line takes its place, which rises by what c does and begins with begin(T1, T2). */
+    template <class Capacity, class Begin>
+    static void make(LawParameters &p, std::vector<double> T, const Capacity &c, const Begin &begin,
+                     double melt, double latent, double over)
     {
       if (latent > 0.0) {
         T.push_back(melt);
@@ -67,7 +68,8 @@ namespace {
         const double width = last ? 1.0 : T[k + 1] - T[k];
         const double slope = last ? 0.0 : (c(T[k + 1]) - c(T[k])) / width;
         const bool melting = over > 0.0 && T[k] >= melt && T[k] < melt + over;
-        const double capacity = c(T[k]) + (latent > 0.0 && melting ? latent / over : 0.0);
+        const double first = last ? c(T[k]) : begin(T[k], T[k + 1]);
+        const double capacity = first + (latent > 0.0 && melting ? latent / over : 0.0);
         add(T[k], capacity, slope);
         H += width * (capacity + 0.5 * slope * width);
       }

@@ -125,12 +125,12 @@ struct LawInfo {
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
   bool uses_F;        ///< does any kernel read batch.F? Else J and A are all that it knows
   /** Of an equation of state: does it have an internal energy, which heat raises, so that it expands? Then
-   *  no 'expansion' goes with it, and what conduction brings is in batch.heat when it is updated, if it does not find
-   *  the temperature. */
+   *  no 'expansion' goes with it, and what conduction brings, and what a damage has made in the last step, is in
+   *  batch.heat when it is updated, if it does not find the temperature. */
   bool expands;
   /** Of an equation of state: does the temperature follow from its internal energy? Then no other part
    *  changes that but by heat, the first two rows of its history are that energy and the dissipated part of it, and
-   *  what conduction brings is in both before it is updated. */
+   *  what conduction and a damage bring is in both before it is updated. */
   bool finds_temperature;
   /** Of a closed law: does it bear nothing across the plane of its axes 1 and 2, so that it is for surfaces only? */
   bool of_surfaces;

@@ -11,6 +11,7 @@
 
 #include "material/material.h"
 
+#include "law/damage.h"
 #include "law/heat_curve.h"
 #include "material/elastic_motion.h"
 #include "material/heat.h"
@@ -31,6 +32,9 @@ namespace {
 /** The density of a material, as its laws declare their parameters. */
 constexpr Parameter DENSITY = {"", "density", "density", POSITIVE, REQUIRED, "reference density"};
 
+/** Of the specific heats at the limits of a formula. */
+constexpr double MOST_RATIO = 1e3;
+
 class ComposedMaterial : public Material {
  public:
   ComposedMaterial(const MaterialDefinition &definition, const LawTable *table) :
@@ -50,6 +54,7 @@ class ComposedMaterial : public Material {
     depend_on_temperature();
     melt_and_solidify();
     expand_by_conducted_heat();
+    expand_by_heat_of_fracture();
     for (const auto &range : definition.ranges) add(range);
     if (definition.shares_stress()) {
       viscous = variables.size();
@@ -184,6 +189,12 @@ class ComposedMaterial : public Material {
     }
     for (auto &row : b.A) std::fill(row, row + b.n, 0.0);
     clear_stress(b);
+    if (eos && eos->info->finds_temperature) {
+      // what had burnt from the start is warm without that anything has been conducted
+      run_eos(b, nullptr);
+      remember_heat(b);
+      return;
+    }
     if (!expands) {
       run(eos, b);
       return;
@@ -281,7 +292,7 @@ class ComposedMaterial : public Material {
   std::unique_ptr<const RandomParameter> random_density;    ///< when it differs from point to point
   bool shape_matters = false;                               ///< does a law look at F?
   bool speed_matters = false;    ///< does a viscosity look at batch.speed?
-  bool random_heat = false;      ///< does what the thermal part tells the others, too?
+  bool random_heat = false;      ///< does what the thermal part tells the others?
   /** First of six history variables with what viscosities added to the stress in the last step, for
    *  a closed law or strength that builds on that stress and must not see it; -1 when not needed. */
   int viscous = -1;
@@ -291,14 +302,16 @@ class ComposedMaterial : public Material {
   bool expands = false;                        ///< does it have thermal expansion?
   std::vector<WarmConductivity> conducting;    ///< those that depend on the temperature
   Conduction mean_conduction = {};             ///< without what differs from point to point
-  std::unique_ptr<const TemperatureFactor>
-      capacity_factor;    ///< of the specific heat, a table; or null
+  std::unique_ptr<const TemperatureFactor> capacity_factor;    ///< of the specific heat; or null
   struct {
     double point, latent, range;
   } melting = {};    ///< TMELT, LATENT, and DT of a thermal part
   /** First of nheated history variables with the temperature, and the molten fraction, that the internal
    *  energy of an equation of state knows of: conduction may have changed them since. -1: not needed. */
   int heated = -1, nheated = 0;
+  /** History variable with heat of a damaged point that its temperature has, and its internal energy has not got yet;
+   *  -1: not needed. */
+  int unspent = -1;
   /** History variable with the solid share to which the stress belongs, when what melts becomes a liquid with
    *  a viscosity of its own; else -1. molten: the one with the molten fraction. */
   int solid = -1, molten = -1;
@@ -357,30 +370,42 @@ class ComposedMaterial : public Material {
     if (damage) table->mean_stress(b, b.viscous_mean);
     run_eos(b, t);
     if (damage) add_energy(eos, b, b.volume_energy);
-    run(damage, b);
+    run_damage(b);
   }
 
   /** The thermal part, after all others. */
   void find_temperature(Batch &b) const
   {
     run(thermal, b);
+    remember_heat(b);
+  }
+
+  /** What an internal energy knows of, see heated. */
+  void remember_heat(Batch &b) const
+  {
     for (int k = 0; k < nheated; k++)
       std::copy_n(b.history[thermal->history + k], b.n, b.history[heated + k]);
   }
 
-  /* ------------------------------------------------------------------ heat that is conducted */
+  /* ------------------------------------------------------------------ heat for an internal energy */
+
+  /** The thermal part of a material with an internal energy, or null. */
+  const UsedLaw *heating_of_energy() const
+  {
+    const UsedLaw *heating = nullptr;
+    bool expands = false;
+    for (const auto &law : laws) {
+      if (law.part == THERMAL) heating = &law;
+      if (law.part == EOS) expands = law.info->expands;
+    }
+    return expands ? heating : nullptr;
+  }
 
   /** A material with an internal energy, to which fix mpm/heat brings heat. */
   void expand_by_conducted_heat()
   {
-    const auto find = [this](Part part) {
-      return std::find_if(laws.begin(), laws.end(), [=](const auto &law) {
-        return law.part == part;
-      });
-    };
-    const auto heating = find(THERMAL), pressing = find(EOS);
-    if (heating == laws.end() || pressing == laws.end()) return;
-    if (!heating->info->conduction || !pressing->info->expands) return;
+    const UsedLaw *const heating = heating_of_energy();
+    if (!heating || !heating->info->conduction) return;
     heated = variables.size();
     nheated = heating->info->count_history(heating->parameters);
     for (int k = 0; k < nheated; k++) {
@@ -389,16 +414,61 @@ class ComposedMaterial : public Material {
     }
   }
 
-  /** The equation of state. Its internal energy gets what conduction has brought since the last step, too, as
-   *  heat of this one, which the temperature knows of already. */
+  /** A material with an internal energy and a damage, whose work is heat. */
+  void expand_by_heat_of_fracture()
+  {
+    const UsedLaw *const heating = heating_of_energy();
+    if (!heating || !heating->info->fracture_share) return;
+    if (!(heating->info->fracture_share(heating->parameters) > 0.0)) return;
+    unspent = variables.size();
+    variables.push_back({"unspent_heat", 0.0});
+  }
+
+  /** The damage. An internal energy gets the heat of it in the next step: had it got that in this one, its pressure would
+   *  not be the one that has done the work. */
+  void run_damage(Batch &b) const
+  {
+    if (unspent < 0) {
+      run(damage, b);
+      return;
+    }
+    double before[BATCH], *const rest = b.history[unspent];
+    std::copy_n(b.heat, b.n, before);
+    run(damage, b);
+    for (int i = 0; i < b.n; i++) rest[i] += b.heat[i] - before[i];
+  }
+
+  /** Adds what a damage has left for the internal energy. In tension, which a damaged point does not bear, that has the work
+   *  of the undamaged material, and takes it back on the way to compression. Less would come back if heat came on the way,
+   *  and the energy keep work that nobody has done: so this heat, and what is conducted to a failed point, waits. */
+  void spend_heat(Batch &b, double *brought) const
+  {
+    const History history = rows(b, *damage);
+    double *const rest = b.history[unspent], stored[BATCH] = {};
+    add_energy(eos, b, stored);
+    for (int i = 0; i < b.n; i++) {
+      const bool tension = stored[i] > history[law::REST_ENERGY][i];
+      if (history[law::DAMAGED][i] >= 1.0 || !tension) {
+        rest[i] += brought[i];
+        brought[i] = 0.0;
+      }
+      if (tension) continue;
+      brought[i] = rest[i];
+      rest[i] = 0.0;
+    }
+  }
+
+  /** The equation of state. Its internal energy gets what conduction has brought since the last step, and what the
+   *  damage has left for it, too, as heat of this one, which the temperature knows of already. */
   void run_eos(Batch &b, Tangent *t) const
   {
-    if (heated < 0) {
+    if (heated < 0 && unspent < 0) {
       run(eos, b, t);
       return;
     }
-    double own[BATCH], brought[BATCH];
-    find_conducted_heat(b, brought);
+    double own[BATCH], brought[BATCH] = {};
+    if (heated >= 0) find_conducted_heat(b, brought);
+    if (unspent >= 0) spend_heat(b, brought);
     if (eos->info->finds_temperature) {
       // the temperature at the start, which has this heat, belongs to the energy at the start
       double *const energy = b.history[eos->history], *const heat = b.history[eos->history + 1];
@@ -463,7 +533,7 @@ class ComposedMaterial : public Material {
       return law.part == THERMAL;
     });
     const bool varies = std::any_of(laws.begin(), laws.end(), [](const auto &law) {
-      return !law.warm.empty();
+      return law.part != THERMAL && !law.warm.empty();
     });
     if (part == laws.end()) return;    // the parser has seen to it that nothing varies
     expands = part->info->expansion && part->info->expansion(part->parameters) != 0.0;
@@ -831,10 +901,13 @@ class ComposedMaterial : public Material {
     LocalParameters(const LocalParameters &) = delete;
 
     /** At the point with the values history[0], history[stride], ... of its history variables, and the
-     *  temperature to which its stress belongs. */
+     *  temperature to which its stress belongs, or, of shares of heat alone, that of now. */
     const LawParameters &at(const double *history, int stride)
     {
-      return at(history, stride, material.seen < 0 ? 0.0 : history[material.seen * stride]);
+      const int row = material.seen >= 0 ? material.seen
+          : material.thermal             ? material.thermal->history
+                                         : -1;
+      return at(history, stride, row < 0 ? 0.0 : history[row * stride]);
     }
     const LawParameters &at(const double *history, int stride, double temperature)
     {
@@ -1004,12 +1077,26 @@ class ComposedMaterial : public Material {
                               std::string("random ") + name +
                                   ": not with melting over a range or a specific heat that varies");
     const double cp = thermal_value("CP");
-    law::HeatCurve::make(
-        of.parameters, capacity_factor ? capacity_factor->knots() : std::vector<double>(),
-        [&](double T) {
-          return capacity_factor ? cp * capacity_factor->at(T) : cp;
-        },
-        melting.point, melting.latent, melting.range);
+    const TemperatureFactor *const f = capacity_factor.get();
+    const bool by_formula = f && !f->is_table();
+    const auto c = [=](double T) {
+      return f ? cp * f->at(T) : cp;
+    };
+    // a formula: such that the heat from one temperature to the next is exact
+    const auto begin = [=](double T1, double T2) {
+      constexpr int PARTS = 8;
+      if (!by_formula) return c(T1);
+      const double width = (T2 - T1) / PARTS;
+      double mean = 0.0;
+      for (int k = 0; k < PARTS; k++) mean += f->mean(T1 + k * width, T1 + (k + 1) * width) / PARTS;
+      return cp * mean - 0.5 * (c(T2) - c(T1));
+    };
+    constexpr int MOST = LawParameters::MAX_TERMS - law::HeatCurve::MORE;
+    law::HeatCurve::make(of.parameters,
+                         by_formula ? f->spread(MOST)
+                             : f    ? f->knots()
+                                    : std::vector<double>(),
+                         c, begin, melting.point, melting.latent, melting.range);
   }
   law::HeatCurve heat_curve() const
   {
@@ -1060,6 +1147,8 @@ class ComposedMaterial : public Material {
   {
     if (random_density) return true;
     const LawInfo &info = *thermal->info;
+    for (const auto &w : thermal->warm)
+      if (is_share(w.declaration(info))) return true;
     for (const auto &r : thermal->random) {
       LawParameters p = thermal->parameters;
       r.of(p) *= 0.5;
@@ -1209,8 +1298,8 @@ class ComposedMaterial : public Material {
     const bool of_capacity = owner->part == THERMAL && is_capacity(declared);
     const bool of_conduction = owner->part == THERMAL && is_conductivity(declared);
     if (owner->part == THERMAL && !can_vary(*owner, declared))
-      refuse("of a thermal part, only CP, the conductivities, and the coefficient of expansion can "
-             "vary");
+      refuse("of a thermal part, only CP, CHI, SHARE, the conductivities, and the coefficient of "
+             "expansion can vary");
     if (declared.of_new_points)
       refuse("it is about the state of new points, which no temperature changes later: choose one "
              "of " +
@@ -1228,9 +1317,9 @@ class ComposedMaterial : public Material {
         if (law.part == EOS && law.info->finds_temperature)
           refuse("the temperature follows from the internal energy of '" + title(law) +
                  "', with a constant CP: leave 'vary' out");
-      if (!vary.factor.is_table()) refuse("the specific heat needs a table");
-      if (static_cast<int>(vary.factor.knots().size()) + law::HeatCurve::MORE >
-          LawParameters::MAX_TERMS)
+      if (vary.factor.is_table() &&
+          static_cast<int>(vary.factor.knots().size()) + law::HeatCurve::MORE >
+              LawParameters::MAX_TERMS)
         refuse("a table of the specific heat can have " +
                std::to_string(LawParameters::MAX_TERMS - law::HeatCurve::MORE) + " entries");
       capacity_factor = std::make_unique<const TemperatureFactor>(vary.factor);
@@ -1247,6 +1336,12 @@ class ComposedMaterial : public Material {
       if ((of_capacity || of_conduction) && !declared.range.contains(value))
         refuse("it is " + number(value) + " at the temperature " + number(T) +
                ", which is out of range");
+    }
+    if (of_capacity && !vary.factor.is_table()) {
+      const double low = vary.factor.at(vary.factor.knots().front()),
+                   high = vary.factor.at(vary.factor.knots().back());
+      if (high > MOST_RATIO * low || low > MOST_RATIO * high)
+        refuse("this formula changes the specific heat too much between its limits");
     }
     text += ", " + what + vary.text;
     varied.push_back({vary, owner, w});
@@ -1277,12 +1372,17 @@ class ComposedMaterial : public Material {
     const char *const name = declared.name;
     return name[0] == 'K' && (name[1] == '\0' || name[1] == '2' || name[1] == '3');
   }
+  /** Is it a share of work that becomes heat? */
+  static bool is_share(const Parameter &declared)
+  {
+    return !strcmp(declared.name, "CHI") || !strcmp(declared.option, "fracture");
+  }
   /** Can a parameter depend on the temperature? */
   static bool can_vary(const UsedLaw &law, const Parameter &declared)
   {
     if (declared.of_new_points || !strcmp(declared.unit, FLAG)) return false;
     return law.part != THERMAL || is_capacity(declared) || is_conductivity(declared) ||
-        !strcmp(declared.option, "expansion");
+        is_share(declared) || !strcmp(declared.option, "expansion");
   }
 
   /** Knots of all factors of a law, and some temperatures between them: what parameters must be

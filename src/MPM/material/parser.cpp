@@ -445,12 +445,6 @@ class Parser {
                ": 'expansion' does not go with '" + title(eos) +
                    "', whose internal energy makes it expand already: leave it out, or use eos "
                    "linear or tait");
-      if (thermal.info->fracture_share && thermal.info->fracture_share(thermal.parameters) > 0.0 &&
-          eos.info->expands)
-        refuse(THERMAL,
-               ": 'fracture' does not go with '" + title(eos) +
-                   "', whose internal energy would not get this heat: leave it out, or use eos "
-                   "linear or tait");
     }
     if (has(THERMAL) && !has(DAMAGE)) {
       const UsedLaw &thermal = material.laws[THERMAL][0];

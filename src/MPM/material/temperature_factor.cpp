@@ -38,6 +38,21 @@ double TemperatureFactor::at(double temperature) const
   return factor[k] + (factor[k + 1] - factor[k]) * ((t - T[k]) / (T[k + 1] - T[k]));
 }
 
+std::vector<double> TemperatureFactor::spread(int n) const
+{
+  if (formula == LINEAR) return T;
+  const double low = T.front(), high = T.back();
+  std::vector<double> all = {low};
+  for (int k = 1; k < n - 1; k++) {
+    const double part = static_cast<double>(k) / (n - 1);
+    all.push_back(formula == POWER           ? low * std::pow(high / low, part)
+                      : formula == ARRHENIUS ? 1.0 / (1.0 / low + part * (1.0 / high - 1.0 / low))
+                                             : low + part * (high - low));
+  }
+  all.push_back(high);
+  return all;
+}
+
 double TemperatureFactor::mean(double low, double high) const
 {
   if (!(high > low)) return at(low);

@@ -40,6 +40,10 @@ class TemperatureFactor {
   double mean(double low, double high) const;
   bool is_table() const { return !factor.empty(); }
 
+  /** Temperatures between the limits of a formula, n with them, from one to the next of which the factor changes by the
+   *  same share; of LINEAR the limits alone. */
+  std::vector<double> spread(int n) const;
+
   /** Temperatures between which it has no extremes. */
   const std::vector<double> &knots() const { return T; }
 

@@ -81,24 +81,37 @@ template <int DIM, Shape SHAPE, int L> struct Frame {
   using Function = FunctionOf<SHAPE>;
   static constexpr int ORDER = Function::order, CELL = Function::cell;
   Quads<L> origin, inv_h, low;
+  Quads<L> first;               ///< lowest position in the tile
   int before[3] = {0, 0, 0};    ///< nodes from there to tile node 0
 
   MPM_INLINE Frame(const TransferStep &step, const int *base)
   {
-    alignas(32) double o[4] = {}, i[4] = {}, b[4] = {};
+    alignas(32) double o[4] = {}, i[4] = {}, b[4] = {}, f[4] = {};
     for (int a = 0; a < DIM; a++) {
       o[a] = step.origin[a];
       i[a] = step.inv_h / CELL;
       before[a] = base[a] & (CELL - 1);
       b[a] = Function::shift + (base[a] - before[a]) / CELL;
+      f[a] = before[a] ? 1.0 : 0.0;
     }
     origin = repeat<4 * L>(Vec<4>::load(o));
     inv_h = repeat<4 * L>(Vec<4>::load(i));
     low = repeat<4 * L>(Vec<4>::load(b));
+    if (CELL > 1) first = repeat<4 * L>(Vec<4>::load(f));
   }
 
   /** Position in units of h from tile node 0, less the shift: its whole part is the base node. */
   MPM_INLINE Quads<L> position(Quads<L> x) const { return (x - origin) * inv_h - low; }
+
+  /** The same of a point that is in the tile. Cells of several nodes: one at the low side of its block may be by rounding in the
+   *  cell before, whose first node the tile does not have. */
+  MPM_INLINE Quads<L> position_inside(Quads<L> x) const
+  {
+    if constexpr (CELL == 1)
+      return position(x);
+    else
+      return max(position(x), first);
+  }
 
   /** Base node of a cell along an axis. */
   MPM_INLINE int node(int axis, int cell) const { return CELL * cell - before[axis]; }
@@ -437,7 +450,7 @@ template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS> str
                                  bool total, const Frame<DIM, SHAPE, L> &frame, Prepared<L> &out,
                                  Quads<L> &lowest, Quads<L> &highest)
   {
-    const Quads<L> t = frame.position(load_rows<L, 3>(points.x, p));
+    const Quads<L> t = frame.position_inside(load_rows<L, 3>(points.x, p));
     lowest = min(lowest, t);
     highest = max(highest, t);
     const Quads<L> fraction = frame.locate(t, out.place);
@@ -742,7 +755,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> struct NodesToPoin
                                  const Frame<DIM, SHAPE, L> &frame, Prepared<L> &out)
   {
     const Quads<L> x = load_rows<L, 3>(points.x, p);
-    const Quads<L> fraction = frame.locate(frame.position(x), out.place);
+    const Quads<L> fraction = frame.locate(frame.position_inside(x), out.place);
     if constexpr (UPDATE) load_rows<L, 3>(from, p).store(out.x);
     fraction.store(out.fraction);
     if constexpr (ORDER > 1)

@@ -51,7 +51,9 @@ template <int DIM, Shape SHAPE> struct PointStencil {
     // in 2d the z axis has a single node of weight one at distance zero
     double w[3][4] = {{1.0}, {1.0}, {1.0}}, dw[3][4] = {}, d[3][4] = {};
     for (int a = 0; a < DIM; a++) {
-      const double t = tile_position<SHAPE>(points.x[3 * p + a], step, tilebase, a);
+      double t = tile_position<SHAPE>(points.x[3 * p + a], step, tilebase, a);
+      // by rounding in the cell before the first one of the tile
+      if (F::cell > 1 && (tilebase[a] & (F::cell - 1)) && t < 1.0) t = 1.0;
       const int cell = static_cast<int>(std::floor(t));
       const double f = SHAPE == LINEAR ? std::max(t - cell, SMALLEST_FRACTION) : t - cell;
       low[a] = high[a] = F::cell * cell - (tilebase[a] & (F::cell - 1));
