@@ -269,6 +269,33 @@ SERIAL_TEST(Bell, Lift)
               1.0, 0.04);
 }
 
+// a point of spray has the pressure of the air in which it is, closed in or open
+SERIAL_TEST(Spray, HasThePressureOfItsPocket)
+{
+  for (const char *const faces : {"", " open yhi"}) {
+    Scene run(plane("si", "f f", "0 1 0 1", 1, 0.01) +
+              "region low block INF INF INF 0.3 INF INF\n"
+              "region drop block 0.5 0.525 0.8 0.825 INF INF\nregion w union 2 low drop\n"
+              "create_points 1 region w spacing 0.025\n"
+              "fix w all mpm/incompressible 0.05 1000 gas 1.5e5 1.4 outside 1e5" +
+              std::string(faces) +
+              "\nfix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5 max 0.005\n"
+              "compute p all mpm/atom pressure\nthermo_style custom step\n"
+              "run 20\n");
+    const double exact = *faces ? 0.0 : gas(run, HIGHEST) - 1e5;
+    auto *pressure = run.lmp->modify->get_compute_by_id("p");
+    pressure->compute_peratom();
+    const double *const p = pressure->vector_atom;
+    int spray = 0;
+    for (int i = 0; i < run.n(); i++) {
+      if (run.x()[i][1] < 0.5) continue;
+      spray++;
+      EXPECT_NEAR(measured("pressure of spray", p[i]), exact, 1e-3);
+    }
+    EXPECT_EQ(spray, 1);
+  }
+}
+
 // pockets come and go, and the gas of a closed box stays what it was
 SERIAL_TEST(Splash, KeepsGas)
 {

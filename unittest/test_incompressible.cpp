@@ -3,6 +3,7 @@
 
 // labels: physics mpi restart input
 // mpi: 1 4
+// timeout: 240
 
 // Fix mpm/incompressible: vortices, walls, free surfaces.
 
@@ -352,15 +353,15 @@ SERIAL_TEST(Duct, IsThatOfDifferences)
   }
 }
 
-// O2: the cavity at Re = 100, here with 32 x 32 cells; where 0.008 is asked of 64 x 64
+// O2: the cavity at Re = 100 with 64 x 64 cells, of which 0.008 is asked from t = 30 on; at 12 it is steady but for 0.001. Steps are nearly as
+// long as explicit viscosity is stable, which is twice what fix mpm/dt has
 SERIAL_TEST(Cavity, Profile)
 {
-  const int n = 32;
+  const int n = 64;
   Scene run(
-      plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.015625\n" +
-      "fix w all mpm/incompressible 0.03125 1 viscosity 0.01 wall yhi stick 1 0 wall xlo stick "
-      "wall xhi stick wall ylo stick\nfix dt all mpm/dt 0.8 every 1 until 12\ntimestep 0.005\n"
-      "run 100000\n");
+      plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.0078125\n" +
+      "fix w all mpm/incompressible 0.015625 1 viscosity 0.01 wall yhi stick 1 0 wall xlo stick "
+      "wall xhi stick wall ylo stick tolerance 1e-6\ntimestep 0.006\nrun 2000\n");
   const double y[] = {0.8516, 0.7344, 0.6172, 0.5, 0.4531, 0.2813, 0.1719, 0.1016},
                u[] = {0.23655, 0.00419, -0.13880, -0.20915, -0.21398, -0.15767, -0.10174, -0.06443};
   double worst = 0.0;
@@ -377,7 +378,7 @@ SERIAL_TEST(Cavity, Profile)
     }
     worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
   }
-  EXPECT_LT(measured("largest error of the profile", worst), 0.013);
+  EXPECT_LT(measured("largest error of the profile", worst), 0.008);
   EXPECT_EQ(run.n(), 4 * n * n);
   EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);    // no voids
 }

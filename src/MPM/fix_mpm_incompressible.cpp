@@ -1027,7 +1027,7 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
     if (gas && regions->n() == 1) gas_rows->add_to_region(last.regions.data());
     for (double &f : last.regions) f /= pressure_to_psi * force->nktv2p;
   }
-  pressure->extend_into_air(pressures, surface_psi());
+  pressure->extend_into_air(pressures, surface_psi(), gas_rows.get());
   for (double &p : pressures) p /= pressure_to_psi;
   cells.extrapolate_cells(pressures.data(), [this](int64_t number) {
     return pressure->is_wet(number);

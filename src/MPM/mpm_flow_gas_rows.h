@@ -43,6 +43,13 @@ class MPMFlowGasRows {
   /** psi at surfaces, see MPMFlowPressure: before the solve as it would be with the volumes now. */
   const std::vector<double> &at_surface() const { return surface; }
 
+  /** psi of the pocket in which a cell is; zero: it is in none, or in air without gas. */
+  double in_cell(int64_t number) const
+  {
+    const int pocket = gas.pockets.of(number);
+    return pocket >= 0 ? psi[pocket] : 0.0;
+  }
+
   /** What gas adds to right sides of cells, with velocities before the solve, where the solution is psi - lift. Collective. */
   void load(const double *velocity, const std::vector<double> &lift,
             std::vector<double> &right_side);

@@ -374,7 +374,8 @@ void MPMFlowPressure::add_balance(const double *velocity, double *out, double *i
 }
 
 void MPMFlowPressure::extend_into_air(std::vector<double> &values,
-                                      const std::vector<double> *surface) const
+                                      const std::vector<double> *surface,
+                                      const MPMFlowGasRows *gas) const
 {
   const int dim = cells.lattice.dim;
   values.assign(size(), 0.0);
@@ -394,7 +395,10 @@ void MPMFlowPressure::extend_into_air(std::vector<double> &values,
       sum += at + (psi[other] - at) * out / in;
       n++;
     }
-    if (n) values[cell.number] = sum / n;
+    if (n)
+      values[cell.number] = sum / n;
+    else if (gas)
+      values[cell.number] = gas->in_cell(cell.number);
   }
   cells.publish(values.data(), 1);
   if (regions) regions->extrapolate(values, flag);

@@ -98,9 +98,10 @@ class MPMFlowPressure : protected Pointers {
   /** What flows out of the wet cells of this rank and does not come into them, and what comes (volume/time, in 2d area). */
   void add_balance(const double *velocity, double *out, double *in) const;
   int64_t nwet() const { return (int64_t) wet.size(); }    ///< of this rank
-  /** psi with values next to the surface that make it what it is there in between, zero or that of project(); of all cells. */
-  void extend_into_air(std::vector<double> &values,
-                       const std::vector<double> *surface = nullptr) const;
+  /** psi with values next to the surface that make it what it is there in between, zero or that of project(), and farther away that of
+   *  gas; of all cells. */
+  void extend_into_air(std::vector<double> &values, const std::vector<double> *surface = nullptr,
+                       const MPMFlowGasRows *gas = nullptr) const;
   /** Integral of psi over the wall of an axis, the share of this rank. */
   double at_wall(int axis, int side) const;
 
