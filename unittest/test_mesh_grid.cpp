@@ -487,3 +487,46 @@ SERIAL_TEST(MeshGrid, LostLoads)
   ASSERT_EQ(half.size(), 2u);
   EXPECT_THAT(half[0], HasSubstr("traction on xhi acts on nothing in 43.8 % of its area"));
 }
+
+// Points on sides between triangles have the strain of one of them by rounding: bodies are too soft, and it is told
+SERIAL_TEST(MeshGrid, PointsOnSides)
+{
+  // a column whose points are on the diagonals, or moved off these
+  const auto column = [](double x, double y, double) {
+    return std::array<double, 3>{0.5 * x, y, 0.0};
+  };
+  const auto scene = [&](const std::string &grid, const std::string &ppc,
+                         const std::string &frame) {
+    return box(2, "lj", "f f f", "0 0.5 0 1", 1, 0.1) +
+        "region body block INF INF INF INF INF INF\ncreate_points 1 region body spacing " + ppc +
+        "\nfix m all mpm/material density 1 neohookean 1000 0.3\nfix g all mpm/mesh " + grid +
+        " velocity ylo 0 0 slip xlo slip xhi pressure yhi 5 " + frame +
+        "\nfix slow all viscous 0.05\ntimestep 5e-4\ncompute u all displace/atom\n"
+        "region top block INF INF 0.9 INF INF INF\ngroup top region top\n"
+        "compute low top reduce ave c_u[2]\ncompute high top reduce ave y\n"
+        "thermo_style custom step c_low c_high\n";
+  };
+  const double M = 1000.0 * 0.7 / (1.3 * 0.4);
+  const ScratchFile triangles("triangles.msh", gmsh(TRIANGLES, {5, 10, 0}, column)),
+      quads("quads.msh", gmsh(QUADS, {5, 10, 0}, column));
+  for (const char *frame : {"frame updated", "frame total"})
+    for (const bool moved : {false, true})
+      for (const auto *grid : {&triangles, &quads}) {
+        const bool on_sides = grid == &triangles && !moved;
+        auto input = scene(grid->name, "0.05", frame);
+        if (moved)
+          input = replaced(input, "fix m all", "displace_atoms all move 0.01 0 0\nfix m all");
+        Scene run(input + "run 1500\n");
+        const double settlement =
+            -run.compute_scalar("low") / (run.compute_scalar("high") * 5.0 / M);
+        measured(strprintf("%s, %s, %s", frame, moved ? "moved" : "on diagonals",
+                           grid == &triangles ? "triangles" : "quads"),
+                 settlement);
+        EXPECT_EQ(lines_that_say(input + "run 1\n", "are on sides of cells").size(),
+                  on_sides ? 1u : 0u);
+        if (on_sides)
+          EXPECT_GT(settlement, 1.05);
+        else
+          EXPECT_NEAR(settlement, 1.0, grid == &quads ? 0.01 : 0.05);
+      }
+}

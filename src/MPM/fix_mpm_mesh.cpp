@@ -417,6 +417,30 @@ void FixMPMMesh::setup(int)
                update->dt);
   steps = 0;
   warn_of_locking();
+  warn_of_sides();
+}
+
+/** Strain jumps at sides of cells. Where points begin on these, rounding decides whose strain they have, and as many cells have none. */
+void FixMPMMesh::warn_of_sides() const
+{
+  constexpr double ON_SIDE = 1.0e-9, MANY = 0.05;    // of a function of a node; of all points
+  enum { ALL, ON_SIDES, NCOUNTS };
+  bigint mine[NCOUNTS] = {(bigint) order.size(), 0}, all[NCOUNTS];
+  tagint example = 0, example_all;
+  for (const int i : order) {
+    const auto &place = places[i];
+    if (*std::min_element(place.N, place.N + mesh->cells[place.cell].nnode) > ON_SIDE) continue;
+    mine[ON_SIDES]++;
+    example = std::max(example, atom->tag[i]);
+  }
+  MPI_Allreduce(mine, all, NCOUNTS, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (all[ON_SIDES] > MANY * all[ALL] && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/mesh {}: {} of {} points are on sides of cells, for instance point {}: "
+                   "round-off decides in which cell they are, others are empty, and bodies are too "
+                   "soft: use other points (ppc), or another mesh",
+                   id, all[ON_SIDES], all[ALL], example_all);
 }
 
 /* ----------------------------------------------------------------------

@@ -143,6 +143,7 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   FixMPMMaterial *material_of(int i) const;
   void check_points();
   void warn_of_locking();
+  void warn_of_sides() const;
   void warn_of_flow() const;
   void find_places();
   void find_ranks();
