@@ -279,6 +279,7 @@ class MPMImplicit : private MPMNodeSystem {
   void remember(const std::vector<double> &u);
   bool make_factors(const std::vector<double> &u);
   void turn_from_factors();
+  void share_left_over();
   void share_forces();
   void find_correction();
   void learn();
