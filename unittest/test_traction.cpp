@@ -666,6 +666,13 @@ TEST(Record, TableInTime)
   EXPECT_NEAR(run.fix("r")->compute_vector(0), 2.0, 1e-9);
   EXPECT_NEAR(run.evaluate("f_r[3]"), 0.375, 1e-9);
 
+  // sums of time steps that are some 1e-16 before and after the rows at the ends are at these rows
+  for (const double end : {0.5, 1.5})
+    for (const double off : {-3e-16, 3e-16}) {
+      run.commands(strprintf("reset_timestep 0 time %.17g\nrun 0 post no\n", end - 0.25 + off));
+      EXPECT_NEAR(run.fix("s")->compute_vector(1), end == 0.5 ? 10.0 : 20.0, 1e-9);
+    }
+
   for (const Mistake &m : std::vector<Mistake>{{"", "two rows"},
                                                {"1 2\n", "two rows"},
                                                {"a b\nc d\n", "line 2: 'c' is not a number"},

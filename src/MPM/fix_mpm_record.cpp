@@ -15,6 +15,7 @@
 #include "error.h"
 #include "update.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -113,14 +114,20 @@ void FixMPMRecord::read(const std::string &file)
     throw std::runtime_error("there must be two rows of numbers or more");
 }
 
+/** Values of the columns, and after them their integrals. */
 double FixMPMRecord::compute_vector(int k)
 {
+  constexpr double ROUND_OFF = 1.0e-12;    // of the times of the file, in which steps end at rows
+
   // as the word time of thermo_style has it
 
-  const double t = update->atime + (update->ntimestep - update->atimestep) * update->dt - start;
+  double t = update->atime + (update->ntimestep - update->atimestep) * update->dt - start;
   const bool integral = k >= ncolumn;
   const int c = k % ncolumn;
   const std::size_t n = rows.size() / (1 + ncolumn);
+  for (const double end : {at(0, 0), at(n - 1, 0)})
+    if (std::fabs(t - end) <= ROUND_OFF * std::max(at(n - 1, 0) - at(0, 0), std::fabs(start)))
+      t = end;
   if (t < at(0, 0) || t > at(n - 1, 0)) {
     const std::size_t end = t < at(0, 0) ? 0 : n - 1;
     const double value = hold ? at(end, 1 + c) : 0.0;
