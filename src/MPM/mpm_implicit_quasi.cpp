@@ -262,7 +262,7 @@ void MPMImplicit::share_forces()
     if (const int from = memory.in_factors[k]; from >= 0)
       std::copy_n(&of_system[w * from], w, &solved[w * k]);
   const double *block = memory.left_over.data();
-  for (std::size_t k = 0; k < n && block; k++)
+  for (std::size_t k = 0; k < n && !memory.left_over.empty(); k++)
     for (int a = 0; a < w; a++, block += w)
       for (int b = 0; b < w; b++) solved[w * k + a] += block[b] * left[w * k + b];
   if (taken != 0.0) {
