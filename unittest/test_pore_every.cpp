@@ -84,10 +84,14 @@ SERIAL_TEST(Waits, AreShortWithFewPoints)
 TEST(Auto, WaitsForTheFlow)
 {
   for (const double k : {1e-6, 1.8e-4}) {
-    Scene run(
-        column(10, strprintf("2.2e8 1000 9810 soil m 0.4 constant %g ylo flux 1e-6 every auto", k),
-               SOIL) +
-        "timestep 4e-5\nrun 0\n");
+    // at rest, with a pressure that varies over all of the column
+    Scene run(replaced(column(10,
+                              strprintf("2.2e8 1000 9810 soil m 0.4 constant %g geostatic 0.5 1 "
+                                        "ylo flux 1e-6 every auto",
+                                        k),
+                              SOIL),
+                       "fix water", "fix g all gravity 9.81 vector 0 -1 0\nfix water") +
+              "timestep 4e-5\nrun 0\n");
     std::vector<int> flows;
     double before = run.fix("water")->compute_scalar();
     for (int step = 1; step <= 60; step++) {
@@ -106,6 +110,28 @@ TEST(Auto, WaitsForTheFlow)
       EXPECT_NEAR(measured("steps of a flow", flows[j] - flows[j - 1]), steps, 1);
     EXPECT_GT(steps, 1);
   }
+}
+
+// Without every, water waits where it can: not while a pressure changes within thin layers, where it flows as with every 1, to the last bit, and not with free
+// surfaces or what varies from step to step
+TEST(Default, WaitsWhereItCan)
+{
+  const auto pores = [](double k, const std::string &more, int steps) {
+    Scene run(replaced(column(10, strprintf("2.2e8 1000 9810 soil m 0.4 constant %g ", k) + more,
+                              SOIL, 1.2, 0.2),
+                       "fix water",
+                       "variable p atom 1e3*(1-y)\nvariable w equal 10*step\nfix water") +
+              strprintf("timestep 4e-5\ncompute pore all mpm/atom pore\nrun %d\n", steps));
+    auto *const compute = run.lmp->modify->get_compute_by_id("pore");
+    compute->compute_peratom();
+    return std::vector<double>(compute->vector_atom, compute->vector_atom + run.n());
+  };
+  const std::string thin = "initial 1e3 ylo pressure 0 ", even = "initial v_p ylo pressure 1e3 ";
+  EXPECT_EQ(pores(2e-4, thin, 5), pores(2e-4, thin + "every 1", 5));
+  EXPECT_EQ(pores(1e-5, even, 40), pores(1e-5, even + "every auto", 40));
+  EXPECT_NE(pores(1e-5, even, 40), pores(1e-5, even + "every 1", 40));
+  for (const std::string in_each : {"free pressure 0 ", "yhi pressure v_w "})
+    EXPECT_EQ(pores(1e-5, even + in_each, 40), pores(1e-5, even + in_each + "every 1", 40));
 }
 
 // flows beyond one explicit limit through a free surface are told once; not shorter ones, nor those through a face, nor with auto

@@ -56,6 +56,9 @@ static constexpr double FINE = 0.6;
 // root of the mean square of slopes of points in layers (MPMPore::Layers), which is the frequency of their waves times crossing; the lattice
 // takes away those up to this in MOST_SPACINGS
 static constexpr double SLOW = 1.45;
+// with auto, over the time in which flow crosses a layer that is so thin that the pressure changes across it by all of its range: of the explicit limit
+// it is 6 THIN times the square of the thickness in node spacings
+static constexpr double THIN = 0.02;
 // times that are equal on paper are told apart by this, as sums of ranks differ by round-off
 static constexpr double NEARLY = 1.0 + 1.0e-6;
 
@@ -272,7 +275,9 @@ Options MPMPoreOptions::declare(int dim)
   o.add("every",
         {steps_or_auto(every,
                        "water flows in one of up to this many steps, for the time of all of them",
-                       "as many steps as waves allow and one stage of the flow reaches")});
+                       "as many steps as waves allow, one stage of the flow reaches, and thin "
+                       "layers of it take")})
+      .standard("auto, where water can wait");
   o.refuse([=] {
     const bool dries = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
       return soil.retention.can_dry();
@@ -282,9 +287,9 @@ Options MPMPoreOptions::declare(int dim)
                          {forchheimer_alone, "forchheimer", "needs a soil before it"},
                          {formulation == U_V_P, "stages",
                           "is for formulation u-p: with u-v-p waves alone limit the time step"},
-                         {formulation == U_V_P && every != 1, "every",
+                         {formulation == U_V_P && every != 1 && every != NOT_GIVEN, "every",
                           "is for formulation u-p: with u-v-p water moves in each step"},
-                         {dries && every != 1, "every",
+                         {dries && every != 1 && every != NOT_GIVEN, "every",
                           "does not go with retention: pores fill and empty in each step"},
                          {geostatic && initial != "0.0", "geostatic",
                           "gives points their pressure: leave out initial"},
@@ -333,6 +338,8 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   read_options(lmp, options, narg, arg, 3);
   sets_relax = options.given("relax");
   sets_stages = options.given("stages");
+  sets_every = options.given("every");
+  if (!sets_every) every = needs_each_step() ? 1 : AUTO;
   if (waits() && sets_relax)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/pore relax has no meaning with every {}, where points take the pressure of "
@@ -578,6 +585,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   steps.clear();
   steps.add(in_step, present);
   find_seals();
+  if (!sets_every && needs_each_step()) every = 1;
   for (auto *field : plan.fields) {
     fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax,
                                                formulation == U_V_P));
@@ -646,7 +654,7 @@ void FixMPMPore::init_implicit() const
          "slow flow has no inertia of its own, use formulation u-p, or explicit steps");
   refuse(sets_relax, "relax", "it is of the waves of explicit steps, remove it");
   refuse(sets_stages, "stages", "the flow of an implicit step has none, remove it");
-  refuse(waits(), "every", "soil and water are solved for together, remove it");
+  refuse(sets_every && waits(), "every", "soil and water are solved for together, remove it");
   for (const auto &soil : soils) {
     refuse(soil.retention.can_dry(), "retention",
            "use explicit steps, or leave it out where pores stay full");
@@ -852,6 +860,21 @@ void FixMPMPore::look_for_shut_pores()
         lowest, of_all[0], of_all[1]);
 }
 
+/** Where every is not given, water flows in each step with what cannot wait, what varies from step to step, and free surfaces, whose flow is the
+ *  more exact the less of it comes at once. */
+bool FixMPMPore::needs_each_step() const
+{
+  const bool differs = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
+    return soil.law == MPMPoreSoil::FORMULA || !soil.is_linear();
+  });
+  const bool varies = std::any_of(conditions.begin(), conditions.end(), [](const auto &c) {
+    return !c.value.variable.empty();
+  });
+  return formulation == U_V_P || can_dry() || warms() || sets_relax || differs || varies ||
+      conditions[MPMPoreSurface::FREE].kind != MPMPoreCondition::CLOSED ||
+      !find_fixes<FixMPMImplicit>(lmp).empty();
+}
+
 /** Is the step that begins one with flow? With auto, flow takes one stage, which costs least and is as exact as flow in each step also where
  *  soil is soft next to its water and drains through a curved surface. */
 bool FixMPMPore::is_time_to_flow() const
@@ -859,7 +882,7 @@ bool FixMPMPore::is_time_to_flow() const
   if (!waits() || !rates_known || (every != AUTO && waited.steps + 1.0 >= every)) return true;
   const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
   double most = std::min(longest_wait(), std::min(MOST_LIMITS, reach_of_stages()) * limit);
-  if (every == AUTO) most = std::min(most, limit);
+  if (every == AUTO) most = std::min({most, limit, thinned > 0.0 ? THIN / thinned : limit});
   return waited.time + 2.0 * fields[0]->field.step_dt() > most * NEARLY;
 }
 
@@ -897,7 +920,7 @@ void FixMPMPore::begin_step(bool with_flow)
   for (auto *field : wet) {
     if (field->motion) field->motion->begin_step(inertia);
     if (!gradients_known) field->find_gradients(pressure, formula);
-    if (with_flow) field->begin_step(pressure, inertia, formula);
+    if (with_flow) field->begin_step(pressure, inertia, formula, waited.steps > 0.0);
     if (!with_flow) field->begin_wait(pressure);
   }
   if (with_flow) watch_inertia();
@@ -928,6 +951,16 @@ void FixMPMPore::find_greatest_rates()
   exchanged = all[1];
   if (waits()) find_coarse_points(all[2]);
   rates_known = true;
+}
+
+/** Of what pressures have become by a flow, see THIN. */
+void FixMPMPore::find_thin_layers()
+{
+  MPMPore::Slopes mine, all;
+  for (const auto *field : wet) field->add_slopes(pressure, mine);
+  MPI_Allreduce(&mine, &all, sizeof(mine) / sizeof(double), MPI_DOUBLE, MPI_MAX, world);
+  const double range = all.highest + all.less;
+  thinned = range > 0.0 ? all.steepest / (range * range) : 0.0;
 }
 
 /** Those that are wide, or that lie in layers which are a node spacing apart along one axis and are close along another. */
@@ -1088,6 +1121,7 @@ void FixMPMPore::flow()
     for (auto *field : wet) field->find_rates(present);
   });
   for (auto *field : wet) field->end_step(pressure, dt);
+  if (waits()) find_thin_layers();
   for (std::size_t k = 0; k < came.size(); k++) came[k] += in_step[k];
   dt_last = dt;
   flows_known = false;
@@ -1173,7 +1207,7 @@ void FixMPMPore::write_restart(FILE *fp)
 {
   write_totals(fp, world, came,
                {gradients_known ? 1.0 : 0.0, has_state ? 1.0 : 0.0, rates_known ? 1.0 : 0.0,
-                conducted, exchanged, coarse ? 1.0 : 0.0, waited.steps, waited.time});
+                conducted, exchanged, coarse ? 1.0 : 0.0, waited.steps, waited.time, thinned});
 }
 
 void FixMPMPore::restart(char *buf)
@@ -1187,12 +1221,13 @@ void FixMPMPore::restart(char *buf)
   exchanged = same[4];
   coarse = same[5] != 0.0;
   if (waits()) waited = {same[6], same[7]};
+  thinned = same[8];
 }
 
 /** Of a point between two flows. */
 double FixMPMPore::pressure_now(int i) const
 {
-  if (!waits()) return pressure[i][0];
+  if (waited.steps == 0.0) return pressure[i][0];
   for (const auto *mine : wet)
     if (mine->field.is_point(i)) return pressure[i][0] + mine->undrained(i);
   return pressure[i][0];

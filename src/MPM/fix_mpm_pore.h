@@ -23,6 +23,7 @@ FixStyle(mpm/pore,FixMPMPore);
 #include "mpm_super_step.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -44,8 +45,8 @@ struct MPMPoreOptions {
   double most_suction = -1.0;      ///< at first, positive; negative: no limit
   double relax = 0.4;
   int most_stages = 64;
-  static constexpr int AUTO = 0;
-  int every = 1;    ///< water flows in one of up to this many steps, or AUTO
+  static constexpr int AUTO = 0, NOT_GIVEN = -1;
+  int every = NOT_GIVEN;    ///< water flows in one of up to this many steps, or AUTO
 
   MPM_NS::Options declare(int dimension);
 
@@ -179,10 +180,12 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
 
   // greatest rates of the last step on all ranks [1/time], so that a run in two parts takes the steps of one
   double conducted = 0.0, exchanged = 0.0;
+  double thinned =
+      std::numeric_limits<double>::max();    // see find_thin_layers(); so much: not yet known
   bool rates_known = false;
 
-  bool is_implicit = false;        // the pressure is solved for with the motion
-  bool sets_relax, sets_stages;    // keywords that were given
+  bool is_implicit = false;                    // the pressure is solved for with the motion
+  bool sets_relax, sets_stages, sets_every;    // keywords that were given
 
   MPMPore &of(const MPMField &) const;
   const MPMPoreSoil *soil_of(int i) const;
@@ -202,6 +205,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void look_for_shut_pores();
   bool is_time_to_flow() const;
   bool waits() const { return every != 1; }
+  bool needs_each_step() const;
   double reach_of_stages() const;
   int stages_of(double duration, double limit) const;
   void find_crossing();
@@ -210,6 +214,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void take_off();
   void find_greatest_rates();
   void find_coarse_points(double widest);
+  void find_thin_layers();
   void look_for_smoothing(double duration);
   void watch_inertia();
   void look_for_long_flow(double duration, double limit);

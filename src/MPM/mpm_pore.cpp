@@ -410,8 +410,10 @@ void MPMPore::find_gradients(const MPMRows &state, const double *formula)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double *formula)
+void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double *formula,
+                         bool waited)
 {
+  after_wait = waited;
   if (surface.any()) surface.find_places();
   if (motion) motion->begin_step(flow);
   points_to_nodes(state, formula);
@@ -438,7 +440,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
         [&](const MPMPointMap::Run &, int first, int n, double *values) {
           for (int p = 0; p < n; p++) {
             const int i = first + p;
-            if (!motion && !waiting) take(i, values[p]);
+            if (!motion && !after_wait) take(i, values[p]);
             values[p] = capacity[i] * (state[i][0] - values[p]);
           }
         },
@@ -741,7 +743,7 @@ MPMPore::Smoothing MPMPore::smoothing(double duration) const
   constexpr double PHASE = MathConst::MY_2PI / Smoothing::WAVELENGTH, SQUARE = PHASE * PHASE,
                    UNSEEN = 0.056 * SQUARE * SQUARE, ROUGH = 0.25 * SQUARE;
   if (suction || solve) return {0.0, 0.0};
-  const double h = field.lattice.h, lag = waiting ? 1.0 : 1.0 - exp(-rate_of_waves() * duration);
+  const double h = field.lattice.h, lag = after_wait ? 1.0 : 1.0 - exp(-rate_of_waves() * duration);
   const double lost = lag * UNSEEN * ROUGH, flowed = slowest * duration * SQUARE / (h * h);
   const bool known = std::none_of(soils.begin(), soils.end(), [](const auto &s) {
     return s.of.law == MPMPoreSoil::FORMULA;
@@ -753,7 +755,7 @@ void MPMPore::end_step(const MPMRows &state, double dt)
 {
   const int dim = field.lattice.dim;
   const double keep = solve ? solve->keep
-      : waiting             ? 0.0
+      : after_wait          ? 0.0
       : suction             ? suction->kept_share()
                             : exp(-rate_of_lag() * dt);
   for (std::size_t k = 0; k < unseen.size(); k++) nodes.value[k] += (1.0 - keep) * unseen[k];

@@ -19,6 +19,7 @@
 #include "mpm_rows.h"
 #include "pointers.h"
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -64,8 +65,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
    *  Collective. */
   void find_gradients(const MPMRows &state, const double *formula);
   /** Before points go to nodes: pressures of nodes, and what forces have of them. formula: [n]
-   *  permeabilities of points, or null. */
-  void begin_step(const MPMRows &state, const MPMRows &flow, const double *formula);
+   *  permeabilities of points, or null. waited: it is the flow for several steps. */
+  void begin_step(const MPMRows &state, const MPMRows &flow, const double *formula, bool waited);
   /** [n] J times the pressure in internal forces; null: there is none. */
   const double *pressure_in_forces() const { return has_water() ? in_forces.data() : nullptr; }
   /** See MPMPhysics::surface_force(). */
@@ -134,6 +135,12 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   };
   Smoothing smoothing(double duration) const;
 
+  /** Of pressures of points after a flow: the square of the slope that drives it times the diffusivity, and the range of pressures. */
+  struct Slopes {
+    double steepest = 0.0, highest = -std::numeric_limits<double>::max(), less = highest;
+  };
+  void add_slopes(const MPMRows &state, Slopes &sum) const;
+
   /** Of this rank's points at the start of a step with flow, what tells whether the acceleration counts that u-p leaves out. */
   struct Inertia {
     double velocity =
@@ -165,6 +172,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   const double *const gravity;
   const double relax;                  // of points, in the rate at which waves cross a cell
   double *const *waiting = nullptr;    // J after the last flow; null: water flows in each step
+  bool after_wait = false;             // is the flow of this step for several steps?
   std::vector<Soil> soils;
   double steepest =
       0.0;                 // of the shape functions: greatest sum of N'^2/N along an axis, in cells

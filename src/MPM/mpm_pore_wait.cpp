@@ -14,6 +14,8 @@
    that does not wait (mpm_pore.cpp), so that nodes see the same of the motion, and points get the pressure of nodes: what these
    cannot see of dp, with which points would lock, is lost before it is more than what waves make of it in so many steps.
 
+   A flow in the step after another one is that of fix mpm/pore without waits, to the last bit.
+
    The flow begins with all of dp but that of its own step. With what the motion squeezes out spread over the time of the flow, forces would
    have the flow half of that time too late, and waves a frequency that is too high by a quarter of what flow takes of their pressure in
    that time.
@@ -54,12 +56,12 @@ void MPMPore::gather(const Soil &s, int first, int n, const double *J, const MPM
   double *const last = *waiting + first, *const part = in_forces.data() + first,
                 *const value = mean.data() + first, *row = state[first];
   double change[BATCH];
-  for (int p = 0; p < n; p++) {
+  for (int p = 0; p < n && after_wait; p++) {
     const double since = last[p] > 0.0 ? last[p] : J[p];
     change[p] = alpha * (since - J[p]) * initial[p] / C[p];
   }
-  for (int p = 0; p < n; p++, row += width) value[p] = row[0] += change[p];
-  for (int p = 0; p < n; p++) part[p] *= value[p];
+  for (int p = 0; p < n && after_wait; p++, row += width) value[p] = row[0] += change[p];
+  for (int p = 0; p < n && after_wait; p++) part[p] *= value[p];
   for (int p = 0; p < n; p++) largest = std::max(largest, V[p]);
   look_at_layers(lie[&s - soils.data()], first, n, V);
   std::copy_n(J, n, last);
@@ -81,6 +83,26 @@ void MPMPore::look_at_layers(Layers &sum, int first, int n, const double *V) con
       steep += V[p] * slope * slope;
     }
     sum.steep[d] += steep;
+  }
+}
+
+void MPMPore::add_slopes(const MPMRows &state, Slopes &sum) const
+{
+  const int dim = field.lattice.dim;
+  const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
+  for (const auto &run : field.map->runs) {
+    if (!soil(run.material)) continue;
+    const double *row = state[run.first];
+    double steepest = sum.steepest, highest = sum.highest, less = sum.less;
+    for (int i = run.first; i < run.last; i++, row += 1 + dim) {
+      double square = 0.0;
+      for (int d = 0; d < dim; d++) square += (row[1 + d] - along[d]) * (row[1 + d] - along[d]);
+      if (square * conductance[i] > steepest * capacity[i])
+        steepest = square * conductance[i] / capacity[i];
+      highest = std::max(highest, row[0]);
+      less = std::max(less, -row[0]);
+    }
+    sum = {steepest, highest, less};
   }
 }
 
