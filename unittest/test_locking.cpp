@@ -495,3 +495,26 @@ TEST(Block, EnergyWithoutDamping)
   EXPECT_NEAR(block(flip + "both", 0.4999).energy, 1.0, 0.01);
   EXPECT_NEAR(block(flip + "fbar", 0.4999).energy, 1.0, 0.05);
 }
+
+// Points of solids that keep their volume lock without a cure, which is said once: not of ones that give way, of fluids, nor of
+// materials that have no points
+TEST(Told, Locking)
+{
+  const auto warnings = [](const std::string &material, const std::string &options = "") {
+    return lines_that_say(plane("si", "f f", "0 4 0 4", 1, 0.3) +
+                              "region body block 1 3 1 3 INF INF\nfix grid all mpm 0.5 " + options +
+                              "\ncreate_points 1 region body ppc 2\ngroup none empty\n"
+                              "fix m all mpm/material density 1 " +
+                              material +
+                              "\nfix n none mpm/material density 1 linear 1 0.4999\n"
+                              "timestep 1e-3\nrun 1\nrun 1\n",
+                          "points lock")
+        .size();
+  };
+  EXPECT_EQ(warnings("neohookean 1 0.499"), 1u);
+  EXPECT_EQ(warnings("linear 1 0.4999", "frame total"), 1u);
+  EXPECT_EQ(warnings("neohookean 1 0.499", "locking fbar"), 0u);
+  EXPECT_EQ(warnings("neohookean 1 0.499", "locking pressure"), 0u);
+  EXPECT_EQ(warnings("neohookean 1 0.49"), 0u);
+  EXPECT_EQ(warnings("eos linear 1 viscosity newtonian 0.01"), 0u);
+}

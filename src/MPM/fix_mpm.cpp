@@ -215,6 +215,7 @@ void FixMPM::setup_pre_neighbor()
   }
   field->frame->setup();
   field->guard->check_places();
+  field->guard->check_locking();
 
   // other physics may ask for the points of any field
 

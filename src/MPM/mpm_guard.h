@@ -34,6 +34,8 @@ class MPMGuard : protected Pointers {
   void check_other_points();
   /** Warns where places of points, which must be known, leave it to round-off what stress they get. */
   void check_places() const;
+  /** Warns once of solids that keep their volume where nothing cures locking. Collective. */
+  void check_locking();
   /** Settings of LAMMPS that make neighbor lists of points and grains slow; all fields. */
   void check_neighbors() const;
   void check_radii() const;
@@ -92,6 +94,7 @@ class MPMGuard : protected Pointers {
   std::vector<tagint> bad_points;       // of this step, policies warn and delete
   std::vector<tagint> failed_points;    // of this step, to be deleted
   bigint nbad_total = 0;
+  bool has_told_of_locking = false;
   bigint npoints = 0;    // of all fields and ranks, at the start of the run
 
   void check_rings() const;
