@@ -29,6 +29,7 @@ struct Sample {
     {"linear", "density 1000 linear 1e9 0.3"},
     {"neohookean", "density 1000 neohookean 1e9 0.3"},
     {"neohookean_split", "density 1000 neohookean/split 1e9 0.3"},
+    {"corotated", "density 1000 corotated 1e9 0.3"},
     {"stvenant_kirchhoff", "density 1000 stvenant/kirchhoff 1e9 0.3"},
     {"hencky", "density 1000 hencky 1e9 0.3"},
     {"mooney_rivlin", "density 1000 mooney/rivlin 0.3e6 0.1e6 2e6"},

@@ -21,7 +21,7 @@ UNITS = {
 # with the modulus E, the viscosity M, and the strength Y of the scene
 SOLIDS = [
     "linear {E} 0.3", "neohookean {E} 0.3", "neohookean/split {E} 0.4", "hencky {E} 0.35",
-    "stvenant/kirchhoff {E} 0.25", "mooney/rivlin {c1} {c2} {E}", "ogden {E} term {c1} 1.3 term {c2} 4.0",
+    "stvenant/kirchhoff {E} 0.25", "corotated {E} 0.3", "mooney/rivlin {c1} {c2} {E}", "ogden {E} term {c1} 1.3 term {c2} 4.0",
     "orthotropic {E} {c1} {c1} 0.2 0.2 0.2 {c1} {c1} {c1}", "transversely/isotropic {E} {c1} 0.2 0.3 {c1} axis 1 1 0",
     "eos linear {E} strength elastic {c1}", "eos linear {E} strength j2 {c1} {Y} hardening linear {c2}",
     "eos linear {E} strength j2 {c1} {Y} kinematic {c2} 10", "eos linear {E} strength elastic {c1} damage rankine {Y}",

@@ -432,6 +432,7 @@ SERIAL_TEST(Tangent, IsThatOfTheForces)
                        {"neohookean 1e6 0.3", 0.05},
                        {"neohookean/split 1e6 0.45", 0.05},
                        {"hencky 1e6 0.3", 0.05},
+                       {"corotated 1e6 0.3", 0.05},
                        {"stvenant/kirchhoff 1e6 0.3", 0.05},
                        {"mooney/rivlin 1e5 3e4 1e6", 0.05},
                        {"eos linear 1e6 strength elastic 4e5", 0.05},

@@ -106,6 +106,15 @@ const std::vector<Isotropic> &isotropic_laws()
        [](const Stretches &l, double x) {
          return (2 * MU * std::log(x) + LAMBDA * std::log(volume(l))) / x;
        }},
+      {"corotated", E0, NU0, "corotated 1e6 0.3",
+       [](const Stretches &l) {
+         double w = 0.5 * LAMBDA * std::pow(volume(l) - 1, 2);
+         for (const double x : l) w += MU * (x - 1) * (x - 1);
+         return w;
+       },
+       [](const Stretches &l, double x) {
+         return 2 * MU * (x - 1) + LAMBDA * (volume(l) - 1) * volume(l) / x;
+       }},
       ogden("mooney/rivlin", "mooney/rivlin 0.3e6 0.1e6 2e6", {{0.6e6, 2}, {-0.2e6, -2}}, 2e6),
       ogden("ogden", "ogden 2e6 term 0.63e6 1.3 term 0.0012e6 5 term -0.01e6 -2",
             {{0.63e6, 1.3}, {0.0012e6, 5}, {-0.01e6, -2}}, 2e6)};

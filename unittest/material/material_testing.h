@@ -364,6 +364,7 @@ inline const Sample samples[] = {
     {"neohookean/split", "density 1000 neohookean/split 1e6 0.3"},
     {"stvenant/kirchhoff", "density 1000 stvenant/kirchhoff 1e6 0.3"},
     {"hencky", "density 1000 hencky 1e6 0.3"},
+    {"corotated", "density 1000 corotated 1e6 0.3"},
     {"mooney/rivlin", "density 1000 mooney/rivlin 0.3e6 0.1e6 2e6"},
     {"ogden", "density 1000 ogden 2e6 term 0.63e6 1.3 term 0.0012e6 5 term -0.01e6 -2"},
     {"transversely/isotropic",

@@ -224,6 +224,67 @@ namespace {
     }
   };
 
+  /** Hyperelastic solid that is linear in the engineering strains u = V - I, with the left stretch V = sqrt(b), but for its change of
+   *  volume (fixed corotated energy: A. Stomakhin, R. Howes, C. Schroeder, J. Teran, Proc. ACM SIGGRAPH/Eurographics Symp. Computer
+   *  Animation (2012) 25, eq. 7):
+   *
+   *    w = mu u:u + lambda/2 (J - 1)^2,   J sigma = 2 mu V u + lambda J (J - 1) I
+   *
+   *  With NU = 0, nominal stresses are E times the engineering strains, as in the theory of bars. */
+  struct LawCorotated : IsotropicHyperelastic<LawCorotated>, LameModuli {
+    static constexpr const char *name = "corotated";
+    static constexpr const char *meaning = "hyperelastic, linear in engineering strain";
+    static constexpr Parameter parameters[] = {YOUNGS_MODULUS, POISSONS_RATIO};
+
+    using LameModuli::LameModuli;
+
+    /** u of the points of a batch. */
+    static void engineering_strains(const Batch &b, Tensors &strain)
+    {
+      left_strains(b, strain);
+      log_strains(b.n, strain.row, strain.row);
+      exp_minus_identity(b.n, strain.row, strain.row);
+    }
+
+    static void update(const LawParameters &p, Batch &b, History)
+    {
+      const LawCorotated law(p);
+      Tensors strain;
+      engineering_strains(b, strain);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const Sym u = load_rows(strain.row, i);
+        const double grown = expm1(log_volume(displacement(b, i)));
+        store_stress(b, i,
+                     add_diagonal((2.0 * law.mu / b.J[i]) * (u + square(u)), law.lambda * grown));
+      }
+    }
+
+    static void energy(const LawParameters &p, const Batch &b, History, double *w)
+    {
+      const LawCorotated law(p);
+      Tensors strain;
+      engineering_strains(b, strain);
+      MPM_SIMD
+      for (int i = 0; i < b.n; i++) {
+        const double grown = expm1(log_volume(displacement(b, i)));
+        w[i] += law.mu * norm2(load_rows(strain.row, i)) + 0.5 * law.lambda * grown * grown;
+      }
+    }
+
+    MPM_INLINE void respond_at(PrincipalResponse &r, int i) const
+    {
+      for (int a = 0; a < 3; a++) {
+        const double u = expm1(r.e[a][i]), stretch = 1.0 + u;
+        r.tau[a][i] = 2.0 * mu * stretch * u;
+        r.A[a][i] = 2.0 * mu * stretch * (stretch + u);
+        r.A[a + 3][i] = 0.0;
+      }
+      const double grown = expm1(r.logJ[i]), J = 1.0 + grown;
+      respond_mean(lambda * J * grown, lambda * J * (J + grown), r, i);
+    }
+  };
+
   /** Hyperelastic solid that is linear in the logarithmic (Hencky) strain e = ln(b)/2
    *  (H. Hencky, Z. Techn. Phys. 9 (1928) 215; L. Anand, J. Appl. Mech. 46 (1979) 78):
    *
