@@ -104,6 +104,50 @@ PARAMETER_TEST(ConvectionWithShapes, CoolsASlab, const char *,
       }
 }
 
+namespace {
+
+/** The same bar on Bernstein polynomials, whose cells have two node spacings. */
+std::string bernstein_bar(int n, double shift, const std::string &heat, double side = 0.0)
+{
+  return replaced(
+      bar_in_box(n, shift, heat, 1.0, WALL), "fix m all",
+      strprintf("unfix grid\nfix grid all mpm %.17g origin %.17g %.17g frame total shape "
+                "bernstein\nfix m all",
+                1.0 / n, 1.0 - shift / n, side / n));
+}
+
+}    // namespace
+
+// Bernstein polynomials, also where sides of cells divide the rooms of points: of second order, and of first where the surface is next to a side
+// and the cell beyond has no points, which may all lie on sides
+struct BernsteinSlab {
+  double shift, error, least_order;
+};
+PARAMETER_TEST(ConvectionOfBernstein, CoolsASlab, BernsteinSlab,
+               Values(BernsteinSlab{0.0, 0.002, 1.4}, BernsteinSlab{0.5, 0.002, 1.4},
+                      BernsteinSlab{0.75, 0.002, 1.4}, BernsteinSlab{1.0, 0.002, 1.4},
+                      BernsteinSlab{1.6, 0.002, 1.4}, BernsteinSlab{1.75, 0.002, 1.4},
+                      BernsteinSlab{0.1, 0.01, 0.9}, BernsteinSlab{0.25, 0.02, 0.9}))
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const auto slab = GetParam();
+  for (const char *kind : {"surface", "region wall"}) {
+    double error[2];
+    for (const int n : {20, 40}) {
+      Scene run(
+          bernstein_bar(n, slab.shift, strprintf("%s convection 10 0.0 stages 64", kind), 0.3));
+      const double before = Warm(run).heat();
+      run_to(run, 0.1, 0.3 / (n * n));
+      const double lost = 1.0 - Warm(run).heat() / before;
+      error[n == 40] = measured(strprintf("%s, %g, %d", kind, slab.shift, n),
+                                std::fabs(lost / (1.0 - slab_mean(10.0, 0.1)) - 1.0));
+      EXPECT_NEAR((Warm(run).heat() - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
+    }
+    EXPECT_LT(error[1], slab.error);
+    EXPECT_GT(std::log2(error[0] / error[1]), slab.least_order);
+  }
+}
+
 // linear functions with points at nodes, to rounding on one side or the other: nodes behind the surface have next to no capacity, but no heat is lost
 // in them, and the error is one of first order
 SERIAL_TEST(ConvectionOfLinear, PointsAtNodes)
@@ -184,6 +228,33 @@ SERIAL_TEST(Area, OfDisksAndSpheres)
           EXPECT_NEAR(measured(strprintf("%dd %s %d %g", dim, kind, n, offset), power / area), 1.0,
                       n == 20 ? 0.01 : 0.02);
           EXPECT_NEAR(Warm(run).heat() / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
+        }
+      }
+    }
+}
+
+// Bernstein polynomials have nodes of two kinds, but the same surfaces
+SERIAL_TEST(Area, OfBernstein)
+{
+  for (const int dim : {2, 3})
+    for (const int n : {10, 20}) {
+      if (dim == 3 && n == 20) continue;
+      for (const double offset : {0.0, 0.25, 0.5, 1.0}) {
+        const double area = dim == 2 ? 2.0 * PI : 4.0 * PI;
+        for (const char *kind : {"surface", "region around"}) {
+          double power[2];
+          for (const bool bernstein : {false, true}) {
+            Scene run(replaced(round(n, offset, dim, std::string(kind) + " flux 1.0", 0.0),
+                               "\nfix m all",
+                               std::string(bernstein ? " shape bernstein" : "") +
+                                   " frame total\nfix m all") +
+                      "run 1\n");
+            power[bernstein] = run.fix_vector("heat", 10)[9];
+            EXPECT_NEAR(Warm(run).heat() / run.fix("heat")->compute_scalar(), 1.0, 1e-10);
+          }
+          EXPECT_NEAR(measured(strprintf("%dd %s %d %g", dim, kind, n, offset), power[1] / area),
+                      1.0, n == 20 ? 0.01 : 0.02);
+          EXPECT_NEAR(power[1] / power[0], 1.0, 0.003);
         }
       }
     }
@@ -538,7 +609,8 @@ TEST(Ranks, Agree)
 }
 
 PARAMETER_TEST(RanksWithShapes, Agree, const char *,
-               Values("", "shape linear", "shape gimp", "shape cpdi", "frame total"))
+               Values("", "shape linear", "shape gimp", "shape cpdi", "frame total",
+                      "shape bernstein frame total"))
 {
   expect_same_heat_on_ranks(
       replaced(moving_disk(std::string(COOLS) + " stages 64"), "fix m all",
@@ -688,9 +760,6 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"fix heat all mpm/heat region wall flux 1 region wall flux 2", "given twice"},
                   {"region open block 1 2 INF INF INF INF open 1\n"
                    "fix heat all mpm/heat region open flux 1.0",
-                   "open faces"},
-                  {"unfix grid\nfix grid all mpm 0.25 shape bernstein frame total transfer apic\n"
-                   "fix heat all mpm/heat surface flux 1.0",
-                   "use another shape"}},
+                   "open faces"}},
                  "run 1\n");
 }

@@ -457,11 +457,7 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
       return p.field[0] == field->id() || p.field[1] == field->id();
     });
     refuse_field(lmp, *this, *field,
-                 {{o.shape == BERNSTEIN && (touches || !surfaces.empty()),
-                   "shape bernstein with regions, free surfaces, or contact",
-                   "what its nodes see of a surface depends on where they are in a cell: use "
-                   "another shape"},
-                  {o.total && touches, "frame total with contact",
+                 {{o.total && touches, "frame total with contact",
                    "its nodes are not where the body is, and do not know where bodies touch: use "
                    "frame updated"}});
     if (gradients) field->slopes.push_back(&gradients);
@@ -636,7 +632,7 @@ void FixMPMHeat::init_contacts()
 
 void FixMPMHeat::extend_topology(MPMField &field)
 {
-  of(field).faces.extend_topology();
+  of(field).extend_topology();
   for (auto &skin : skins)
     if (&skin->body.field == &field) skin->extend_topology();
   for (auto &contact : contacts) contact->extend_topology(field);
@@ -655,7 +651,7 @@ void FixMPMHeat::topology_changed(MPMField &field)
 bool FixMPMHeat::looks_beyond_points() const
 {
   return !bodies.empty() || std::any_of(fields.begin(), fields.end(), [](const auto &field) {
-    return field->has_materials() && field->faces.any();
+    return field->has_materials() && (field->faces.any() || field->looks_beyond_points());
   });
 }
 

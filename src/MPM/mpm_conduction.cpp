@@ -81,6 +81,7 @@
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_heat_body.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -98,6 +99,8 @@ using namespace MPM_NS;
 static constexpr double MOST_AT_LIGHT_NODES = 4.0;
 // of the means of a conductivity that jumps at melting, on either side, in node spacings
 static constexpr double HALF_RANGE = 0.25;
+// of a side of cells, in cells: next to it a point is on either side
+static constexpr double ON_SIDE = 1.0e-9;
 static constexpr double SAME =
     2.0;    // ratio of conductivities for which means across interfaces matter little
 
@@ -106,7 +109,7 @@ static constexpr double SAME =
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
                              const MPMHeatCondition *conditions) :
     Pointers(lmp),
-    field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer)
+    field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer), cuts(field)
 {
 }
 
@@ -472,6 +475,23 @@ bool MPMConduction::is_bounded_by_rows() const
   return !field.boxes && !field.domains && steepest == 0.0;
 }
 
+bool MPMConduction::looks_beyond_points() const
+{
+  return field.options.shape == BERNSTEIN;
+}
+
+void MPMConduction::extend_topology()
+{
+  faces.extend_topology();
+  if (!looks_beyond_points() || !has_materials()) return;
+  const auto nblocks = (int) field.grid.blocks.size();
+  for (int ib = 0; ib < nblocks; ib++) {
+    const auto &block = field.grid.blocks[ib];
+    const int b[3] = {block.b[0], block.b[1], block.b[2]};
+    activate_blocks_around(field, b);
+  }
+}
+
 /** Rows of the matrix of rates, for functions that points alone do not bound. */
 void MPMConduction::add_rows()
 {
@@ -480,10 +500,21 @@ void MPMConduction::add_rows()
     for (int p = 0; p < n; p++) {
       double k[3][3];
       tensor(*t, first + p, k);
+      const bool in_parts = cuts.any() && cuts.is_cut[first + p];
       for (int a = 0; a < 3; a++)
-        q[p][a] = volumes[first + p] * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+        q[p][a] = in_parts ? 0.0
+                           : volumes[first + p] * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
     }
   });
+  for (const auto &part : cuts.parts) {
+    double k[3][3];
+    tensor(*thermal(field.material_of(part.point)), part.point, k);
+    const double times = 2.0 / field.lattice.h * part.volume * volumes[part.point];
+    cuts.each_node(part, [&](int node, const double *slope) {
+      for (int a = 0; a < 3; a++)
+        rate[node] += times * fabs(slope[a]) * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+    });
+  }
 }
 
 /** Nodes with a much greater rate than those inside of a body have next to no capacity: points conduct less there. */
@@ -493,18 +524,43 @@ double MPMConduction::bound_by_rows(double greatest_of_rank)
   double mine[2] = {usual * fastest_point, greatest_of_rank}, all[2];
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   shares.clear();
+  if (cuts.any()) {
+    shares.assign(atom->nmax, 1.0);
+    for (const auto &part : cuts.parts) shares[part.point] = 0.0;
+  }
   const double limit = MOST_AT_LIGHT_NODES * all[0];
   if (all[1] <= limit) return mine[1];
 
   field.nodes.complete(rate.data(), 1, 1);
-  shares.assign(atom->nmax, 1.0);
-  const MPMStencil stencil(field);
+  shares.resize(atom->nmax, 1.0);
+  for (auto &part : cuts.parts)
+    for (int k = 0; k < (field.lattice.dim == 3 ? 27 : 9); k++)
+      if (part.share * rate[part.node[k]] > limit) part.share = limit / rate[part.node[k]];
+  MPMStencil stencil(field);
+  const double width = shape_constants[field.options.shape].cell, h = field.lattice.h;
+  const int dim = field.lattice.dim;
   for (const auto &run : field.map->runs)
-    for (int i = run.first; thermal(run.material) && i < run.last; i++)
-      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        const double greatest = rate[node.number];
-        if (shares[i] * greatest > limit) shares[i] = limit / greatest;
-      });
+    for (int i = run.first; thermal(run.material) && i < run.last; i++) {
+      // on a side of cells round-off decides which of them the kernels take
+      const double *const place = field.frame->places()[i];
+      bool on_side[3] = {false, false, false};
+      for (int d = 0; d < dim; d++) {
+        const double cells = (place[d] - field.lattice.origin[d]) / (width * h);
+        on_side[d] = std::fabs(cells - std::round(cells)) < ON_SIDE;
+      }
+      for (int k = 0; k < 1 << dim; k++) {
+        double x[3] = {place[0], place[1], place[2]};
+        bool again = false;
+        for (int d = 0; d < dim; d++) {
+          if (on_side[d]) x[d] += (k >> d & 1 ? 2.0 : -2.0) * ON_SIDE * width * h;
+          again = again || (!on_side[d] && (k >> d & 1));
+        }
+        if (again) continue;
+        stencil.visit_around(x, [&](int64_t node, double, const double *) {
+          if (shares[i] * rate[node] > limit) shares[i] = limit / rate[node];
+        });
+      }
+    }
   return limit;
 }
 
@@ -534,6 +590,10 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
   add_points(gradients, starts);
   const double most = end_nodes();
   if (!is_bounded_by_rows()) return most;
+  if (looks_beyond_points())
+    cuts.find([this](const MPMPointMap::Run &run) {
+      return thermal(run.material) != nullptr;
+    });
   add_rows();
   return bound_by_rows(most_of_rows());
 }
@@ -640,10 +700,11 @@ bool MPMConduction::is_plain() const
 }
 
 /** Gradients of n points become fluxes times volumes, and values 0. */
-void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q) const
+void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q,
+                            Left left) const
 {
   const double *const V = volumes.data() + first;
-  const double *const share = shares.empty() ? nullptr : shares.data() + first;
+  const double *const share = shares.empty() || left == ALL ? nullptr : shares.data() + first;
   Conduction room;
   for (int p = 0; p < n; p++) {
     const double conducting = share ? V[p] * share[p] : V[p];
@@ -684,9 +745,25 @@ void MPMConduction::find_changes()
     });
     return;
   }
-  scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-    conduct(*thermal(run.material), first, n, q);
-  });
+  scalar.find_rates(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+        conduct(*thermal(run.material), first, n, q);
+      },
+      [this]() {
+        conduct_parts();
+      });
+}
+
+/** What points whose rooms are in several cells conduct there. */
+void MPMConduction::conduct_parts()
+{
+  for (const auto &part : cuts.parts) {
+    double q[1][4] = {};
+    cuts.gradient(part, temperature, q[0]);
+    conduct(*thermal(field.material_of(part.point)), part.point, 1, q, ALL);
+    for (int d = 0; d < 3; d++) q[0][d] *= part.volume * part.share;
+    cuts.add(part, q[0], rate);
+  }
 }
 
 /** Points that see a node from several corners of their domain have it once. */
@@ -699,6 +776,7 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
   for (const auto &run : field.map->runs) {
     const Thermal *const t = thermal(run.material);
     for (int i = run.first; t && i < run.last; i++) {
+      if (cuts.any() && cuts.is_cut[i]) continue;
       nodes.clear();
       gradients.clear();
       stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
@@ -720,6 +798,22 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
       use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
     }
   }
+  for (const auto &part : cuts.parts) {
+    nodes.clear();
+    gradients.clear();
+    cuts.each_node(part, [&](int node, const double *slope) {
+      nodes.push_back(node);
+      gradients.insert(gradients.end(), slope, slope + dim);
+    });
+    double stiffness[9];
+    for (int column = 0; column < dim; column++) {
+      double q[1][4] = {};
+      q[0][column] = -part.volume * part.share;
+      conduct(*thermal(field.material_of(part.point)), part.point, 1, q, ALL);
+      for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
+    }
+    use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
+  }
 }
 
 void MPMConduction::find_rates(const double *source, Heats &power)
@@ -734,15 +828,19 @@ void MPMConduction::find_rates(const double *source, Heats &power)
       conduct_plainly(*thermal(run.material), first, n, factors);
     });
   else
-    scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-      see(first, n, q);
-      conduct(*thermal(run.material), first, n, q);
-      if (!source) return;
-      const double *const V = volumes.data() + first;
-      double sum = 0.0;
-      for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
-      power[SOURCES] += sum;
-    });
+    scalar.find_rates(
+        [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+          see(first, n, q);
+          conduct(*thermal(run.material), first, n, q);
+          if (!source) return;
+          const double *const V = volumes.data() + first;
+          double sum = 0.0;
+          for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
+          power[SOURCES] += sum;
+        },
+        [this]() {
+          conduct_parts();
+        });
   if (at_start == TO_BE_SEEN) at_start = SEEN;
 }
 
@@ -881,6 +979,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
 double MPMConduction::memory_usage() const
 {
   return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
+      cuts.memory_usage() +
       (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
       sizeof(double);
 }

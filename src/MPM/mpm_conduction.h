@@ -11,6 +11,7 @@
 
 #include "fix_mpm_material.h"
 #include "material/material.h"
+#include "mpm_cut_rooms.h"
 #include "mpm_diffusion_solver.h"
 #include "mpm_heat_faces.h"
 #include "mpm_layer_mean.h"
@@ -108,6 +109,10 @@ class MPMConduction : protected Pointers {
   /** Of nodes, see MPMSuperStep. */
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
+  /** Bernstein polynomials: the room of a point can be in a cell that the point is not in. */
+  bool looks_beyond_points() const;
+  void extend_topology();
+
   /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
   double capacity_of(int i) const;
   /** Has it a material that melts? The same on all ranks. */
@@ -181,7 +186,8 @@ class MPMConduction : protected Pointers {
   // points'; empty: there are none
   std::vector<Range> ranges;
   std::vector<double>
-      shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
+      shares;    // [n] of their conductivity that is left, see row_bound(); empty: all. None of points in parts
+  MPMCutRooms cuts;
 
   std::vector<signed char> present;    // [materials of the field]: has points here, on any rank
   const Thermal *thermal(const FixMPMMaterial *) const;
@@ -193,7 +199,10 @@ class MPMConduction : protected Pointers {
   void find_ranges();
   void tensor(const Thermal &, int i, double k[3][3]) const;
   bool is_plain() const;
-  void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q) const;
+  enum Left { AS_SHARES, ALL };    // of the conductivity
+  void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q,
+               Left left = AS_SHARES) const;
+  void conduct_parts();
   void conduct_plainly(const Thermal &, int first, int n, double *factors) const;
   double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;
