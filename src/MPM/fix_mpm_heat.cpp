@@ -838,7 +838,7 @@ int FixMPMHeat::count_stages()
     if (!field.conducts()) continue;
     if (!levels_of(field)) mine[NRATE * k] = field.points_to_nodes(gradients, !solver);
     if (field.faces.any())
-      field.faces.begin_step(field.node_capacity(), field.node_volume(),
+      field.faces.begin_step(field.face_capacity(), field.node_volume(),
                              weighs_faces(field.field) ? &body_of(field.field) : nullptr,
                              field.temperature, &mine[NRATE * k + 1]);
   }
@@ -866,8 +866,9 @@ int FixMPMHeat::count_stages()
   for (std::size_t k = 0; k < fields.size(); k++) {
     for (auto &body : bodies)
       if (has_lines && body->conduction == fields[k].get())
-        fields[k]->faces.slow_down_at_edges(*body, all[NRATE * k]);
-    const double rate = fields[k]->faces.limit(cap, all[NRATE * k], &all[NRATE * k + 1]);
+        fields[k]->faces.slow_down_at_edges(*body, fields[k]->rate_at_edges());
+    const double rate =
+        fields[k]->faces.limit(cap, fields[k]->rate_at_edges(), &all[NRATE * k + 1]);
     most = std::max(most, rate);
   }
   greatest += most;
@@ -877,7 +878,7 @@ int FixMPMHeat::count_stages()
   }
   most = 0.0;
   for (auto &skin : skins) {
-    skin->limit(cap, skin->body.conduction->bound_of_rates());
+    skin->limit(cap, skin->body.conduction->rate_at_edges());
     most = std::max(most, std::min(cap, *rates++));
   }
   greatest += most;

@@ -56,6 +56,11 @@
    capacity have any rate, up to 1e16 times that. So that there is a limit, points that reach such a node conduct less, by the
    factor that makes its sum four times the usual one: the matrix stays symmetric, and heat is kept.
 
+   Bernstein polynomials: a point whose room is divided by a side of cells conducts with its parts in each cell (mpm_cut_rooms.cpp), by
+   which the sums are integrals wherever points are. Parts with a node whose rate is more than 1.4 times what is allowed conduct nothing, instead of
+   a little, which would be an insulating layer at a surface; these nodes, and those that have less than a quarter of their conduction left,
+   are idle: no heat comes in there, so that the body ends at the side of the cell.
+
    Melting. Where the conductivity jumps at the temperature of melting, points that are partly molten have that temperature, and with it the
    conductivity of one phase. If that is not the phase that grows, the front was up to 0.8 node spacings off. Heat flows along the gradient of the
    integral of k over the temperature, of which the mean of k over the temperatures around a point is the difference over a
@@ -99,6 +104,10 @@ using namespace MPM_NS;
 static constexpr double MOST_AT_LIGHT_NODES = 4.0;
 // of the means of a conductivity that jumps at melting, on either side, in node spacings
 static constexpr double HALF_RANGE = 0.25;
+// Bernstein polynomials: where less than this is left of the conductivity, there is none
+static constexpr double TOO_LITTLE = 0.7;
+// nodes that have less than this share of the conduction around them get no heat through surfaces
+static constexpr double LEAST_LEFT = 0.25;
 // of a side of cells, in cells: next to it a point is on either side
 static constexpr double ON_SIDE = 1.0e-9;
 static constexpr double SAME =
@@ -493,23 +502,24 @@ void MPMConduction::extend_topology()
 }
 
 /** Rows of the matrix of rates, for functions that points alone do not bound. */
-void MPMConduction::add_rows()
+void MPMConduction::add_rows(Left left)
 {
   scalar.add_rows([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
     const Thermal *const t = thermal(run.material);
     for (int p = 0; p < n; p++) {
       double k[3][3];
       tensor(*t, first + p, k);
-      const bool in_parts = cuts.any() && cuts.is_cut[first + p];
-      for (int a = 0; a < 3; a++)
-        q[p][a] = in_parts ? 0.0
-                           : volumes[first + p] * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+      double V = volumes[first + p];
+      if (cuts.any() && cuts.is_cut[first + p]) V = 0.0;
+      if (left == AS_SHARES) V *= shares[first + p];
+      for (int a = 0; a < 3; a++) q[p][a] = V * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
     }
   });
   for (const auto &part : cuts.parts) {
     double k[3][3];
     tensor(*thermal(field.material_of(part.point)), part.point, k);
-    const double times = 2.0 / field.lattice.h * part.volume * volumes[part.point];
+    const double times = 2.0 / field.lattice.h * part.volume * volumes[part.point] *
+        (left == AS_SHARES ? part.share : 1.0);
     cuts.each_node(part, [&](int node, const double *slope) {
       for (int a = 0; a < 3; a++)
         rate[node] += times * fabs(slope[a]) * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
@@ -524,6 +534,8 @@ double MPMConduction::bound_by_rows(double greatest_of_rank)
   double mine[2] = {usual * fastest_point, greatest_of_rank}, all[2];
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   shares.clear();
+  idle.clear();
+  usual_rate = all[0];
   if (cuts.any()) {
     shares.assign(atom->nmax, 1.0);
     for (const auto &part : cuts.parts) shares[part.point] = 0.0;
@@ -533,9 +545,16 @@ double MPMConduction::bound_by_rows(double greatest_of_rank)
 
   field.nodes.complete(rate.data(), 1, 1);
   shares.resize(atom->nmax, 1.0);
+  if (looks_beyond_points()) {
+    idle.resize(rate.size());
+    for (std::size_t k = 0; k < rate.size(); k++) idle[k] = rate[k] * TOO_LITTLE > limit;
+  }
   for (auto &part : cuts.parts)
     for (int k = 0; k < (field.lattice.dim == 3 ? 27 : 9); k++)
-      if (part.share * rate[part.node[k]] > limit) part.share = limit / rate[part.node[k]];
+      if (is_idle(part.node[k]))
+        part.share = 0.0;
+      else if (part.share * rate[part.node[k]] > limit)
+        part.share = limit / rate[part.node[k]];
   MPMStencil stencil(field);
   const double width = shape_constants[field.options.shape].cell, h = field.lattice.h;
   const int dim = field.lattice.dim;
@@ -557,11 +576,31 @@ double MPMConduction::bound_by_rows(double greatest_of_rank)
         }
         if (again) continue;
         stencil.visit_around(x, [&](int64_t node, double, const double *) {
-          if (shares[i] * rate[node] > limit) shares[i] = limit / rate[node];
+          if (is_idle(node))
+            shares[i] = 0.0;
+          else if (shares[i] * rate[node] > limit)
+            shares[i] = limit / rate[node];
         });
       }
     }
+  if (looks_beyond_points()) {
+    const std::vector<double> whole = rate;
+    add_rows(AS_SHARES);
+    scalar.greatest_row();
+    field.nodes.complete(rate.data(), 1, 1);
+    for (std::size_t k = 0; k < rate.size(); k++)
+      if (rate[k] < LEAST_LEFT * whole[k]) idle[k] = 1;
+  }
   return limit;
+}
+
+const std::vector<double> &MPMConduction::face_capacity()
+{
+  if (idle.empty()) return scalar.capacity;
+  capacity_at_faces = scalar.capacity;
+  for (std::size_t k = 0; k < idle.size(); k++)
+    if (idle[k]) capacity_at_faces[k] = 0.0;
+  return capacity_at_faces;
 }
 
 /** Calls loop(plain) with what is known as a constant: loops over points then have neither branches nor calls for what all of
@@ -979,7 +1018,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
 double MPMConduction::memory_usage() const
 {
   return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
-      cuts.memory_usage() +
+      cuts.memory_usage() + idle.capacity() + capacity_at_faces.capacity() * sizeof(double) +
       (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
       sizeof(double);
 }

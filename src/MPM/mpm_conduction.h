@@ -17,6 +17,7 @@
 #include "mpm_layer_mean.h"
 #include "mpm_node_scalar.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <limits>
@@ -71,12 +72,19 @@ class MPMConduction : protected Pointers {
   /** Functions that points alone do not bound (shape linear): rows of the matrix of rates, in the place of rates, and what follows from
    *  them when they are those of all lattices: the bound. usual: that of nodes inside of a body. Collective. */
   bool is_bounded_by_rows() const;
-  void add_rows();
+  enum Left { ALL, AS_SHARES };    // of conductivities
+  void add_rows(Left left = ALL);
   double most_of_rows() { return scalar.greatest_row(); }
   double bound_by_rows(double greatest_of_rank);
   /** The bound of the rates of conduction on all ranks. */
   void keep_rate(double conduction) { conducted = conduction; }
   double bound_of_rates() const { return conducted; }
+  /** What surfaces at edges may have at the most: that bound, without what nodes with little capacity add to it where these get no
+   *  heat through surfaces. */
+  double rate_at_edges() const
+  {
+    return idle.empty() ? conducted : std::min(conducted, usual_rate);
+  }
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. Then add_given(). */
   void find_rates(const double *source, Heats &power);
@@ -112,6 +120,10 @@ class MPMConduction : protected Pointers {
   /** Bernstein polynomials: the room of a point can be in a cell that the point is not in. */
   bool looks_beyond_points() const;
   void extend_topology();
+  /** Bernstein polynomials: nodes with so little capacity that nothing flows there, and no heat may come in. */
+  bool is_idle(int64_t node) const { return !idle.empty() && idle[node]; }
+  /** Capacities of nodes for heat through faces: none of these. */
+  const std::vector<double> &face_capacity();
 
   /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
   double capacity_of(int i) const;
@@ -188,6 +200,9 @@ class MPMConduction : protected Pointers {
   std::vector<double>
       shares;    // [n] of their conductivity that is left, see row_bound(); empty: all. None of points in parts
   MPMCutRooms cuts;
+  std::vector<char> idle;     // [nodes], empty: none
+  double usual_rate = 0.0;    // bound of the rates of nodes inside of a body
+  std::vector<double> capacity_at_faces;
 
   std::vector<signed char> present;    // [materials of the field]: has points here, on any rank
   const Thermal *thermal(const FixMPMMaterial *) const;
@@ -199,7 +214,6 @@ class MPMConduction : protected Pointers {
   void find_ranges();
   void tensor(const Thermal &, int i, double k[3][3]) const;
   bool is_plain() const;
-  enum Left { AS_SHARES, ALL };    // of the conductivity
   void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q,
                Left left = AS_SHARES) const;
   void conduct_parts();

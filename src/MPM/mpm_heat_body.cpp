@@ -27,6 +27,11 @@
    which makes the place at which a temperature is taken wrong by a part of a cell. And where the volume of the points ends is known to
    half of their spacing only, as all places of a point in a cell are the same to its gradients.
 
+   Nor have Bernstein polynomials, whose nodes at the sides of cells and in the middle see a surface differently, too. Its place, normal, and area are
+   those of lines of quadratic B-splines on the same nodes, of sums over boxes, for points may be anywhere in a cell. Across such a line
+   nodes of the field have the integrals 4/3 and 2/3: the line gives its area to these, and what a line of the field gets of it
+   has the weights of the functions where the surface crosses it, with the factor above.
+
    The area of a line is that of the whole line where the body fills all that is behind its surface, and less at the sides of
    the body and of the box. The sum of n.G has the noise of sums over points that are no integrals.
 
@@ -274,10 +279,8 @@ bool MPMHeatBody::spread(const int *base, double at, const double *into, const L
     all += part.area;
     parts.push_back(part);
   }
-  for (auto &part : parts) {
-    part.area /= all;
-    part.share /= all;
-  }
+  // shares of a line, of which the sum over places is one at the most, bound its rate
+  for (auto &part : parts) part.area /= all;
   return !parts.empty();
 }
 
@@ -299,6 +302,13 @@ double MPMHeatBody::conducting(int64_t node) const
 bool MPMHeatBody::find_response(Line &line) const
 {
   line.response = line.conducting = 0.0;
+  double awake = 0.0;
+  for (int k = 0; k < line.n; k++) {
+    if (line.weight[k] > 0.0 && conduction->is_idle(line.node[k])) line.weight[k] = 0.0;
+    awake += line.weight[k];
+  }
+  if (!(awake > LEAST)) return false;
+  for (int k = 0; k < line.n; k++) line.weight[k] /= awake;
   for (int k = 0; k < line.n; k++)
     if (line.weight[k] > 0.0) line.conducting += line.weight[k] *= conducting(line.node[k]);
   if (!(line.conducting > LEAST)) return false;
