@@ -7,6 +7,7 @@
 
 // Fix mpm/heat with all shape functions, in all frames, and around an axis of symmetry.
 
+#include "heat_exact.h"
 #include "heat_testing.h"
 
 using namespace MPM_TEST;
@@ -128,6 +129,52 @@ SERIAL_TEST(AreaOfFaces, OfBernstein)
       const double *const power = run.fix_vector("heat", 7), area = dim == 2 ? 0.4 : 0.24;
       EXPECT_NEAR(measured(strprintf("%dd, %g", dim, offset), power[0] / area), 1.0, 1e-9);
       EXPECT_NEAR(power[1] / area, 2.0, 1e-9);
+    }
+}
+
+// where points lie on sides of cells, at the ends of a body, too, nodes in the middle of cells have next to no capacity, or none: nothing flows there,
+// and the temperatures stay in their range
+SERIAL_TEST(Bernstein, PointsOnSidesOfCells)
+{
+  for (const int n : {20, 40})
+    for (const double shift : {0.25, 0.75, 1.25, 1.75}) {
+      const double h = 1.0 / n;
+      Scene run(
+          plane("lj", "f p", strprintf("0 1.5 0 %.17g", 4 * h), 1, 0.1 * h) +
+          "region bar block 0 1 INF INF INF INF\n" +
+          strprintf("create_points 1 region bar spacing %.17g\n", 0.5 * h) +
+          strprintf("fix grid all mpm %.17g origin %.17g 0 shape bernstein frame total\n", h,
+                    1.0 - shift * h) +
+          "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1.0\n"
+          "fix heat all mpm/heat stages 64\n");
+      Warm(run).set([](const double *x) {
+        return 1.0 + std::cos(PI * x[0]);
+      });
+      const double before = Warm(run).heat();
+      run_to(run, 0.1, 0.3 * h * h);
+      EXPECT_NEAR(Warm(run).heat() / before, 1.0, 1e-12);
+      const double rms = Warm(run)
+                             .error([](const double *x) {
+                               return 1.0 + std::cos(PI * x[0]) * std::exp(-0.1 * PI * PI);
+                             })
+                             .rms;
+      EXPECT_LT(measured(strprintf("%d, %g", n, shift), rms), n == 20 ? 2e-3 : 5e-4);
+    }
+}
+
+// sides of cells divide the rooms of points, which are parts in both cells: a slab that is cooled at a face of the box loses its heat wherever they are
+SERIAL_TEST(Bernstein, RoomsInTwoCells)
+{
+  for (const double shift : {0.25, 0.4, 0.6, 1.1})
+    for (const char *time : {"stages 64", "time sdirk2"}) {
+      constexpr int n = 20;
+      Scene run(bar(n, std::string("xlo convection 10 0.0 ") + time, shift,
+                    "shape bernstein frame total", 1.0));
+      const double before = Warm(run).heat();
+      run_to(run, 0.1, (*time == 't' ? 2.0 : 0.3) / (n * n));
+      const double lost = 1.0 - Warm(run).heat() / before;
+      EXPECT_NEAR(measured(strprintf("%g, %s", shift, time), lost / (1.0 - slab_mean(10.0, 0.1))),
+                  1.0, 0.005);
     }
 }
 

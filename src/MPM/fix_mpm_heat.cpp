@@ -457,11 +457,7 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
       return p.field[0] == field->id() || p.field[1] == field->id();
     });
     refuse_field(lmp, *this, *field,
-                 {{o.shape == BERNSTEIN && (touches || !surfaces.empty()),
-                   "shape bernstein with regions, free surfaces, or contact",
-                   "what its nodes see of a surface depends on where they are in a cell: use "
-                   "another shape"},
-                  {o.total && touches, "frame total with contact",
+                 {{o.total && touches, "frame total with contact",
                    "its nodes are not where the body is, and do not know where bodies touch: use "
                    "frame updated"}});
     if (gradients) field->slopes.push_back(&gradients);
@@ -636,7 +632,7 @@ void FixMPMHeat::init_contacts()
 
 void FixMPMHeat::extend_topology(MPMField &field)
 {
-  of(field).faces.extend_topology();
+  of(field).extend_topology();
   for (auto &skin : skins)
     if (&skin->body.field == &field) skin->extend_topology();
   for (auto &contact : contacts) contact->extend_topology(field);
@@ -655,7 +651,7 @@ void FixMPMHeat::topology_changed(MPMField &field)
 bool FixMPMHeat::looks_beyond_points() const
 {
   return !bodies.empty() || std::any_of(fields.begin(), fields.end(), [](const auto &field) {
-    return field->has_materials() && field->faces.any();
+    return field->has_materials() && (field->faces.any() || field->looks_beyond_points());
   });
 }
 
@@ -842,7 +838,7 @@ int FixMPMHeat::count_stages()
     if (!field.conducts()) continue;
     if (!levels_of(field)) mine[NRATE * k] = field.points_to_nodes(gradients, !solver);
     if (field.faces.any())
-      field.faces.begin_step(field.node_capacity(), field.node_volume(),
+      field.faces.begin_step(field.face_capacity(), field.node_volume(),
                              weighs_faces(field.field) ? &body_of(field.field) : nullptr,
                              field.temperature, &mine[NRATE * k + 1]);
   }
@@ -870,8 +866,9 @@ int FixMPMHeat::count_stages()
   for (std::size_t k = 0; k < fields.size(); k++) {
     for (auto &body : bodies)
       if (has_lines && body->conduction == fields[k].get())
-        fields[k]->faces.slow_down_at_edges(*body, all[NRATE * k]);
-    const double rate = fields[k]->faces.limit(cap, all[NRATE * k], &all[NRATE * k + 1]);
+        fields[k]->faces.slow_down_at_edges(*body, fields[k]->rate_at_edges());
+    const double rate =
+        fields[k]->faces.limit(cap, fields[k]->rate_at_edges(), &all[NRATE * k + 1]);
     most = std::max(most, rate);
   }
   greatest += most;
@@ -881,7 +878,7 @@ int FixMPMHeat::count_stages()
   }
   most = 0.0;
   for (auto &skin : skins) {
-    skin->limit(cap, skin->body.conduction->bound_of_rates());
+    skin->limit(cap, skin->body.conduction->rate_at_edges());
     most = std::max(most, std::min(cap, *rates++));
   }
   greatest += most;

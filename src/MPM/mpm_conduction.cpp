@@ -56,6 +56,11 @@
    capacity have any rate, up to 1e16 times that. So that there is a limit, points that reach such a node conduct less, by the
    factor that makes its sum four times the usual one: the matrix stays symmetric, and heat is kept.
 
+   Bernstein polynomials: a point whose room is divided by a side of cells conducts with its parts in each cell (mpm_cut_rooms.cpp), by
+   which the sums are integrals wherever points are. Parts with a node whose rate is more than 1.4 times what is allowed conduct nothing, instead of
+   a little, which would be an insulating layer at a surface; these nodes, and those that have less than a quarter of their conduction left,
+   are idle: no heat comes in there, so that the body ends at the side of the cell.
+
    Melting. Where the conductivity jumps at the temperature of melting, points that are partly molten have that temperature, and with it the
    conductivity of one phase. If that is not the phase that grows, the front was up to 0.8 node spacings off. Heat flows along the gradient of the
    integral of k over the temperature, of which the mean of k over the temperatures around a point is the difference over a
@@ -81,6 +86,7 @@
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
+#include "mpm_heat_body.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
 #include "mpm_stencil.h"
@@ -98,6 +104,12 @@ using namespace MPM_NS;
 static constexpr double MOST_AT_LIGHT_NODES = 4.0;
 // of the means of a conductivity that jumps at melting, on either side, in node spacings
 static constexpr double HALF_RANGE = 0.25;
+// Bernstein polynomials: where less than this is left of the conductivity, there is none
+static constexpr double TOO_LITTLE = 0.7;
+// nodes that have less than this share of the conduction around them get no heat through surfaces
+static constexpr double LEAST_LEFT = 0.25;
+// of a side of cells, in cells: next to it a point is on either side
+static constexpr double ON_SIDE = 1.0e-9;
 static constexpr double SAME =
     2.0;    // ratio of conductivities for which means across interfaces matter little
 
@@ -106,7 +118,7 @@ static constexpr double SAME =
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
                              const MPMHeatCondition *conditions) :
     Pointers(lmp),
-    field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer)
+    field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer), cuts(field)
 {
 }
 
@@ -472,18 +484,47 @@ bool MPMConduction::is_bounded_by_rows() const
   return !field.boxes && !field.domains && steepest == 0.0;
 }
 
+bool MPMConduction::looks_beyond_points() const
+{
+  return field.options.shape == BERNSTEIN;
+}
+
+void MPMConduction::extend_topology()
+{
+  faces.extend_topology();
+  if (!looks_beyond_points() || !has_materials()) return;
+  const auto nblocks = (int) field.grid.blocks.size();
+  for (int ib = 0; ib < nblocks; ib++) {
+    const auto &block = field.grid.blocks[ib];
+    const int b[3] = {block.b[0], block.b[1], block.b[2]};
+    activate_blocks_around(field, b);
+  }
+}
+
 /** Rows of the matrix of rates, for functions that points alone do not bound. */
-void MPMConduction::add_rows()
+void MPMConduction::add_rows(Left left)
 {
   scalar.add_rows([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
     const Thermal *const t = thermal(run.material);
     for (int p = 0; p < n; p++) {
       double k[3][3];
       tensor(*t, first + p, k);
-      for (int a = 0; a < 3; a++)
-        q[p][a] = volumes[first + p] * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+      double V = volumes[first + p];
+      if (cuts.any() && cuts.is_cut[first + p]) V = 0.0;
+      if (left == AS_SHARES) V *= shares[first + p];
+      for (int a = 0; a < 3; a++) q[p][a] = V * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
     }
   });
+  for (const auto &part : cuts.parts) {
+    double k[3][3];
+    tensor(*thermal(field.material_of(part.point)), part.point, k);
+    const double times = 2.0 / field.lattice.h * part.volume * volumes[part.point] *
+        (left == AS_SHARES ? part.share : 1.0);
+    cuts.each_node(part, [&](int node, const double *slope) {
+      for (int a = 0; a < 3; a++)
+        rate[node] += times * fabs(slope[a]) * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+    });
+  }
 }
 
 /** Nodes with a much greater rate than those inside of a body have next to no capacity: points conduct less there. */
@@ -493,19 +534,73 @@ double MPMConduction::bound_by_rows(double greatest_of_rank)
   double mine[2] = {usual * fastest_point, greatest_of_rank}, all[2];
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   shares.clear();
+  idle.clear();
+  usual_rate = all[0];
+  if (cuts.any()) {
+    shares.assign(atom->nmax, 1.0);
+    for (const auto &part : cuts.parts) shares[part.point] = 0.0;
+  }
   const double limit = MOST_AT_LIGHT_NODES * all[0];
   if (all[1] <= limit) return mine[1];
 
   field.nodes.complete(rate.data(), 1, 1);
-  shares.assign(atom->nmax, 1.0);
-  const MPMStencil stencil(field);
+  shares.resize(atom->nmax, 1.0);
+  if (looks_beyond_points()) {
+    idle.resize(rate.size());
+    for (std::size_t k = 0; k < rate.size(); k++) idle[k] = rate[k] * TOO_LITTLE > limit;
+  }
+  for (auto &part : cuts.parts)
+    for (int k = 0; k < (field.lattice.dim == 3 ? 27 : 9); k++)
+      if (is_idle(part.node[k]))
+        part.share = 0.0;
+      else if (part.share * rate[part.node[k]] > limit)
+        part.share = limit / rate[part.node[k]];
+  MPMStencil stencil(field);
+  const double width = shape_constants[field.options.shape].cell, h = field.lattice.h;
+  const int dim = field.lattice.dim;
   for (const auto &run : field.map->runs)
-    for (int i = run.first; thermal(run.material) && i < run.last; i++)
-      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        const double greatest = rate[node.number];
-        if (shares[i] * greatest > limit) shares[i] = limit / greatest;
-      });
+    for (int i = run.first; thermal(run.material) && i < run.last; i++) {
+      // on a side of cells round-off decides which of them the kernels take
+      const double *const place = field.frame->places()[i];
+      bool on_side[3] = {false, false, false};
+      for (int d = 0; d < dim; d++) {
+        const double cells = (place[d] - field.lattice.origin[d]) / (width * h);
+        on_side[d] = std::fabs(cells - std::round(cells)) < ON_SIDE;
+      }
+      for (int k = 0; k < 1 << dim; k++) {
+        double x[3] = {place[0], place[1], place[2]};
+        bool again = false;
+        for (int d = 0; d < dim; d++) {
+          if (on_side[d]) x[d] += (k >> d & 1 ? 2.0 : -2.0) * ON_SIDE * width * h;
+          again = again || (!on_side[d] && (k >> d & 1));
+        }
+        if (again) continue;
+        stencil.visit_around(x, [&](int64_t node, double, const double *) {
+          if (is_idle(node))
+            shares[i] = 0.0;
+          else if (shares[i] * rate[node] > limit)
+            shares[i] = limit / rate[node];
+        });
+      }
+    }
+  if (looks_beyond_points()) {
+    const std::vector<double> whole = rate;
+    add_rows(AS_SHARES);
+    scalar.greatest_row();
+    field.nodes.complete(rate.data(), 1, 1);
+    for (std::size_t k = 0; k < rate.size(); k++)
+      if (rate[k] < LEAST_LEFT * whole[k]) idle[k] = 1;
+  }
   return limit;
+}
+
+const std::vector<double> &MPMConduction::face_capacity()
+{
+  if (idle.empty()) return scalar.capacity;
+  capacity_at_faces = scalar.capacity;
+  for (std::size_t k = 0; k < idle.size(); k++)
+    if (idle[k]) capacity_at_faces[k] = 0.0;
+  return capacity_at_faces;
 }
 
 /** Calls loop(plain) with what is known as a constant: loops over points then have neither branches nor calls for what all of
@@ -534,6 +629,10 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
   add_points(gradients, starts);
   const double most = end_nodes();
   if (!is_bounded_by_rows()) return most;
+  if (looks_beyond_points())
+    cuts.find([this](const MPMPointMap::Run &run) {
+      return thermal(run.material) != nullptr;
+    });
   add_rows();
   return bound_by_rows(most_of_rows());
 }
@@ -640,10 +739,11 @@ bool MPMConduction::is_plain() const
 }
 
 /** Gradients of n points become fluxes times volumes, and values 0. */
-void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q) const
+void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q,
+                            Left left) const
 {
   const double *const V = volumes.data() + first;
-  const double *const share = shares.empty() ? nullptr : shares.data() + first;
+  const double *const share = shares.empty() || left == ALL ? nullptr : shares.data() + first;
   Conduction room;
   for (int p = 0; p < n; p++) {
     const double conducting = share ? V[p] * share[p] : V[p];
@@ -684,9 +784,25 @@ void MPMConduction::find_changes()
     });
     return;
   }
-  scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-    conduct(*thermal(run.material), first, n, q);
-  });
+  scalar.find_rates(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+        conduct(*thermal(run.material), first, n, q);
+      },
+      [this]() {
+        conduct_parts();
+      });
+}
+
+/** What points whose rooms are in several cells conduct there. */
+void MPMConduction::conduct_parts()
+{
+  for (const auto &part : cuts.parts) {
+    double q[1][4] = {};
+    cuts.gradient(part, temperature, q[0]);
+    conduct(*thermal(field.material_of(part.point)), part.point, 1, q, ALL);
+    for (int d = 0; d < 3; d++) q[0][d] *= part.volume * part.share;
+    cuts.add(part, q[0], rate);
+  }
 }
 
 /** Points that see a node from several corners of their domain have it once. */
@@ -699,6 +815,7 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
   for (const auto &run : field.map->runs) {
     const Thermal *const t = thermal(run.material);
     for (int i = run.first; t && i < run.last; i++) {
+      if (cuts.any() && cuts.is_cut[i]) continue;
       nodes.clear();
       gradients.clear();
       stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
@@ -720,6 +837,22 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
       use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
     }
   }
+  for (const auto &part : cuts.parts) {
+    nodes.clear();
+    gradients.clear();
+    cuts.each_node(part, [&](int node, const double *slope) {
+      nodes.push_back(node);
+      gradients.insert(gradients.end(), slope, slope + dim);
+    });
+    double stiffness[9];
+    for (int column = 0; column < dim; column++) {
+      double q[1][4] = {};
+      q[0][column] = -part.volume * part.share;
+      conduct(*thermal(field.material_of(part.point)), part.point, 1, q, ALL);
+      for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
+    }
+    use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
+  }
 }
 
 void MPMConduction::find_rates(const double *source, Heats &power)
@@ -734,15 +867,19 @@ void MPMConduction::find_rates(const double *source, Heats &power)
       conduct_plainly(*thermal(run.material), first, n, factors);
     });
   else
-    scalar.find_rates([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-      see(first, n, q);
-      conduct(*thermal(run.material), first, n, q);
-      if (!source) return;
-      const double *const V = volumes.data() + first;
-      double sum = 0.0;
-      for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
-      power[SOURCES] += sum;
-    });
+    scalar.find_rates(
+        [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+          see(first, n, q);
+          conduct(*thermal(run.material), first, n, q);
+          if (!source) return;
+          const double *const V = volumes.data() + first;
+          double sum = 0.0;
+          for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
+          power[SOURCES] += sum;
+        },
+        [this]() {
+          conduct_parts();
+        });
   if (at_start == TO_BE_SEEN) at_start = SEEN;
 }
 
@@ -881,6 +1018,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
 double MPMConduction::memory_usage() const
 {
   return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
+      cuts.memory_usage() + idle.capacity() + capacity_at_faces.capacity() * sizeof(double) +
       (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
       sizeof(double);
 }

@@ -11,11 +11,13 @@
 
 #include "fix_mpm_material.h"
 #include "material/material.h"
+#include "mpm_cut_rooms.h"
 #include "mpm_diffusion_solver.h"
 #include "mpm_heat_faces.h"
 #include "mpm_layer_mean.h"
 #include "mpm_node_scalar.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <limits>
@@ -70,12 +72,19 @@ class MPMConduction : protected Pointers {
   /** Functions that points alone do not bound (shape linear): rows of the matrix of rates, in the place of rates, and what follows from
    *  them when they are those of all lattices: the bound. usual: that of nodes inside of a body. Collective. */
   bool is_bounded_by_rows() const;
-  void add_rows();
+  enum Left { ALL, AS_SHARES };    // of conductivities
+  void add_rows(Left left = ALL);
   double most_of_rows() { return scalar.greatest_row(); }
   double bound_by_rows(double greatest_of_rank);
   /** The bound of the rates of conduction on all ranks. */
   void keep_rate(double conduction) { conducted = conduction; }
   double bound_of_rates() const { return conducted; }
+  /** What surfaces at edges may have at the most: that bound, without what nodes with little capacity add to it where these get no
+   *  heat through surfaces. */
+  double rate_at_edges() const
+  {
+    return idle.empty() ? conducted : std::min(conducted, usual_rate);
+  }
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. Then add_given(). */
   void find_rates(const double *source, Heats &power);
@@ -107,6 +116,14 @@ class MPMConduction : protected Pointers {
   const std::vector<double> &node_volume() const { return scalar.volume; }
   /** Of nodes, see MPMSuperStep. */
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
+
+  /** Bernstein polynomials: the room of a point can be in a cell that the point is not in. */
+  bool looks_beyond_points() const;
+  void extend_topology();
+  /** Bernstein polynomials: nodes with so little capacity that nothing flows there, and no heat may come in. */
+  bool is_idle(int64_t node) const { return !idle.empty() && idle[node]; }
+  /** Capacities of nodes for heat through faces: none of these. */
+  const std::vector<double> &face_capacity();
 
   /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
   double capacity_of(int i) const;
@@ -181,7 +198,11 @@ class MPMConduction : protected Pointers {
   // points'; empty: there are none
   std::vector<Range> ranges;
   std::vector<double>
-      shares;    // [n] of their conductivity that is left, see row_bound(); empty: all
+      shares;    // [n] of their conductivity that is left, see row_bound(); empty: all. None of points in parts
+  MPMCutRooms cuts;
+  std::vector<char> idle;     // [nodes], empty: none
+  double usual_rate = 0.0;    // bound of the rates of nodes inside of a body
+  std::vector<double> capacity_at_faces;
 
   std::vector<signed char> present;    // [materials of the field]: has points here, on any rank
   const Thermal *thermal(const FixMPMMaterial *) const;
@@ -193,7 +214,9 @@ class MPMConduction : protected Pointers {
   void find_ranges();
   void tensor(const Thermal &, int i, double k[3][3]) const;
   bool is_plain() const;
-  void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q) const;
+  void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q,
+               Left left = AS_SHARES) const;
+  void conduct_parts();
   void conduct_plainly(const Thermal &, int first, int n, double *factors) const;
   double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;

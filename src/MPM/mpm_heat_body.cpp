@@ -27,6 +27,11 @@
    which makes the place at which a temperature is taken wrong by a part of a cell. And where the volume of the points ends is known to
    half of their spacing only, as all places of a point in a cell are the same to its gradients.
 
+   Nor have Bernstein polynomials, whose nodes at the sides of cells and in the middle see a surface differently, too. Its place, normal, and area are
+   those of lines of quadratic B-splines on the same nodes, of sums over boxes, for points may be anywhere in a cell. Across such a line
+   nodes of the field have the integrals 4/3 and 2/3: the line gives its area to these, and what a line of the field gets of it
+   has the weights of the functions where the surface crosses it, with the factor above.
+
    The area of a line is that of the whole line where the body fills all that is behind its surface, and less at the sides of
    the body and of the box. The sum of n.G has the noise of sums over points that are no integrals.
 
@@ -89,7 +94,7 @@ void MPMHeatBody::list_images()
     }
 }
 
-void MPMHeatBody::activate_around(const int *b)
+void LAMMPS_NS::activate_blocks_around(MPMField &field, const int *b)
 {
   for (int k = 0; k < (field.lattice.dim == 3 ? 27 : 9); k++) {
     const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1,
@@ -111,12 +116,18 @@ void MPMHeatBody::find_surface()
   if (!all) {
     share.assign(field.grid.nnodes(), 0.0);
     gradient.assign(3 * field.grid.nnodes(), 0.0);
+    held = share;
     return;
   }
   for (const auto &[image, of] : images)
     if (near[of]) near[image] = 1;
-  map_surface(field, near, gradient);
-  map_volume(field, near, share);
+  if (spreads()) {
+    map_volume(field, near, held);
+    map_boxes(field, {&field}, Weight::VOLUME, near, gradient, share);
+  } else {
+    map_surface(field, near, gradient);
+    map_volume(field, near, share);
+  }
   if (!field.options.axisymmetric) return;
   for (int64_t node = 0; node < field.grid.nnodes(); node++)
     for (int d = 0; d < field.lattice.dim; d++) gradient[3 * node + d] /= node_circle(node);
@@ -147,7 +158,8 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *
   int first, index[3] = {base[0], base[1], base[2]};
   double w[MOST], sum = 0.0, moment = 0.0;
   line.axis = axis;
-  line.n = MPMStencil(field).weights(at, first, w);
+  line.n = spreads() ? MPMStencil::quadratic(at, first, w)
+                     : MPMStencil(field).weights(at, first, w);
   for (int k = 0; k < line.n; k++) {
     index[axis] = lattice.wrap(axis, first + k);
     const int64_t node = line.node[k] = grid.locate(index);
@@ -168,6 +180,7 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *
   }
   const bool linear = field.options.shape == LINEAR;
   const double part = there / (linear ? std::min(full, full_at) : full);
+  line.part = std::min(1.0, part);
   line.area = full_area * circle(axis, base, at) *
       std::min(1.0,
                part < NOT_FULL
@@ -193,6 +206,86 @@ bool MPMHeatBody::weigh_by_functions(int first, double at, double part, double i
   return sum > LEAST;
 }
 
+/* ----------------------------------------------------------------------
+   Bernstein polynomials: cells have two node spacings, with nodes at their sides (even numbers) and in the middle
+------------------------------------------------------------------------- */
+
+bool MPMHeatBody::spreads() const
+{
+  return field.options.shape == BERNSTEIN;
+}
+
+static double width(int index)
+{
+  return index % 2 ? 2.0 / 3.0 : 4.0 / 3.0;
+}
+
+/** Integral of the polynomial of a node from without up to this depth, all in node spacings. */
+static double volume_at_depth(int index, double depth)
+{
+  if (index % 2) {
+    const double x = std::clamp(depth, -1.0, 1.0);
+    return (1.0 + x) * (1.0 + x) * (2.0 - x) / 6.0;
+  }
+  const double rest = std::max(0.0, 1.0 - 0.5 * std::fabs(depth)),
+               tail = 2.0 / 3.0 * rest * rest * rest;
+  return depth < 0.0 ? tail : width(index) - tail;
+}
+
+bool MPMHeatBody::spread(const int *base, double at, const double *into, const Line &whole,
+                         std::vector<Part> &parts) const
+{
+  static constexpr double BESIDE = 1.0 / 6.0, FARTHEST = 2.0;
+  const auto &lattice = field.lattice;
+  const int dim = lattice.dim, axis = whole.axis, side[2] = {(axis + 1) % dim, (axis + 2) % dim};
+  const MPMStencil stencil(field);
+  double all = 0.0;
+  parts.clear();
+  for (int n = 0; n < (dim == 3 ? 9 : 3); n++) {
+    int index[3] = {base[0], base[1], base[2]};
+    double fraction = 1.0, across = 1.0, shift = 0.0;
+    for (int k = 0; k < dim - 1; k++) {
+      const int d = side[k], step = (k ? n / 3 : n % 3) - 1;
+      if (base[d] % 2)
+        fraction *= step ? BESIDE : 1.0 - 2.0 * BESIDE;
+      else if (step)
+        fraction = 0.0;
+      across *= width(base[d] + step);
+      shift -= step * into[d] / into[axis];
+      index[d] = lattice.wrap(d, base[d] + step);
+    }
+    if (fraction == 0.0) continue;
+    const double place = at + std::clamp(shift, -FARTHEST, FARTHEST);
+    Part part = {whole, fraction, fraction / across};
+    Line &line = part.line;
+    int first;
+    double sum = 0.0;
+    line.n = stencil.weights(place, first, line.weight);
+    for (int k = 0; k < line.n; k++) {
+      index[axis] = lattice.wrap(axis, first + k);
+      const int64_t node = line.node[k] = field.grid.locate(index);
+      if (node < 0 && !knows_all()) return false;
+      const double there = node < 0 ? 0.0 : held[node],
+                   full = whole.part * across *
+          volume_at_depth(first + k, (first + k - place) * into[axis]);
+      line.weight[k] *= there > 0.0 ? std::min(1.0, there / (ENOUGH * full)) : 0.0;
+      sum += line.weight[k];
+    }
+    if (!(sum > LEAST)) continue;
+    for (int k = 0; k < line.n; k++) line.weight[k] /= sum;
+    const double has = std::min(1.0, sum / ENOUGH);
+    part.area *= has;
+    part.share *= has;
+    all += part.area;
+    parts.push_back(part);
+  }
+  // shares of a line, of which the sum over places is one at the most, bound its rate
+  for (auto &part : parts) part.area /= all;
+  return !parts.empty();
+}
+
+/* ---------------------------------------------------------------------- */
+
 double MPMHeatBody::touches(double gap) const
 {
   const double more = field.options.shape == LINEAR ? MORE_WITH_LINEAR : 0.0;
@@ -202,13 +295,20 @@ double MPMHeatBody::touches(double gap) const
 double MPMHeatBody::conducting(int64_t node) const
 {
   if (!conduction->conducts_in_part()) return 1.0;
-  const double all = share[node] * field.lattice.cell_volume() * node_circle(node);
+  const double all = volume_of(node) * field.lattice.cell_volume() * node_circle(node);
   return all > 0.0 ? std::min(1.0, conduction->node_volume()[node] / (ENOUGH * all)) : 0.0;
 }
 
 bool MPMHeatBody::find_response(Line &line) const
 {
   line.response = line.conducting = 0.0;
+  double awake = 0.0;
+  for (int k = 0; k < line.n; k++) {
+    if (line.weight[k] > 0.0 && conduction->is_idle(line.node[k])) line.weight[k] = 0.0;
+    awake += line.weight[k];
+  }
+  if (!(awake > LEAST)) return false;
+  for (int k = 0; k < line.n; k++) line.weight[k] /= awake;
   for (int k = 0; k < line.n; k++)
     if (line.weight[k] > 0.0) line.conducting += line.weight[k] *= conducting(line.node[k]);
   if (!(line.conducting > LEAST)) return false;
@@ -338,7 +438,8 @@ bool MPMHeatBody::knows_all() const
 
 double MPMHeatBody::memory_usage() const
 {
-  return (share.capacity() + gradient.capacity() + heat.capacity()) * sizeof(double);
+  return (share.capacity() + gradient.capacity() + held.capacity() + heat.capacity()) *
+      sizeof(double);
 }
 
 /* ---------------------------------------------------------------------- */

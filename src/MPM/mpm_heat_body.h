@@ -21,6 +21,9 @@ namespace LAMMPS_NS {
 class MPMConduction;
 class MPMField;
 
+/** Activates the blocks around this one. */
+void activate_blocks_around(MPMField &, const int *block);
+
 /** Where the surface of a field is at its nodes, and heat that comes in through it there. */
 class MPMHeatBody : protected Pointers {
  public:
@@ -35,6 +38,7 @@ class MPMHeatBody : protected Pointers {
     double place;           ///< of that surface on the line, in node spacings
     double response;        ///< of the temperature there to heat: sum of weight^2/capacity
     double conducting;      ///< share of it where there is material that conducts
+    double part;            ///< of the line that the body fills
 
     /** What an exchange with this stiffness is for a solver; none without stiffness. */
     void add_term(double stiffness, const MPMDiffusion::Term &) const;
@@ -47,7 +51,7 @@ class MPMHeatBody : protected Pointers {
   MPMHeatBody(class LAMMPS *, MPMField &, MPMConduction *);
 
   /** Ranks need the nodes around those that their points reach: activates the blocks around this one. */
-  void activate_around(const int *block);
+  void activate_around(const int *block) { activate_blocks_around(field, block); }
   void topology_changed() { listed = false; }
 
   /** Blocks in which the surface is wanted: [slot], and all of them. */
@@ -63,6 +67,15 @@ class MPMHeatBody : protected Pointers {
   /** The line along an axis through a place on it (in node spacings), base: a node of it; into: the unit normal
    *  into the body. False if there is no surface, or this rank does not have all nodes. */
   bool make_line(int axis, const int *base, double at, const double *into, Line &) const;
+  /** Bernstein polynomials have two kinds of nodes: where a surface is, how large, and its normal are known of lines of quadratic
+   *  B-splines on the same nodes, and spread() gives what belongs to such a line to those of the field around it. */
+  bool spreads() const;
+  struct Part {
+    Line line;
+    double area, share;    ///< of those of the whole line
+  };
+  bool spread(const int *base, double at, const double *into, const Line &whole,
+              std::vector<Part> &) const;
   /** Its response, and weights without nodes that do not conduct, when capacities are known. False if none conducts. */
   bool find_response(Line &) const;
   /** What the weight of a node counts, as material there conducts: 1 down to half of its volume, and in proportion below, so
@@ -104,13 +117,15 @@ class MPMHeatBody : protected Pointers {
  private:
   bool listed = false;
   std::vector<std::array<int, 2>>
-      images;    // a block with images, and one with nodes of which they are
+      images;                  // a block with images, and one with nodes of which they are
+  std::vector<double> held;    // volume of nodes where share is that of other functions, spreads()
   std::vector<double> heat;
   std::vector<double> noted;    // [nnodes][NOTED] of edges
   enum { NORMAL, PARTS = 3, OF_SURFACES, NOTED };
 
   void list_images();
   double node_circle(int64_t node) const;
+  double volume_of(int64_t node) const { return spreads() ? held[node] : share[node]; }
   bool weigh_by_functions(int first, double at, double part, double into, const double *w,
                           Line &) const;
 };

@@ -200,8 +200,25 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
     place.condition = condition;
     place.key = node * lattice.dim + a;
     if (thin) look_behind(*thin, place, index, part, into);
-    places.push_back(place);
+    keep(place, index, at);
   });
+}
+
+/** Adds a place, or those of the lines of the field that it is for. */
+void MPMHeatSurfaces::keep(const Place &whole, const int *index, double at)
+{
+  if (!body.spreads()) {
+    places.push_back(whole);
+    return;
+  }
+  if (!body.spread(index, at, whole.into, whole.line, parts)) return;
+  for (const auto &part : parts) {
+    Place place = whole;
+    place.line = part.line;
+    place.share *= part.share;
+    place.area *= part.area;
+    places.push_back(place);
+  }
 }
 
 void MPMHeatSurfaces::look_behind(MPMHeatThin &thin, const Place &place, const int *index,
@@ -354,7 +371,7 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
     place.condition = condition;
     place.key = node * dim + a;
     if (thin) look_behind(*thin, place, index, part, into);
-    places.push_back(place);
+    keep(place, index, index[a] + part);
   });
 }
 

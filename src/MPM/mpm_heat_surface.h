@@ -94,6 +94,7 @@ class MPMHeatSurfaces : protected Pointers {
   /** Share of the room of a node that the body fills, and that its neighbors fill, this at nodes that the body reaches. */
   std::vector<double> filled, covered;
   std::vector<Place> places;
+  std::vector<MPMHeatBody::Part> parts;    // of one place
   MPMHeatShares shares;
 
   void exchange(bool changes, double *power) const;
@@ -103,6 +104,7 @@ class MPMHeatSurfaces : protected Pointers {
   void find_filled();
   void find_covered();
   void find_free(int condition, MPMHeatThin *);
+  void keep(const Place &, const int *index, double at);
   void look_behind(MPMHeatThin &, const Place &, const int *index, double part,
                    const double *into) const;
   double room(int64_t node) const;

@@ -19,10 +19,11 @@ using namespace LAMMPS_NS;
 MPMNodeProfile::MPMNodeProfile(const MPMField &field)
 {
   const MPMStencil stencil(field);
+  const bool bernstein = field.options.shape == MPM_NS::BERNSTEIN;
   const auto function = [&](double x) {    // of the node at 0
     int first;
     double w[4];
-    const int n = stencil.weights(x, first, w);
+    const int n = bernstein ? MPMStencil::quadratic(x, first, w) : stencil.weights(x, first, w);
     return first <= 0 && -first < n ? w[-first] : 0.0;
   };
   range = 0.5 * MPM_NS::stencil_order(field.options.shape) + 0.5;

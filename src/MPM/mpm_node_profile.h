@@ -16,7 +16,8 @@ class MPMField;
 
 /** What a node sees of a body with a flat surface at a distance from it: the integral of its function over the
  *  body, and that over the surface. Exact for surfaces along axes; others differ a little, as the variance of the
- *  function is the same in all directions. Distances in node spacings. */
+ *  function is the same in all directions. Distances in node spacings. Of Bernstein polynomials, which have two kinds of
+ *  nodes, it is that of the quadratic B-splines on these. */
 class MPMNodeProfile {
  public:
   explicit MPMNodeProfile(const MPMField &);

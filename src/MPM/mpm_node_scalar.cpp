@@ -12,6 +12,7 @@
 #include "mpm_passes.h"
 
 #include <algorithm>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -231,7 +232,9 @@ double MPMNodeScalar::greatest_row()
   sum(rate);
   double most = 0.0;
   for (std::size_t k = 0; k < rate.size(); k++) {
-    rate[k] = capacity[k] > 0.0 ? rate[k] / capacity[k] : 0.0;
+    // points on a side of a cell give the node in its middle a gradient, but no capacity at all
+    if (rate[k] > 0.0)
+      rate[k] = capacity[k] > 0.0 ? rate[k] / capacity[k] : std::numeric_limits<double>::max();
     most = std::max(most, rate[k]);
   }
   return most;

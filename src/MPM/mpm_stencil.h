@@ -46,6 +46,12 @@ class MPMStencil {
     return evaluate<MPM_NS::BSpline<3>>(t, first, w, slopes);
   }
 
+  /** As weights(), of the quadratic B-splines on these nodes, whatever the functions of the field are. */
+  static int quadratic(double t, int &first, double w[4])
+  {
+    return evaluate<MPM_NS::BSpline<2>>(t, first, w, nullptr);
+  }
+
   /** Calls f(Node) for all nodes of point i, which is in the given block. */
   template <class F> void visit(const MPM_NS::Grid::Block &block, int i, const F &f) const
   {
