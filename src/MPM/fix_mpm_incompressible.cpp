@@ -460,10 +460,12 @@ void FixMPMIncompressible::init()
                implicit ? "implicit yes" : "reflect");
   inflow = std::make_unique<MPMFlowInflow>(lmp, cells, *this);
   if (!inflow->any()) inflow.reset();
-  if (inflow && (reflect > 0.0 || implicit))
+  if (inflow && reflect > 0.0)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix {} {}: {} cannot be used with points of fix mpm/emit: remove it", style, id,
-               implicit ? "implicit yes" : "reflect");
+               "Fix {} {}: reflect cannot be used with points of fix mpm/emit: remove it", style,
+               id);
+  if (inflow) inflow->clamps = implicit;
+  if (stress) stress->mobility = inflow ? &mobility : nullptr;
   if ((grains || inflow) && (!liquids.empty() || solids))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: {} need a flow of one density: remove the keyword {}", style, id,
@@ -900,7 +902,10 @@ SolveReport FixMPMIncompressible::find_part(double duration)
     mobility = grains->mobility();
   } else if (inflow)
     mobility.assign(star.size(), 1.0);
-  if (inflow) inflow->hold(star, &mobility);
+  if (inflow) {
+    without_hold = star;
+    inflow->hold(star, &mobility);
+  }
   if (grains || inflow) pressure->set_mobility(&mobility);
 
   velocity.assign(star.size(), 0.0);
@@ -942,6 +947,7 @@ SolveReport FixMPMIncompressible::find_part(double duration)
     of_stress = find_stress(duration, rounding);
     if (!of_stress.converged()) return of_stress;
   }
+  if (inflow) star.swap(without_hold);    // next to mouths, too, what is held does not fall
   go_on_into_air();
   if (inflow) {
     inflow->hold(velocity, nullptr);
@@ -1375,7 +1381,7 @@ double FixMPMIncompressible::memory_usage()
   if (stress) bytes += stress->memory_usage();
   for (const auto *list : {&elastic, &at_surface, &potentials, &viscous_velocity, &before_forces,
                            &mobility, &sums, &share, &old, &star, &more, &velocity, &known,
-                           &pressures, &shift, &start_of_part, &psi_of_parts})
+                           &pressures, &shift, &without_hold, &start_of_part, &psi_of_parts})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

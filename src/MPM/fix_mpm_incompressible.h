@@ -143,7 +143,8 @@ class FixMPMIncompressible :
   double least_density = 0.0;
   bool stiffness_known = false;    // in this run
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
-      potentials, viscous_velocity, before_forces, mobility, start_of_part, psi_of_parts;
+      potentials, viscous_velocity, before_forces, mobility, without_hold, start_of_part,
+      psi_of_parts;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
   mutable double limit_before =
