@@ -35,10 +35,10 @@ COARSER = {"taylor-bar": 2.0, "spall": 2.0, "cook-membrane": 2.0, "hypervelocity
 FEWER_STEPS = {"grains-on-block": 1000, "impact-on-crystal": 1000, "vortex": 110, "ring-on-block": 1200, "hopper": 1500,
                "boulders-in-debris": 600, "tyre-on-gravel": 500, "settling": 600, "scratch": 400,
                "friction-weld": 9000, "machining": 2500, "foam": 2000, "net": 2000, "tent": 1000, "folded-airbag": 15000, "microstructure": 10, "hare": 400, "quench": 1000, "casting": 1000,
-               "pouring-honey": 400, "drop": 300, "extruder": 8000, "elastic-gate": 26500, "elastic-plate": 4600}    # until the last time of PUBLISHED
+               "pouring-honey": 400, "coiling-honey": 120, "drop": 300, "extruder": 8000, "elastic-gate": 26500, "elastic-plate": 4600}    # until the last time of PUBLISHED
 
 # the same with two processes, where it is less than a third of these
-FEWER_STEPS_OF_TWO = {"pouring-honey": 150, "elastic-gate": 1500, "elastic-plate": 1500,
+FEWER_STEPS_OF_TWO = {"pouring-honey": 150, "coiling-honey": 50, "elastic-gate": 1500, "elastic-plate": 1500,
                       "settlement": 10}    # of each of its runs, which is all of them
 
 # steps with the spacing of the input of those in COARSER, which are compared with the first rows of the log
