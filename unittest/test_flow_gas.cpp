@@ -13,8 +13,8 @@ using namespace MPM_TEST;
 namespace {
 
 enum { KINETIC = 5, WALLS = 7 };
-/** From the end of the vector. */
-enum { COUNT = -5, HIGHEST, LOWEST, VOLUME, ENERGY };
+/** From the end of the vector, at which there are two entries about parts of steps. */
+enum { COUNT = -7, HIGHEST, LOWEST, VOLUME, ENERGY };
 
 double gas(Scene &run, int which)
 {

@@ -2,7 +2,7 @@
 // version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
-// mpi: 1 4
+// mpi: 1 3 4
 
 // Implicit viscosity of fix mpm/incompressible: flows of honey, with steps far beyond the explicit limit.
 
@@ -293,6 +293,67 @@ TEST(Block, RanksAndRestart)
   }
 }
 
+// a step whose viscosity does not converge, as iterations are few, is gone in parts. It has the mean velocity between plates that
+// backward Euler has with so many steps, whatever else flows there, and the weight on its walls; the same on all ranks
+TEST(Parts, EndsAsShorterSteps)
+{
+  constexpr double dt = 0.005, g = 1e-4;
+  const auto mean_of_euler = [](int steps) {
+    double sum = 0.0;
+    for (int m = 1; m < 2000; m += 2) {
+      const double rate = (m * PI) * (m * PI);
+      sum += 8.0 / rate * g / rate * (1.0 - std::pow(1.0 + rate * dt / steps, -steps));
+    }
+    return sum;
+  };
+  for (const auto &[iterations, parts] : {std::pair(10000, 1), {71, 2}, {62, 4}}) {
+    OnRanks run(plane("si", "p f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.025\n" +
+                    "variable vx atom 1e-6*sin(6*PI*x)*cos(17*y)\n"
+                    "variable vy atom 1e-6*cos(4*PI*x)*sin(9*y)\nvelocity all set v_vx v_vy 0\n" +
+                    strprintf("fix w all mpm/incompressible 0.05 1 viscosity 1 implicit yes wall "
+                              "ylo stick wall yhi stick iterations %d\n",
+                              iterations) +
+                    strprintf("fix g all gravity %.17g vector 1 -3 0\ntimestep %.17g\n",
+                              g * std::sqrt(10.0), dt),
+                "run 1\n");
+    double sum = 0.0;
+    for (const auto &point : run.serial.gather()) sum += point.v[0] / (40 * 40);
+    EXPECT_NEAR(
+        measured(strprintf("%d parts: flow over that of Euler", parts), sum / mean_of_euler(parts)),
+        1.0, 2e-3);
+    for (auto *scene : {&run.serial, &run.parallel}) {
+      auto *const fix = scene->fix("w");
+      EXPECT_EQ(fix->compute_vector(15), parts);
+      EXPECT_EQ(fix->compute_vector(16), std::log2(parts));
+      EXPECT_NEAR(
+          measured("weight", (fix->compute_vector(9) - fix->compute_vector(10)) / (3.0 * g)), 1.0,
+          1e-6);
+    }
+    EXPECT_LT(measured("difference", run.difference()), 1e-6);
+  }
+}
+
+// honey that falls, with two solves in steps of other durations than those before, a region, and tension: halvings on all ranks,
+// and those of a restart file go on
+TEST(Parts, RanksAndRestart)
+{
+  const auto scene = plane("si", "f f", "0 1 0 1", 1, 0.02) +
+      "region water block INF 0.4 0 0.61 INF INF\ncreate_points 1 region water spacing 0.025\n";
+  const std::string fixes =
+      "region stone sphere 0.6 0 0 0.15\n"
+      "fix w all mpm/incompressible 0.05 1000 viscosity 500 tension 1 implicit yes wall ylo stick "
+      "wall xlo stick stick stone tolerance 1e-11 iterations 99\n"
+      "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.2 max 0.05 every 5\n";
+  OnRanks run(scene + fixes + "timestep 0.005\n", "run 12\n");
+  const double many = run.serial.fix("w")->compute_vector(19);
+  EXPECT_GT(measured("halvings", many), 5.0);
+  EXPECT_EQ(run.parallel.fix("w")->compute_vector(19), many);
+  EXPECT_LT(measured("difference", run.difference()), 1e-9);
+  Continued again(scene + fixes + "timestep 0.005\n", 4, "neighbor 0.02 bin\n" + fixes, 8);
+  EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
+  EXPECT_EQ(again.whole.fix("w")->compute_vector(19), again.again.fix("w")->compute_vector(19));
+}
+
 SERIAL_TEST(Stress, BadInput)
 {
   const auto plain = plane("si", "p f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.05\n";
@@ -304,6 +365,11 @@ SERIAL_TEST(Stress, BadInput)
                   {fix + "viscosity 1 implicit", "implicit"},
                   {"variable u atom 0.01*sin(PI*y)\nvelocity all set v_u 0 0\n" + fix +
                        "viscosity 1e3 implicit yes iterations 3",
-                   "implicit viscosity did not converge"}},
+                   "in parts of 1/64 of it, too; allow more iterations"},
+                  {"variable u atom 0.01*sin(PI*y)\nvelocity all set v_u 0 0\n" + fix +
+                       "viscosity 1e3 implicit yes iterations 3 parts 1",
+                   "implicit viscosity did not converge after 3 iterations, residuals "},
+                  {fix + "viscosity 1 parts 2", "parts is about implicit viscosity"},
+                  {fix + "viscosity 1 implicit yes parts 0", "parts"}},
                  "timestep 0.01\nrun 1\n");
 }

@@ -74,8 +74,8 @@ static constexpr double FLIP_OF_BODIES = 0.98;
 // (root mean squares); nothing where it is more than the second one. Vortices, waves, and drops that swing, 16 cells or more in a wave, have 0.03 to 0.06;
 // what is left of flow in a fluid at rest, and what falls or splashes, has 0.2 to 3
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
-// entries at the end of the vector with gas
-static constexpr int GAS_VALUES = 5;
+// entries of the vector with gas; and those about parts of steps, at its end
+static constexpr int GAS_VALUES = 5, PART_VALUES = 2;
 // passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
@@ -226,13 +226,24 @@ Options MPMIncompressibleOptions::declare(int dim)
         {number(tolerance, "tol", {0.0, 1.0e-2, false, true}, "1",
                 "divergence that is left, as a share of the one before")});
   o.add("iterations",
-        {integer(most_iterations, "N", POSITIVE, "largest number of iterations of the pressure")});
+        {integer(most_iterations, "N", POSITIVE,
+                 "largest number of iterations of the pressure, and of implicit viscosity")});
+  o.add("parts",
+        {integer(most_parts, "N", POSITIVE,
+                 "where implicit viscosity does not converge, a step is gone in parts, down to "
+                 "1/N")})
+      .then([this] {
+        parts_are_given = true;
+      });
   o.refuse([this] {
     return OptionRules{
         {viscosity > 0.0, "region",
          "has no friction, and cannot be used with viscosity: use the keyword stick instead, or "
          "leave "
          "viscosity out"},
+        {!implicit && parts_are_given, "parts",
+         "is about implicit viscosity, as the other equations are those of any time step: add the "
+         "keywords viscosity and implicit yes, or remove it"},
         {!implicit || viscosity == 0.0, "stick",
          "is about viscosity, in an implicit step, as an explicit one would be bound by the least "
          "distance of "
@@ -384,7 +395,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   time_integrate = 1;
   dynamic_group_allow = 0;
   scalar_flag = vector_flag = 1;
-  size_vector = 15 + 3 * region_ids.size() + (gas ? GAS_VALUES : 0);
+  size_vector = 15 + 3 * region_ids.size() + (gas ? GAS_VALUES : 0) + PART_VALUES;
   global_freq = 1;
   extscalar = extvector = 0;
   several = !liquids.empty();
@@ -449,10 +460,12 @@ void FixMPMIncompressible::init()
                implicit ? "implicit yes" : "reflect");
   inflow = std::make_unique<MPMFlowInflow>(lmp, cells, *this);
   if (!inflow->any()) inflow.reset();
-  if (inflow && (reflect > 0.0 || implicit))
+  if (inflow && reflect > 0.0)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix {} {}: {} cannot be used with points of fix mpm/emit: remove it", style, id,
-               implicit ? "implicit yes" : "reflect");
+               "Fix {} {}: reflect cannot be used with points of fix mpm/emit: remove it", style,
+               id);
+  if (inflow) inflow->clamps = implicit;
+  if (stress) stress->mobility = inflow ? &mobility : nullptr;
   if ((grains || inflow) && (!liquids.empty() || solids))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: {} need a flow of one density: remove the keyword {}", style, id,
@@ -836,8 +849,50 @@ void FixMPMIncompressible::sum_last_step(bool valid, double *all) const
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
 }
 
-/** Velocities after forces and viscosity of a duration, which go to star, and the pressure. */
+/* ----------------------------------------------------------------------
+   Velocities at the end of a duration, from those at its start in star, and the pressure.
+
+   Where implicit viscosity does not converge, the duration is halved, as its equations have dt nu/h^2, and the rest is gone in
+   parts of this length, each from the velocities at the end of the one before. Points and the lattice stay as they are until
+   the last part is done, and move with its velocities. All other equations are those of any duration: what does not converge
+   there would not in parts, either. Potentials add up to those of the mean pressure
+------------------------------------------------------------------------- */
+
 void FixMPMIncompressible::find_flow(double duration)
+{
+  double done = 0.0, part = 1.0;    // sums of powers of 1/2, exact
+  last.parts = 0.0;
+  while (done < 1.0) {
+    if (stress) start_of_part = star;
+    const auto report = find_part(part * duration);
+    if (!report.converged()) {
+      part *= 0.5;
+      if (report.outcome == SolveReport::NOT_FINITE || part * most_parts < 1.0)
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix {} {}: the implicit viscosity {} at step {}{}; allow more iterations, a "
+                   "larger tolerance, or take smaller time steps",
+                   style, id, report.describe(), update->ntimestep,
+                   part < 0.5 ? fmt::format(", in parts of 1/{} of it, too", (int) (0.5 / part))
+                              : "");
+      halvings++;
+      star = start_of_part;
+      continue;
+    }
+    if (part < 1.0) {
+      if (done == 0.0) psi_of_parts.assign(pressure->psi.size(), 0.0);
+      for (std::size_t k = 0; k < psi_of_parts.size(); k++) psi_of_parts[k] += pressure->psi[k];
+      star = velocity;
+    }
+    done += part;
+    last.parts++;
+  }
+  if (part == 1.0) return;
+  pressure->psi = psi_of_parts;
+  if (curved) find_tension(duration);
+}
+
+/** The same for a duration in one part; returns how the implicit viscosity went, without which velocities are of no use. */
+SolveReport FixMPMIncompressible::find_part(double duration)
 {
   if (grains) before_forces = star;
   if (viscous) add_viscosity(duration);
@@ -847,7 +902,10 @@ void FixMPMIncompressible::find_flow(double duration)
     mobility = grains->mobility();
   } else if (inflow)
     mobility.assign(star.size(), 1.0);
-  if (inflow) inflow->hold(star, &mobility);
+  if (inflow) {
+    without_hold = star;
+    inflow->hold(star, &mobility);
+  }
   if (grains || inflow) pressure->set_mobility(&mobility);
 
   velocity.assign(star.size(), 0.0);
@@ -864,7 +922,7 @@ void FixMPMIncompressible::find_flow(double duration)
                  "Fix {} {}: the time step {:.6g} is too large for the surface tension, which "
                  "allows {:.6g}; reduce it, or let fix mpm/dt set it",
                  style, id, update->dt, most);
-    curved->find(share, duration * acceleration_of_stress() * tension, at_surface);
+    find_tension(duration);
   }
   if (gas)
     gas_rows->begin(duration, duration * acceleration_of_stress(), curved ? &at_surface : nullptr);
@@ -880,10 +938,16 @@ void FixMPMIncompressible::find_flow(double duration)
   if (!report.converged())
     error->all(
         FLERR, Error::NOLASTLINE,
-        "Fix {} {}: the pressure {} at step {}; allow more iterations, or a larger tolerance",
+        "Fix {} {}: the pressure {} at step {}; allow more iterations, or a larger tolerance: "
+        "its equations are those of any time step",
         style, id, report.describe(), update->ntimestep);
   if (bodies) bodies->end(pressure->psi.data());
-  if (stress) find_stress(duration, rounding);
+  SolveReport of_stress;
+  if (stress) {
+    of_stress = find_stress(duration, rounding);
+    if (!of_stress.converged()) return of_stress;
+  }
+  if (inflow) star.swap(without_hold);    // next to mouths, too, what is held does not fall
   go_on_into_air();
   if (inflow) {
     inflow->hold(velocity, nullptr);
@@ -892,6 +956,13 @@ void FixMPMIncompressible::find_flow(double duration)
   last.iterations = report.iterations;
   last.residual = report.right_side > 0.0 ? report.residuals.back() / report.right_side : 0.0;
   last.divergence = pressure->largest_divergence(velocity.data());
+  return of_stress;
+}
+
+/** dt p/density of surfaces by their tension. */
+void FixMPMIncompressible::find_tension(double duration)
+{
+  curved->find(share, duration * acceleration_of_stress() * tension, at_surface);
 }
 
 /* ----------------------------------------------------------------------
@@ -899,16 +970,12 @@ void FixMPMIncompressible::find_flow(double duration)
    place does is left to the pressure alone: a fluid at rest stays there
 ------------------------------------------------------------------------- */
 
-void FixMPMIncompressible::find_stress(double dt, double rounding)
+SolveReport FixMPMIncompressible::find_stress(double dt, double rounding)
 {
   potentials = pressure->psi;
   const auto report = stress->step(dt * viscosity * acceleration_of_stress() / (h * h), velocity,
                                    potentials, {tolerance, rounding, most_iterations});
-  if (!report.converged())
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix {} {}: the implicit viscosity {} at step {}; allow more iterations, a larger "
-               "tolerance, or take smaller time steps",
-               style, id, report.describe(), update->ntimestep);
+  if (!report.converged()) return report;
   last.of_stress = report.iterations;
   viscous_velocity.swap(velocity);
   velocity.assign(viscous_velocity.size(), 0.0);
@@ -917,9 +984,10 @@ void FixMPMIncompressible::find_stress(double dt, double rounding)
   if (!again.converged())
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: the pressure after implicit viscosity {} at step {}; allow more "
-               "iterations, or a larger tolerance",
+               "iterations, or a larger tolerance: its equations are those of any time step",
                style, id, again.describe(), update->ntimestep);
   for (std::size_t k = 0; k < potentials.size(); k++) pressure->psi[k] += potentials[k];
+  return report;
 }
 
 /** Velocities of faces by the momentum of points, and shares that are filled, complete. */
@@ -1079,8 +1147,9 @@ void FixMPMIncompressible::find_shift()
       pressure->spread(spread, shift.data(), known.data(),
                        {SPREAD_TOLERANCE, std::numeric_limits<double>::min(), most_iterations});
   if (!report.converged())
-    error->all(FLERR, Error::NOLASTLINE, "Fix {} {}: the spreading of points {} at step {}", style,
-               id, report.describe(), update->ntimestep);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: the spreading of points {} at step {}; allow more iterations", style, id,
+               report.describe(), update->ntimestep);
   air->extend(AIR_LAYERS, shift, known);
   if (regions) regions->hold(shift, false);
   cells.reflect_velocities(shift.data(), false);
@@ -1212,7 +1281,8 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
 /* ----------------------------------------------------------------------
    scalar: number of iterations; vector: these, what is left of the divergence (relative), largest |div v|, volume that
    points fill, number of wet cells, kinetic energy, largest speed, force on the six walls, iterations of the implicit viscosity,
-   force on the regions, and energy that spreading has added; with gas: number of pockets that have some, highest and lowest pressure, volume, and energy
+   force on the regions, and energy that spreading has added; with gas: number of pockets that have some, highest and lowest pressure, volume, and energy;
+   parts of the last step, and halvings so far
 ------------------------------------------------------------------------- */
 
 double FixMPMIncompressible::compute_scalar()
@@ -1239,8 +1309,10 @@ double FixMPMIncompressible::compute_vector(int k)
       if (cells.is_point(i))
         mine += 0.5 * force->mvv2e * atom->rmass[i] * MathExtra::lensq3(atom->v[i]);
   if (k == 13) return last.of_stress;
-  if (gas && k >= size_vector - GAS_VALUES) return value_of_gas(k - (size_vector - GAS_VALUES));
-  if (k == size_vector - 1 - (gas ? GAS_VALUES : 0))
+  const int of_parts = size_vector - PART_VALUES, of_gas = of_parts - (gas ? GAS_VALUES : 0);
+  if (k >= of_parts) return k == of_parts ? last.parts : halvings;
+  if (k >= of_gas) return value_of_gas(k - of_gas);
+  if (k == of_gas - 1)
     mine = energy_of_spread;
   else if (k > 13)
     mine = last.regions[k - 14];
@@ -1250,7 +1322,7 @@ double FixMPMIncompressible::compute_vector(int k)
   return all;
 }
 
-/** The duration of the last step, and the limit of the one to come, with forces; what share is kept by; motion of regions. */
+/** The duration of the last step, and the limit of the one to come, with forces; what share is kept by; halvings; motion of regions; gas. */
 void FixMPMIncompressible::write_restart(FILE *fp)
 {
   tagint tag;
@@ -1259,15 +1331,16 @@ void FixMPMIncompressible::write_restart(FILE *fp)
   double of_last[4];
   sum_last_step(true, of_last);
   if (comm->me) return;
-  std::vector<double> state = {dt_before, limit, of_last[1], of_last[2], of_last[3], 0.0, 0.0};
+  std::vector<double> state = {dt_before,  limit,    of_last[1], of_last[2],
+                               of_last[3], halvings, 0.0,        0.0};
   if (regions) {
     const auto motion = regions->motion();
-    state[5] = (double) motion.size();
+    state[6] = (double) motion.size();
     state.insert(state.end(), motion.begin(), motion.end());
   }
   if (gas) {
     const auto of_gas = gas->restart_data();
-    state[6] = (double) of_gas.size();
+    state[7] = (double) of_gas.size();
     state.insert(state.end(), of_gas.begin(), of_gas.end());
   }
   const int size = state.size() * sizeof(double);
@@ -1277,16 +1350,17 @@ void FixMPMIncompressible::write_restart(FILE *fp)
 
 void FixMPMIncompressible::restart(char *buf)
 {
-  double state[7];
+  double state[8];
   memcpy(state, buf, sizeof(state));
   dt_before = state[0];
   limit_before = state[1];
   for (int k = 0; k < 2; k++) unseen[k] = comm->me ? 0.0 : state[2 + k];
   energy_of_spread = comm->me ? 0.0 : state[4];
-  std::vector<double> motion((std::size_t) state[5]);
+  halvings = state[5];
+  std::vector<double> motion((std::size_t) state[6]);
   memcpy(motion.data(), buf + sizeof(state), motion.size() * sizeof(double));
   if (regions) regions->set_motion(motion);
-  std::vector<double> of_gas((std::size_t) state[6]);
+  std::vector<double> of_gas((std::size_t) state[7]);
   memcpy(of_gas.data(), buf + sizeof(state) + motion.size() * sizeof(double),
          of_gas.size() * sizeof(double));
   if (gas && !gas->restart(of_gas.data(), of_gas.size()))
@@ -1305,9 +1379,9 @@ double FixMPMIncompressible::memory_usage()
   if (curved) bytes += curved->memory_usage();
   if (gas) bytes += gas->memory_usage() + gas_rows->memory_usage();
   if (stress) bytes += stress->memory_usage();
-  for (const auto *list :
-       {&elastic, &at_surface, &potentials, &viscous_velocity, &before_forces, &mobility, &sums,
-        &share, &old, &star, &more, &velocity, &known, &pressures, &shift})
+  for (const auto *list : {&elastic, &at_surface, &potentials, &viscous_velocity, &before_forces,
+                           &mobility, &sums, &share, &old, &star, &more, &velocity, &known,
+                           &pressures, &shift, &without_hold, &start_of_part, &psi_of_parts})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -20,6 +20,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 #include "mpm_flow_lattice.h"
 #include "mpm_state.h"
 #include "mpm_step_limit.h"
+#include "solve/krylov.h"
 
 #include <memory>
 #include <string>
@@ -55,6 +56,8 @@ struct MPMIncompressibleOptions {
   double spread = 0.5;     ///< share of an excess of points that spreads in a step
   double tolerance = 1.0e-9;
   int most_iterations = 10000;
+  int64_t most_parts = 64;    ///< of a step, where implicit viscosity does not converge
+  bool parts_are_given = false;
   MPMFlowWall walls[3][2];
   std::vector<std::string> region_ids;
   bool sticks = false;    ///< regions
@@ -140,7 +143,8 @@ class FixMPMIncompressible :
   double least_density = 0.0;
   bool stiffness_known = false;    // in this run
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
-      potentials, viscous_velocity, before_forces, mobility;
+      potentials, viscous_velocity, before_forces, mobility, without_hold, start_of_part,
+      psi_of_parts;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
   mutable double limit_before =
@@ -149,12 +153,13 @@ class FixMPMIncompressible :
   mutable bool told_of_bodies = false, told_of_walls = false;
   bool told_of_large = false;
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
+  double halvings = 0.0;            // of steps and their parts, so far
   double energy_of_spread = 0.0;    // that spreading has added to points so far, of this rank
   double gone = 0.0;                // most that points have moved since neighbor lists were made
 
   struct {
     double iterations = 0.0, of_stress = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0,
-           filled = 0.0;
+           filled = 0.0, parts = 0.0;
     double walls[3][2] = {};
     std::vector<double> regions = {};    // [3 regions]
   } last;    // of the last step; filled, wet, walls, and regions of this rank
@@ -180,8 +185,10 @@ class FixMPMIncompressible :
   void find_velocities();
   void add_forces(double dt);
   void add_viscosity(double dt);
-  void find_stress(double dt, double rounding);
+  void find_tension(double duration);
+  MPM_NS::SolveReport find_stress(double dt, double rounding);
   void find_flow(double duration);
+  MPM_NS::SolveReport find_part(double duration);
   void find_pressures(double pressure_to_psi);
   void check_inflow() const;
   void check_speed();

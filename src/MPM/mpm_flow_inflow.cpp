@@ -29,6 +29,8 @@ static constexpr double AT_FACE = 1.0e-6;
 // component of the direction of a flow along an axis of the lattice
 static constexpr double ALONG = 1.0 - 1.0e-9;
 
+// difference of shares of faces, and of squares of distances in spacings, that are alike; relative difference of velocities in mouths that is small
+static constexpr double ALIKE = 1.0e-6, LIKE_POINTS = 0.05;
 // least open part of a face over the share of a section in it: that of a corner that columns of points just fit in
 static constexpr double LEAST_OPEN = 0.25;
 
@@ -87,6 +89,45 @@ void MPMFlowInflow::find_section(Mouth &one) const
     one.section.push_back({{index[0], index[1]}, area / face});
 }
 
+/** As a section of whole cells, those of which it has most, as many as its area tells, with the same flow. What is alike by symmetry comes or goes together, if the
+ *  velocity then is about that of the points. */
+void MPMFlowInflow::round_off(Mouth &one) const
+{
+  auto &section = one.section;
+  double all = 0.0;
+  for (const auto &part : section) all += part.share;
+  const auto away =
+      [&](const Section &part) {    // from the middle of the mouth, in spacings, squared
+        double sum = 0.0;
+        for (int d = 0, k = 0; d < cells.lattice.dim; d++) {
+          if (d == one.axis) continue;
+          const double middle = one.fix->passage().middle()[d];
+          const double x = part.index[k++] + 0.5 -
+              (middle - cells.lattice.origin[d]) / cells.lattice.h,
+                       around = cells.lattice.periodic[d] ? cells.lattice.ncell[d] : 0.0;
+          sum += around > 0.0 ? std::pow(std::remainder(x, around), 2) : x * x;
+        }
+        return sum;
+      };
+  std::vector<std::array<double, 3>> order;    // what is less comes first
+  for (std::size_t k = 0; k < section.size(); k++)
+    order.push_back(
+        {-std::round(section[k].share / ALIKE), std::round(away(section[k]) / ALIKE), (double) k});
+  std::sort(order.begin(), order.end());
+  std::size_t many = 0;
+  for (std::size_t end = 0; end < order.size();) {
+    const auto first = order[end];
+    while (end < order.size() && order[end][0] == first[0] && order[end][1] == first[1]) end++;
+    if (std::fabs((double) end - all) < std::fabs((double) many - all)) many = end;
+  }
+  if (std::fabs((double) many - all) > LIKE_POINTS * all)
+    many = std::min(section.size(), (std::size_t) std::max(1.0, std::round(all)));
+  std::vector<Section> whole;
+  for (std::size_t k = 0; k < many; k++) whole.push_back(section[(std::size_t) order[k][2]]);
+  for (auto &part : whole) part.share = all / (double) many;
+  section.swap(whole);
+}
+
 /** What flows through a face that a region cuts is its velocity times the share that is open, which has all of the section. */
 void MPMFlowInflow::find(const MPMFlowRegions *regions)
 {
@@ -96,6 +137,7 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
   source.assign(cells.size(), 0.0);
   for (auto &one : mouths) {
     if (!found) find_section(one);
+    if (!found && clamps && !regions) round_off(one);
     one.fix->velocity_now(one.velocity);
     const double v = one.velocity[one.axis];
     const int upstream = one.side ? one.first - 1 : one.last;    // the cell
@@ -116,9 +158,33 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
       visit(upstream, part, [&](int64_t number) {
         source[number] += part.share * std::fabs(v) / h;
       });
+      const int before =
+          one.side ? 1 : 0;    // cells from the upstream one to that before the last face
+      for (int at = one.first - before; clamps && at <= one.last - before; at++)
+        clamp(one, at, part);
     }
   }
   found = true;
+}
+
+/** All faces of a cell along a mouth. */
+void MPMFlowInflow::clamp(const Mouth &mouth, int at, const Section &part)
+{
+  const int dim = cells.lattice.dim;
+  int index[3] = {0, 0, 0};
+  for (int d = 0, k = 0; d < dim; d++)
+    index[d] = d == mouth.axis ? cells.lattice.wrap(d, at) : part.index[k++];
+  for (int d = 0; d < dim; d++)
+    for (int s = 0; d != mouth.axis && s < 2; s++) {
+      int next[3] = {index[0], index[1], index[2]};
+      next[d] += s;
+      if (cells.lattice.periodic[d])
+        next[d] = cells.lattice.wrap(d, next[d]);
+      else if (next[d] == cells.lattice.ncell[d])
+        continue;    // a wall
+      const int64_t number = cells.grid.locate(next);
+      if (number >= 0) held.push_back({number * dim + d, mouth.velocity[d]});
+    }
 }
 
 void MPMFlowInflow::hold(std::vector<double> &velocity, std::vector<double> *mobility) const

@@ -27,6 +27,9 @@ class MPMFlowInflow : protected Pointers {
  public:
   /** The mouths of points that belong to this flow. */
   MPMFlowInflow(class LAMMPS *, const MPMFlowLattice &, const class Fix &flow);
+  /** In a viscous flow faces along mouths are held, too: stress must not bend or turn what is in a mouth. Its section is one of whole cells there, but with regions:
+   *  a part of a cell that is slower than the others would hold these back. */
+  bool clamps = false;
   bool any() const { return !mouths.empty(); }
   /** Velocities of this step, and the faces that there are; collective. regions: that cut these, null: none. */
   void find(const MPMFlowRegions *regions);
@@ -63,6 +66,8 @@ class MPMFlowInflow : protected Pointers {
   std::vector<double> source;
 
   void find_section(Mouth &) const;
+  void round_off(Mouth &) const;
+  void clamp(const Mouth &, int at, const Section &);
 };
 
 }    // namespace LAMMPS_NS

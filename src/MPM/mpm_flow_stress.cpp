@@ -10,6 +10,7 @@
 
 #include "mpm_flow_regions.h"
 #include "mpm_flow_stick.h"
+#include "mpm_node_system.h"
 
 #include <algorithm>
 
@@ -25,8 +26,8 @@ static constexpr int STRIDE[2][3] = {{3, 1, 0}, {9, 3, 1}};
 
 MPMFlowStress::MPMFlowStress(LAMMPS *lmp, const MPMFlowLattice &cells,
                              const MPMFlowPressure &water) :
-    MPMNodeSystem(lmp, cells.grid, cells.lattice.dim * (cells.lattice.dim + 1) / 2),
-    cells(cells), water(water), dim(cells.lattice.dim)
+    lmp(lmp),
+    cells(cells), water(water), dim(cells.lattice.dim), width(dim * (dim + 1) / 2)
 {
 }
 
@@ -78,7 +79,7 @@ void MPMFlowStress::find_faces()
       if (cell.walls >> 2 * c & 1) continue;
       const int64_t here = cell.number, lower = cell.near[2 * c];
       const bool in = water.is_wet(here), below = water.is_wet(lower);
-      if ((!in && !below) || is_wall(here * dim + c)) continue;
+      if ((!in && !below) || is_wall(here * dim + c) || is_held(here * dim + c)) continue;
       double mass = 1.0;
       if (!in) mass = std::max(NEAREST, water.distance(lower, here));
       if (!below) mass = std::max(NEAREST, water.distance(here, lower));
@@ -128,8 +129,8 @@ void MPMFlowStress::find_stresses()
 {
   normals.clear();
   edges.clear();
-  for (auto &area : areas) area.assign(size(), 0.0);
-  if (stick) carried.assign(size(), 0.0);
+  for (auto &area : areas) area.assign(cells.size() * width, 0.0);
+  if (stick) carried.assign(cells.size() * width, 0.0);
   const int here_around = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
   for (std::size_t k = 0; k < cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
@@ -200,6 +201,21 @@ void MPMFlowStress::find_edge(Edge &edge, double third)
   for (int k = 0; k < 2; k++) areas[k][edge.at] = edge.area[k];
 }
 
+/** In vectors is what is there, which is little of the lattice where a thread flows. */
+void MPMFlowStress::find_rows()
+{
+  unknowns.clear();
+  for (const auto &one : normals)
+    for (int d = 0; d < dim; d++) unknowns.push_back(one.at + d);
+  for (const auto &edge : edges) unknowns.push_back(edge.at);
+  std::sort(unknowns.begin(), unknowns.end());
+  const auto row_of = [&](int64_t at) {
+    return (int) (std::lower_bound(unknowns.begin(), unknowns.end(), at) - unknowns.begin());
+  };
+  for (auto &one : normals) one.row = row_of(one.at);
+  for (auto &edge : edges) edge.row = row_of(edge.at);
+}
+
 /** The stresses at the faces of owned cells. */
 void MPMFlowStress::find_forces()
 {
@@ -229,13 +245,13 @@ void MPMFlowStress::find_forces()
 
 void MPMFlowStress::find_diagonal()
 {
-  inverse_diagonal.assign(size(), 0.0);
+  inverse_diagonal.resize(size());
   const auto square = [](double x) {
     return x * x;
   };
   for (const auto &one : normals)
     for (int d = 0; d < dim; d++)
-      inverse_diagonal[one.at + d] = 1.0 /
+      inverse_diagonal[one.row + d] = 1.0 /
           (square(one.volume) *
                (square(open(one.lower[d])) * inverse_mass[one.lower[d]] +
                 square(open(one.upper[d])) * inverse_mass[one.upper[d]]) +
@@ -243,47 +259,68 @@ void MPMFlowStress::find_diagonal()
   for (const auto &edge : edges) {
     double sum = 0.0;
     for (int k = 0; k < 4; k++) sum += square(edge.area[k / 2]) * inverse_mass[edge.face[k]];
-    inverse_diagonal[edge.at] = 1.0 / (sum + edge.volume / number);
+    inverse_diagonal[edge.row] = 1.0 / (sum + edge.volume / number);
   }
-  cells.publish(inverse_diagonal.data(), width);
 }
 
 /* ---------------------------------------------------------------------- */
 
-/** out += sign W E u, in owned cells. */
+/** out += sign W E u. */
 void MPMFlowStress::strain(const double *u, double *out, double sign) const
 {
   for (const auto &one : normals)
     for (int d = 0; d < dim; d++)
-      out[one.at + d] += sign * one.volume *
+      out[one.row + d] += sign * one.volume *
           (open(one.upper[d]) * u[one.upper[d]] - open(one.lower[d]) * u[one.lower[d]]);
   for (const auto &edge : edges) {
     const int64_t *const f = edge.face;
-    out[edge.at] +=
+    out[edge.row] +=
         sign * (edge.area[0] * (u[f[0]] - u[f[1]]) + edge.area[1] * (u[f[2]] - u[f[3]]));
   }
 }
 
+/** To the lattice, with those of other ranks. */
+void MPMFlowStress::spread(const double *x)
+{
+  for (std::size_t i = 0; i < unknowns.size(); i++) stress[unknowns[i]] = x[i];
+  cells.renew(stress.data(), width);
+}
+
+/** By blocks of the lattice. */
+void MPMFlowStress::products(int n, const double *const *a, const double *const *b, double *value)
+{
+  mine.assign(n, 0.0);
+  const int64_t reals = (int64_t) NODES_PER_BLOCK * width;
+  for (std::size_t i = 0, end; i < unknowns.size(); i = end) {
+    const int64_t last = (unknowns[i] / reals + 1) * reals;
+    for (end = i; end < unknowns.size() && unknowns[end] < last;) end++;
+    for (int k = 0; k < n; k++) {
+      double sum = 0.0;
+      for (std::size_t j = i; j < end; j++) sum += a[k][j] * b[k][j];
+      mine[k] += sum;
+    }
+  }
+  sum_in_order(lmp, n, mine.data(), of_ranks, value);
+}
+
 void MPMFlowStress::apply(const double *x, double *y)
 {
-  speed.assign(cells.size() * dim, 0.0);
+  spread(x);
   for (const auto &face : faces) {
     double force = 0.0;
-    for (int k = 0; k < 2 * dim; k++) force += face.weight[k] * x[face.from[k]];
+    for (int k = 0; k < 2 * dim; k++) force += face.weight[k] * stress[face.from[k]];
     speed[face.at] = face.inverse * force;
   }
-  cells.publish(speed.data(), dim);
-  std::fill_n(y, size(), 0.0);
+  cells.renew(speed.data(), dim);
   const double half = 0.5 / number;
   for (const auto &one : normals) {
     double mean = 0.0;
-    for (int d = 0; d < dim; d++) mean += x[one.at + d] / dim;
+    for (int d = 0; d < dim; d++) mean += x[one.row + d] / dim;
     for (int d = 0; d < dim; d++)
-      y[one.at + d] = one.volume * one.room * half * (x[one.at + d] - mean);
+      y[one.row + d] = one.volume * one.room * half * (x[one.row + d] - mean);
   }
-  for (const auto &edge : edges) y[edge.at] = 2.0 * half * edge.volume * x[edge.at];
+  for (const auto &edge : edges) y[edge.row] = 2.0 * half * edge.volume * x[edge.row];
   strain(speed.data(), y, -1.0);
-  cells.publish(y, width);
 }
 
 void MPMFlowStress::precondition(const double *r, double *z)
@@ -298,6 +335,7 @@ SolveReport MPMFlowStress::step(double new_number, std::vector<double> &velocity
   find_lengths();
   find_faces();
   find_stresses();
+  find_rows();
   find_forces();
   find_diagonal();
 
@@ -312,11 +350,17 @@ SolveReport MPMFlowStress::step(double new_number, std::vector<double> &velocity
   for (const auto &face : faces) velocity[face.at] = face.share * velocity[face.at] + face.wall;
   cells.publish(velocity.data(), dim);
   right_side.assign(size(), 0.0);
-  stress.assign(size(), 0.0);
-  if (stick) right_side = carried;
+  solution.assign(size(), 0.0);
+  stress.assign(cells.size() * width, 0.0);
+  speed.assign(cells.size() * dim, 0.0);
+  for (std::size_t i = 0; stick && i < unknowns.size(); i++) right_side[i] = carried[unknowns[i]];
   strain(velocity.data(), right_side.data(), 1.0);
-  cells.publish(right_side.data(), width);
-  const SolveReport report = method.solve(*this, right_side.data(), stress.data(), goal);
+  for (const auto &one : normals)
+    for (int d = 0; water.sources && d < dim; d++)
+      right_side[one.row + d] -=
+          one.volume * cells.lattice.h * (*water.sources)[one.at / width] / dim;
+  const SolveReport report = method.solve(*this, right_side.data(), solution.data(), goal);
+  spread(solution.data());
 
   cells.keep_owned(velocity.data(), dim);
   walls_are(true);
@@ -333,9 +377,10 @@ SolveReport MPMFlowStress::step(double new_number, std::vector<double> &velocity
 double MPMFlowStress::memory_usage() const
 {
   double bytes = faces.capacity() * sizeof(Face) + normals.capacity() * sizeof(Normal) +
-      edges.capacity() * sizeof(Edge) + method.memory_usage();
+      edges.capacity() * sizeof(Edge) + unknowns.capacity() * sizeof(int64_t) +
+      method.memory_usage();
   for (const auto *list : {&length, &inverse_mass, &areas[0], &areas[1], &carried, &speed,
-                           &right_side, &stress, &inverse_diagonal})
+                           &right_side, &solution, &stress, &inverse_diagonal})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }
