@@ -114,13 +114,14 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
       }
     }
   nodes.init(true, surface.any());
-  const bool varies = std::any_of(soils.begin(), soils.end(), [](const auto &s) {
-    return s.of.law != MPMPoreSoil::CONSTANT;
-  });
-  if (surface.any()) surface.init(dries, varies);
   suction.reset();
   if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
   init_layers();
+  // with interfaces, no line through what nodes see tells what is next to the surface
+  const bool varies = !layers && std::any_of(soils.begin(), soils.end(), [](const auto &s) {
+    return s.of.law != MPMPoreSoil::CONSTANT;
+  });
+  if (surface.any()) surface.init(dries, varies);
 
   const MPMStencil stencil(field);
   constexpr int SAMPLES = 4096;

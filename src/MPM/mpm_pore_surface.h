@@ -59,7 +59,7 @@ class MPMPoreSurface : protected Pointers {
 
   /** Does water go through any part? If not, nothing else needs to be called. */
   bool any() const;
-  /** Start of a run. dries: is there soil that can dry? varies: one whose permeability is not the same everywhere? */
+  /** Start of a run. dries: is there soil that can dry? varies: does the permeability change smoothly? */
   void init(bool dries, bool varies);
   /** Places are in reach of the points, and may have nodes beyond these. */
   void extend_topology();
