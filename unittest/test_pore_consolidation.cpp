@@ -153,34 +153,49 @@ struct Large {
   int cells;
   std::vector<double> times;
   std::vector<std::array<double, 2>> table;    // settlement, pressure at the base over the load
+  std::string shape = "quadratic";
 };
 
 /** Settlement and pressure at the base by finite volumes, at times in ascending order: d(l)/dt + (l n/K) dp/dt =
  *  d/dX(k/l dp/dX) with the stretch l, the volume l n = l - (1 - n0) of water with the bulk modulus K (infinite with
- *  water = 0), and p = q - stress. Loaded without time for flow at first. */
-std::vector<std::array<double, 3>> finite_volumes(const Large &column, double water)
+ *  water = 0), and p = q - stress. Loaded without time for flow at first, or with a load that grows in a time, ramp, as that of
+ *  load(), and times from the middle of this on. */
+std::vector<std::array<double, 3>> finite_volumes(const Large &column, double water,
+                                                  double ramp = 0.0)
 {
   constexpr int N = 100;
   constexpr double H = 1.0 / N, EPS = 1e-6;
+  double q = column.q;    // at present
   const auto pressure = [&](double l) {
-    return column.q - column.laws.stress(l);
+    return q - column.laws.stress(l);
   };
   const auto bisection = [](const auto &f) {    // f is positive below the root
     double low = 0.3, high = 1.0;
     for (int k = 0; k < 60; k++) (f(0.5 * (low + high)) > 0.0 ? low : high) = 0.5 * (low + high);
     return low;
   };
-  const double last = bisection([&](double l) {
-    return column.laws.stress(l) - column.q;
-  });
-  const double first = bisection([&](double l) {
+  const auto drained = [&] {
+    return bisection([&](double l) {
+      return column.laws.stress(l) - q;
+    });
+  };
+  const double whole = drained();
+  double last = whole, growth = 0.0;    // of the load
+  const double first = ramp > 0.0 ? 1.0 : bisection([&](double l) {
     return column.n0 * std::exp(-water * pressure(l)) - (l - 1.0 + column.n0);
   });
   std::vector<double> stretch(N, first), p(N), c(N), takes(N), flux(N + 1, 0.0);
   std::vector<std::array<double, 3>> out;
   double t = 0.0;
-  for (const double end : column.times) {
+  for (const double time : column.times) {
+    const double end = time + 0.5 * ramp;
     while (t < end) {
+      if (ramp > 0.0) {
+        const double part = std::min(1.0, t / ramp);
+        q = 0.5 * column.q * (1.0 - std::cos(PI * part));
+        growth = 0.5 * column.q * PI / ramp * std::sin(PI * part);
+        last = part < 1.0 ? drained() : whole;
+      }
       double fastest = 0.0;
       for (int i = 0; i < N; i++) {
         const double l = stretch[i];
@@ -195,12 +210,15 @@ std::vector<std::array<double, 3>> finite_volumes(const Large &column, double wa
       for (int i = 1; i < N; i++)
         flux[i] = (p[i] - p[i - 1]) / H * 2.0 / (1.0 / c[i] + 1.0 / c[i - 1]);
       const double dt = std::min(end - t, 0.25 * H * H / fastest);
-      for (int i = 0; i < N; i++) stretch[i] += dt / H * (flux[i + 1] - flux[i]) / takes[i];
+      for (int i = 0; i < N; i++) {
+        const double pores = stretch[i] - 1.0 + column.n0;
+        stretch[i] += dt * ((flux[i + 1] - flux[i]) / H - water * pores * growth) / takes[i];
+      }
       t += dt;
     }
     double mean = 0.0;
     for (const double l : stretch) mean += l / N;
-    out.push_back({t, 1.0 - mean, pressure(stretch[N - 1]) / column.q});
+    out.push_back({time, 1.0 - mean, pressure(stretch[N - 1]) / column.q});
   }
   return out;
 }
@@ -244,11 +262,11 @@ void PrintTo(const Large &column, std::ostream *out)
   *out << column.name;
 }
 
-// Consolidation by loads of 0.2, 0.5, and 1 modulus of the soil, with rows of the table of the benchmark, or, where it
-// has none for laws that there are, with finite volumes, which these rows check, too. The load is on the two upper rows
-// of points in such parts that its place is the surface. The permeability of Kozeny and Carman falls to 1/50 where the
-// soil has consolidated, within a cell of the surface at first: 20 cells have settled 2.1 % too much at T = 0.05, and there are 40
-// for that
+// Consolidation by loads of 0.2, 0.5, and 1 modulus of the soil, against finite volumes with the same water, and load, which grows in a short
+// time: both shift what comes late, where the pressure at the base is less than one percent of the load, by up to 1 %, and so
+// does the inertia of soil of more weight. Rows of the table of the benchmark, with water that does not give way and a load at
+// once, check the volumes. The load is on the two upper rows of points in such parts that its place is the surface. The
+// permeability of Kozeny and Carman falls to 1/10 within a cell of the surface
 PARAMETER_TEST(
     LargeStrain, Consolidates, Large,
     Values(
@@ -276,8 +294,8 @@ PARAMETER_TEST(
                {0.293418, 0.026521}}},
         Large{"logarithmic, k J^2, 1", 1.0, 0.7, SQUARED, 20, ALL, {}},
         Large{"logarithmic, constant k, 0.5", 0.5, 0.5, CONSTANT, 20, ALL, {}},
-        Large{
-            "logarithmic, Kozeny and Carman, 0.5", 0.5, 0.5, KOZENY, 20, {0.1, 0.2, 0.5, 1.0}, {}},
+        Large{"logarithmic, Kozeny and Carman, 0.5, 10 cells", 0.5, 0.5, KOZENY, 10, ALL, {}},
+        Large{"logarithmic, Kozeny and Carman, 0.5", 0.5, 0.5, KOZENY, 20, ALL, {}},
         Large{
             "logarithmic, Kozeny and Carman, 0.5, 40 cells", 0.5, 0.5, KOZENY, 40, {0.05, 0.1}, {}},
         Large{"neo-Hooke, constant k, 0.5",
@@ -291,6 +309,7 @@ PARAMETER_TEST(
                {0.246085, 0.558205},
                {0.324689, 0.065147},
                {0.333743, 0.000985}}},
+        Large{"neo-Hooke, constant k, 0.5, cubic", 0.5, 0.5, NH_CONSTANT, 20, ALL, {}, "cubic"},
         Large{"neo-Hooke, k J^2, 0.5",
               0.5,
               0.5,
@@ -305,19 +324,17 @@ PARAMETER_TEST(
 {
   const Large &soil = GetParam();
   constexpr double BULK = 200.0;    // of the water, in moduli of the soil
-  const auto incompressible = finite_volumes(soil, 0.0);
-  auto exact = finite_volumes(soil, 1.0 / BULK);
-  for (std::size_t k = 0; k < soil.table.size(); k++)
-    for (int j = 0; j < 2; j++) {
-      EXPECT_NEAR(incompressible[k][1 + j], soil.table[k][j], 2e-4);
-      exact[k][1 + j] = soil.table[k][j];
-    }
   const int n = soil.cells;
   const double h = 1.0 / n, ramp = 0.004;
-  Scene run(column(n,
-                   strprintf("%g 1e-9 1.0 soil m %g %s 1.0 free pressure 0", BULK, soil.n0,
-                             soil.laws.permeability.c_str()),
-                   "density 1e-3 " + soil.laws.soil) +
+  const auto incompressible = finite_volumes(soil, 0.0);
+  const auto exact = finite_volumes(soil, 1.0 / BULK, ramp);
+  for (std::size_t k = 0; k < soil.table.size(); k++)
+    for (int j = 0; j < 2; j++) EXPECT_NEAR(incompressible[k][1 + j], soil.table[k][j], 2e-4);
+  Scene run(replaced(column(n,
+                            strprintf("%g 1e-9 1.0 soil m %g %s 1.0 free pressure 0", BULK, soil.n0,
+                                      soil.laws.permeability.c_str()),
+                            "density 2.5e-4 " + soil.laws.soil),
+                     "origin", "shape " + soil.shape + " origin") +
             load(n, 1.5 * soil.q, ramp) +
             strprintf("region next block INF INF %.17g %.17g INF INF\ngroup next region next\n",
                       1.0 - h, 1.0 - 0.5 * h) +
@@ -336,10 +353,10 @@ PARAMETER_TEST(
     }
     const auto name = strprintf("T %g, over the reference: ", at[0]);
     EXPECT_NEAR(measured(name + "settlement", (1.0 - volume * n / 4.0) / at[1]), 1.0, 0.02);
-    // what is left of the pressure in the end is small: two percent of it is not more than one of the load
+    // of the last part of the load, quadratic functions do not tell where the surface is between nodes
     const double base = water.mean(0.0, 0.5 / n) / soil.q;
     measured(name + "pressure at the base", base / at[2]);
-    EXPECT_NEAR(base, at[2], 0.02 * std::max(at[2], 0.05));
+    EXPECT_NEAR(base, at[2], 0.02 * std::max(at[2], soil.shape == "cubic" ? 0.0 : 0.004));
   }
 }
 

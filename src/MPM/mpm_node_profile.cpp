@@ -30,12 +30,19 @@ MPMNodeProfile::MPMNodeProfile(const MPMField &field)
   const int n = (int) std::lround(2 * range * STEPS);
   volumes.assign(n + 1, 0.0);
   ratios.assign(n + 1, 0.0);
+  means.assign(n + 1, 0.0);
   constexpr int PARTS = 8;    // of a step, for the integral
+  double moment = 0.0;
   for (int k = 1; k <= n; k++) {
     double sum = 0.0;
-    for (int j = 0; j < PARTS; j++)
-      sum += function(-range + (k - 1 + (j + 0.5) / PARTS) / STEPS) / (PARTS * STEPS);
+    for (int j = 0; j < PARTS; j++) {
+      const double x = -range + (k - 1 + (j + 0.5) / PARTS) / STEPS;
+      const double part = function(x) / (PARTS * STEPS);
+      sum += part;
+      moment += part * x;
+    }
     volumes[k] = volumes[k - 1] + sum;
+    if (volumes[k] > 0.0) means[k] = -range + (double) k / STEPS - moment / volumes[k];
     const double area = function(-range + (double) k / STEPS);
     ratios[k] = area > 0.0 && k < n ? volumes[k] / area : std::max(1.0e10, ratios[k - 1]);
   }
@@ -61,11 +68,21 @@ double MPMNodeProfile::depth_of_volume(double volume) const
   return inverse(volumes, volume);
 }
 
-double MPMNodeProfile::volume(double depth) const
+/** Of a list between its depths, place: of the depth in it. */
+double MPMNodeProfile::at(const std::vector<double> &list, double place)
 {
-  const double place = (depth + range) * STEPS;
   if (place <= 0.0) return 0.0;
   const int k = (int) place;
-  if (k + 1 >= (int) volumes.size()) return volumes.back();
-  return volumes[k] + (place - k) * (volumes[k + 1] - volumes[k]);
+  if (k + 1 >= (int) list.size()) return list.back();
+  return list[k] + (place - k) * (list[k + 1] - list[k]);
+}
+
+double MPMNodeProfile::volume(double depth) const
+{
+  return at(volumes, (depth + range) * STEPS);
+}
+
+double MPMNodeProfile::mean_depth(double depth) const
+{
+  return at(means, (std::min(depth, range) + range) * STEPS) + std::max(0.0, depth - range);
 }

@@ -28,6 +28,8 @@ class MPMNodeProfile {
   double depth(double volume_by_area) const;
   /** The same from the volume. */
   double depth_of_volume(double volume) const;
+  /** How deep below the surface the part of the body is, in the mean, that a node at this depth sees. */
+  double mean_depth(double depth) const;
   /** Nodes as far from the surface as this see nothing of it. */
   double reach() const { return range; }
 
@@ -35,7 +37,9 @@ class MPMNodeProfile {
   static constexpr int STEPS = 128;    // in a node spacing
   double range;
   std::vector<double> volumes, ratios;    // at depths -range + k/STEPS, growing
+  std::vector<double> means;              // depths of what is seen, at the same ones
 
+  static double at(const std::vector<double> &, double place);
   double inverse(const std::vector<double> &, double value) const;
 };
 

@@ -114,10 +114,14 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
       }
     }
   nodes.init(true, surface.any());
-  if (surface.any()) surface.init(dries);
   suction.reset();
   if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
   init_layers();
+  // with interfaces, no line through what nodes see tells what is next to the surface
+  const bool varies = !layers && std::any_of(soils.begin(), soils.end(), [](const auto &s) {
+    return s.of.law != MPMPoreSoil::CONSTANT;
+  });
+  if (surface.any()) surface.init(dries, varies);
 
   const MPMStencil stencil(field);
   constexpr int SAMPLES = 4096;
@@ -132,30 +136,29 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
   }
 }
 
-/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp), and so does soil whose permeability falls
- *  steeply with its porosity, as flow through a compacted crust is governed by its resistance, which is the sum of those of its parts. In soil that dries
+/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp). One whose permeability depends on its
+ *  porosity needs none: this varies as smoothly as its strain, and what a crust at a drained surface lets out is found there
+ *  (MPMPoreSurface::mobility_to_surface()). In soil that dries
  *  these are of full pores, and what suction leaves of them is that of each point: it changes by orders of magnitude within a front,
  *  and with means across that water would not get into dry soil. The square of the flow has a mean across interfaces, too; along
  *  them points have their own resistance then, as flows with one gradient and different laws have no common one. */
 void MPMPore::init_layers()
 {
   layers.reset();
-  bool differ = false, falls = false;
+  bool differ = false;
   double greatest = 0.0, fastest_soil = 0.0;
   for (const auto &s : soils) {
     const auto &first = soils.front().of;
-    falls = falls || s.of.law == MPMPoreSoil::KOZENY;
     differ = differ || s.of.law == MPMPoreSoil::FORMULA || s.of.law != first.law ||
         s.of.permeability != first.permeability || s.of.quadratic != first.quadratic ||
         s.of.diameter != first.diameter;
     greatest = std::max(greatest, s.of.permeability);
     fastest_soil = std::max(fastest_soil, s.of.permeability / s.of.storage_at(1.0, water));
   }
-  if (!differ && !falls) return;
-  // one soil has no interfaces along which means would be of use; with formulas the
-  // permeabilities are not known, while capacities hardly differ
-  const bool along = differ && !motion && quadratic.empty() &&
-      greatest <= MPMLayerMean::MOST * fastest_soil * least_storage;
+  if (!differ) return;
+  // with formulas the permeabilities are not known, while capacities hardly differ
+  const bool along =
+      !motion && quadratic.empty() && greatest <= MPMLayerMean::MOST * fastest_soil * least_storage;
   layers = std::make_unique<MPMLayerMean>(field, along);
   layers->init();
 }
@@ -352,7 +355,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
           const double *const mine = state[i];
           if (!quadratic.empty()) quadratic[i] = s->of.quadratic_at(J[p], density);
           double through =
-              open ? V[p] * at_surface(*s, i, J[p], mobility(*s, i, J[p], formula), mine) : 0.0;
+              open ? C[p] * at_surface(*s, i, J[p], mobility(*s, i, J[p], formula), mine) : 0.0;
           if (suction)
             suction->begin_point(i, s->of, J[p], V[p], mine[0], C[p], K[p], through, part[p]);
           if (open) points.volume[p] = through;

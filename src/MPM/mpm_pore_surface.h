@@ -46,8 +46,8 @@ class MPMPoreSurface : protected Pointers {
   static constexpr int ENERGY = NPART;    ///< place of the energy of water behind them
   using Conditions = std::array<MPMPoreCondition, NPART>;
 
-  /** Of each node, of soils that can dry: sums over points of the capacity that full pores have, and of the
-   *  conductance, by the permeabilities at the pressure zero, and for parts that have a suction outside at
+  /** Of each node, of soils that can dry: sums over points of the capacity that full pores have, and of that
+   *  times the mobility, by the permeabilities at the pressure zero, and for parts that have a suction outside at
    *  that. */
   struct Wet {
     std::vector<double> capacity;
@@ -59,8 +59,8 @@ class MPMPoreSurface : protected Pointers {
 
   /** Does water go through any part? If not, nothing else needs to be called. */
   bool any() const;
-  /** Start of a run. dries: is there soil that can dry? */
-  void init(bool dries);
+  /** Start of a run. dries: is there soil that can dry? varies: does the permeability change smoothly? */
+  void init(bool dries, bool varies);
   /** Places are in reach of the points, and may have nodes beyond these. */
   void extend_topology();
   /** Where the surface is. Before MPMNodeScalar::points_to_nodes(). Collective. */
@@ -71,7 +71,7 @@ class MPMPoreSurface : protected Pointers {
   std::function<double(const double *, double)> distance_to_seals;
   /** Where the free surface is open to a pressure outside, and no body closes it, p is that, times a factor. */
   void replace_by_outside(const double *x, double factor, double &p) const;
-  /** What flows there, from the nodes' capacities and (as volume) conductances. least_storage: the smallest
+  /** What flows there, from the nodes' capacities and, as volume, conductances: sums of capacity times mobility. least_storage: the smallest
    *  of a soil; wet: of soils that can dry, or null. Returns a bound of the rates of exchange at this rank's
    *  nodes [1/time]. Collective. */
   double prepare(const MPMNodeScalar &, double least_storage, const Wet *wet);
@@ -119,7 +119,7 @@ class MPMPoreSurface : protected Pointers {
   const Conditions &conditions;
   const MPMPoreWater &water;
   const double *const gravity;
-  bool dries = false;
+  bool dries = false, varies = false;
   std::unique_ptr<MPMNodeProfile> profile;
   std::vector<Place> places;
   std::vector<int64_t> node;    // of all places
@@ -144,6 +144,8 @@ class MPMPoreSurface : protected Pointers {
   bool by_area() const;
   void find_areas();
   double at_surface(const MPMNodeScalar &, const Place &) const;
+  double mobility_to_surface(const Place &, const std::vector<double> &conductance,
+                             const std::vector<double> &capacity) const;
   double normalize(int first, int n, double enough, const std::vector<double> &capacity);
 };
 
