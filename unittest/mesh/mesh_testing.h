@@ -132,6 +132,72 @@ inline std::string vtk(bool old, MeshOutput::Kind kind)
   return o.all + "\n";
 }
 
+/** In groups of four characters. */
+inline std::string base64(const std::string &bytes)
+{
+  static const char *const digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    uint32_t all = 0;
+    for (int j = 0; j < 3; j++)
+      all = all << 8 | (k + j < bytes.size() ? (unsigned char) bytes[k + j] : 0u);
+    for (int j = 0; j < 4; j++)
+      text += k + j > bytes.size() ? '=' : digits[all >> (18 - 6 * j) & 63];
+  }
+  return text;
+}
+
+/** The same mesh in XML of this machine: numbers as ascii, or bytes as binary (in base64 among the tags), or behind them as base64 or raw. */
+inline std::string vtu(const std::string &format)
+{
+  const bool ascii = format == "ascii", inside = ascii || format == "binary";
+  std::string behind;
+  const auto array = [&](const std::string &type, const std::string &name, int width,
+                         const std::vector<double> &values) {
+    MeshOutput o{ascii ? MeshOutput::TEXT : MeshOutput::LITTLE, ""};
+    for (const double v : values) {
+      if (ascii || type == "Float64") o.put(v);
+      if (ascii) continue;
+      if (type == "Float32") o.put((float) v);
+      if (type == "Int64") o.l((int64_t) v);
+      if (type == "Int32") o.i((int) v);
+      if (type == "UInt8") o.put((uint8_t) v);
+    }
+    const std::string head =
+        strprintf("<DataArray type=\"%s\" Name=\"%s\" "
+                  "NumberOfComponents=\"%d\" format=\"%s\"",
+                  type.c_str(), name.c_str(), width, inside ? format.c_str() : "appended");
+    MeshOutput length{MeshOutput::LITTLE, ""};
+    length.i((int) o.all.size());
+    if (ascii) return head + ">" + o.all + "</DataArray>\n";
+    if (inside) return head + ">\n " + base64(length.all + o.all) + "\n</DataArray>\n";
+    const std::string place = strprintf(" offset=\"%d\"/>\n", (int) behind.size());
+    behind += format == "raw" ? length.all + o.all : base64(length.all + o.all);
+    return head + place;
+  };
+  std::vector<double> x, number, joined;
+  for (int n = 0; n < 9; n++) {
+    x.insert(x.end(), nodes[n], nodes[n] + 3);
+    number.push_back(n);
+  }
+  joined.insert(joined.end(), cube, cube + 8);
+  joined.insert(joined.end(), tet, tet + 4);
+  const std::string body = "<PointData>\n" + array("Float32", "number", 1, number) +
+      "</PointData>\n<CellData>\n" + array("Float64", "speed", 3, {1, 2, 3, -4, -5, -6}) +
+      array("Int32", "label", 1, {7, 9}) + "</CellData>\n<Points>\n" +
+      array("Float64", "Points", 3, x) + "</Points>\n<Cells>\n" +
+      array("Int64", "connectivity", 1, joined) + array("Int64", "offsets", 1, {8, 12}) +
+      array("UInt8", "types", 1, {12, 10}) + "</Cells>\n";
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
+         "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"9\" "
+         "NumberOfCells=\"2\">\n" +
+      body + "</Piece>\n</UnstructuredGrid>\n" +
+      (inside ? ""
+              : "<AppendedData encoding=\"" + format + "\">\n_" + behind + "\n</AppendedData>\n") +
+      "</VTKFile>\n";
+}
+
 inline std::string abaqus()
 {
   std::string s = "** a comment\n*Heading\n text, 1, 2\n*Node\n";

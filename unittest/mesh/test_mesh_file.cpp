@@ -80,6 +80,10 @@ TEST(MeshFile, AllFormatsGiveTheSamePoints)
                                           vtk(true, MeshOutput::BIG),
                                           vtk(false, MeshOutput::TEXT),
                                           vtk(false, MeshOutput::BIG),
+                                          vtu("ascii"),
+                                          vtu("binary"),
+                                          vtu("base64"),
+                                          vtu("raw"),
                                           abaqus()};
   for (const std::string style : {"mesh", "elements"}) {
     std::vector<Scene::State> first;
@@ -119,8 +123,9 @@ TEST(MeshFile, TypesAndGroups)
 
 TEST(MeshFile, DataBecomeFields)
 {
-  for (const auto kind : {MeshOutput::TEXT, MeshOutput::BIG}) {
-    const ScratchFile file("data.mesh", vtk(kind == MeshOutput::TEXT, kind));
+  for (const std::string &text : {vtk(true, MeshOutput::TEXT), vtk(false, MeshOutput::BIG),
+                                  vtu("ascii"), vtu("binary"), vtu("raw")}) {
+    const ScratchFile file("data.mesh", text);
     Scene run(space_2 + "fix p all property/atom d_n i_l\n" +
               make(file.name, "elements", "data speed velocity data label i_l"));
     const auto points = run.gather();
@@ -267,7 +272,7 @@ SERIAL_TEST(MeshFile, RefusesMistakes)
   EXPECT_THAT(failure(replaced(text, "12 10", "13 10")), HasSubstr("VTK's type 13"));
   EXPECT_THAT(failure(replaced(text, "0 3 4 8", "0 3 4 9")), HasSubstr("has the point 9"));
   EXPECT_THAT(failure(replaced(text, "POINTS 9", "POINTS 99999999999")), HasSubstr("not a count"));
-  EXPECT_THAT(failure("<VTKFile>\n"), HasSubstr("legacy file"));
+  EXPECT_THAT(failure("<VTKFile>\n"), HasSubstr("expected UnstructuredGrid"));
   const std::string inp = abaqus();
   EXPECT_THAT(failure(replaced(inp, "C3D8R", "C3D20")), HasSubstr("'C3D20' are not supported"));
   EXPECT_THAT(failure(replaced(inp, "1, 4, 5, 9", "1, 4, 5, 99")), HasSubstr("node 99"));

@@ -9,6 +9,7 @@
 #include "mesh/mesh_file.h"
 
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 using namespace MPM_NS;
@@ -26,7 +27,8 @@ Mesh MPM_NS::read_mesh(const std::string &file)
   };
   if (begins("# vtk DataFile")) return read_vtk_mesh(in, file);
   if (begins("<?xml") || begins("<VTKFile"))
-    throw std::runtime_error(file + " is an XML file of VTK: save it as a legacy file (.vtk)");
+    return read_vtu_mesh({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()},
+                         file);
   // comments of Abaqus begin with two stars, keywords with one
   if (begins("*")) return read_abaqus(in, file);
   return read_gmsh(in, file);

@@ -24,6 +24,9 @@ Mesh read_mesh(const std::string &file);
  *  cells. Labels of elements are their numbers in the file, from 0. */
 Mesh read_vtk_mesh(std::istream &, const std::string &name);
 
+/** The same in XML (.vtu, see table/vtk_xml.h), of the whole file. */
+Mesh read_vtu_mesh(const std::string &text, const std::string &name);
+
 /** Input files of Abaqus: *NODE, *ELEMENT, and *ELSET, of one part. Sets of elements are in Mesh::sets, those of *ELEMENT,
  *  ELSET=... first. What else the file has says nothing about the mesh and is not read. */
 Mesh read_abaqus(std::istream &, const std::string &name);

@@ -7,6 +7,7 @@
 ------------------------------------------------------------------------- */
 
 #include "mesh/mesh_file.h"
+#include "table/vtk_xml.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +22,112 @@ namespace {
 
 constexpr int64_t MAX_COUNT = 2000000000;
 
-class VtkReader {
+/** Nodes, cells, and their numbers, of which the elements of a mesh are made. */
+class VtkCells {
+ protected:
+  explicit VtkCells(const std::string &name) : name(name) {}
+
+  const std::string name;
+  Mesh mesh;
+  std::vector<int64_t> cells, offsets, types;
+  std::vector<MeshData> of_cells;
+  int64_t ncells = 0;
+
+  [[noreturn]] void fail(const std::string &what) const
+  {
+    throw std::runtime_error(name + ": " + what);
+  }
+
+  std::vector<int64_t> whole(const std::vector<double> &values) const
+  {
+    std::vector<int64_t> all;
+    for (const double value : values) {
+      if (!(std::fabs(value) <= MAX_COUNT) || value != std::floor(value))
+        fail("a number that ought to be an integer is not");
+      all.push_back((int64_t) value);
+    }
+    return all;
+  }
+  void set_nodes(const std::vector<double> &x)
+  {
+    for (std::size_t k = 0; k < x.size() / 3; k++) {
+      if (!std::isfinite(x[3 * k] + x[3 * k + 1] + x[3 * k + 2]))
+        fail("point " + std::to_string(k) + " is not finite");
+      mesh.nodes.push_back({x[3 * k], x[3 * k + 1], x[3 * k + 2]});
+    }
+  }
+  Mesh made()
+  {
+    if (mesh.nodes.empty() || types.empty()) fail("the file has no points or no cells");
+    make_elements();
+    return std::move(mesh);
+  }
+
+ private:
+  std::vector<int> element_of;    // of each cell, -1: left out
+
+  void make_elements()
+  {
+    if ((int64_t) types.size() != ncells) fail("CELL_TYPES are not those of all cells");
+    for (int64_t k = 0; k < ncells; k++) {
+      const int64_t first = offsets[k], n = offsets[k + 1] - first;
+      const int type = (int) types[k];
+      element_of.push_back(-1);
+      if (type == 1 || type == 2 || type == 4) continue;    // points, and lines of several parts
+      MeshElement e = {ElementType::TRIANGLE, 0, k, {0, 0, 0, 0, 0, 0, 0, 0}};
+      if (type == 3)
+        e.type = ElementType::LINE;
+      else if (type == 5)
+        e.type = ElementType::TRIANGLE;
+      else if (type == 8 || type == 9)
+        e.type = ElementType::QUAD;
+      else if (type == 10)
+        e.type = ElementType::TETRAHEDRON;
+      else if (type == 11 || type == 12)
+        e.type = ElementType::HEXAHEDRON;
+      else
+        fail("cell " + std::to_string(k) + " is of VTK's type " + std::to_string(type) +
+             ", which is not supported: only lines, triangles, quadrangles, tetrahedra, and "
+             "hexahedra of "
+             "first order are");
+      if (n != element_nodes(e.type) || first < 0 || first + n > (int64_t) cells.size())
+        fail("cell " + std::to_string(k) + " has a wrong number of points");
+      for (int j = 0; j < n; j++) {
+        const int64_t node = cells[first + j];
+        if (node < 0 || node >= (int64_t) mesh.nodes.size())
+          fail("cell " + std::to_string(k) + " has the point " + std::to_string(node) +
+               ", which the file does not have");
+        e.node[j] = (int) node;
+        for (int i = 0; i < j; i++)
+          if (e.node[i] == e.node[j])
+            fail("cell " + std::to_string(k) + " has the point " + std::to_string(node) + " twice");
+      }
+      // pixels and voxels count along x, y, z
+      if (type == 8 || type == 11) std::swap(e.node[2], e.node[3]);
+      if (type == 11) std::swap(e.node[6], e.node[7]);
+      element_of.back() = (int) mesh.elements.size();
+      mesh.elements.push_back(e);
+    }
+    for (auto &d : of_cells) {
+      std::vector<double> kept;
+      for (int64_t k = 0; k < ncells; k++)
+        for (int c = 0; c < d.width && element_of[k] >= 0; c++)
+          kept.push_back(d.values[k * d.width + c]);
+      d.values.swap(kept);
+      mesh.data.push_back(d);
+    }
+    try {
+      mesh.check_repeated();
+    } catch (const std::runtime_error &e) {
+      fail(e.what());
+    }
+  }
+};
+
+/** Legacy files. */
+class VtkReader : private VtkCells {
  public:
-  VtkReader(std::istream &in, const std::string &name) : in(in), name(name) {}
+  VtkReader(std::istream &in, const std::string &name) : VtkCells(name), in(in) {}
 
   Mesh read()
   {
@@ -36,26 +140,14 @@ class VtkReader {
     if (need() != "DATASET" || need() != "UNSTRUCTURED_GRID")
       fail("only DATASET UNSTRUCTURED_GRID can be read");
     while (in >> word) section(word);
-    if (mesh.nodes.empty() || types.empty()) fail("the file has no points or no cells");
-    make_elements();
-    return std::move(mesh);
+    return made();
   }
 
  private:
   std::istream &in;
-  std::string name;
   bool binary = false;
-  Mesh mesh;
-  std::vector<int64_t> cells, offsets, types;
-  std::vector<int> element_of;    // of each cell, -1: left out
-  std::vector<MeshData> of_cells;
-  int64_t ncells = 0, ndata = 0;    // cells; tuples of the present data
+  int64_t ndata = 0;    // tuples of the present data
   bool at_nodes = true;
-
-  [[noreturn]] void fail(const std::string &what) const
-  {
-    throw std::runtime_error(name + ": " + what);
-  }
 
   std::string need()
   {
@@ -125,25 +217,14 @@ class VtkReader {
   }
   std::vector<int64_t> integers(const std::string &type, int64_t n)
   {
-    std::vector<int64_t> all;
-    for (const double value : numbers(type, n)) {
-      if (!(std::fabs(value) <= MAX_COUNT) || value != std::floor(value))
-        fail("a number that ought to be an integer is not");
-      all.push_back((int64_t) value);
-    }
-    return all;
+    return whole(numbers(type, n));
   }
 
   void section(const std::string &word)
   {
     if (word == "POINTS") {
       const int64_t n = count();
-      const auto x = numbers(need(), 3 * n);
-      for (int64_t k = 0; k < n; k++) {
-        if (!std::isfinite(x[3 * k] + x[3 * k + 1] + x[3 * k + 2]))
-          fail("point " + std::to_string(k) + " is not finite");
-        mesh.nodes.push_back({x[3 * k], x[3 * k + 1], x[3 * k + 2]});
-      }
+      set_nodes(numbers(need(), 3 * n));
     } else if (word == "CELLS") {
       const int64_t n = count(), size = count();
       const auto at = in.tellg();
@@ -220,66 +301,48 @@ class VtkReader {
     auto &list = at_nodes ? mesh.data : of_cells;
     list.push_back({what, at_nodes, width, numbers(type, width * ndata)});
   }
+};
 
-  void make_elements()
+/** Files in XML. */
+class VtuReader : private VtkCells {
+ public:
+  VtuReader(const std::string &text, const std::string &name) : VtkCells(name), xml(text, name) {}
+
+  Mesh read()
   {
-    if ((int64_t) types.size() != ncells) fail("CELL_TYPES are not those of all cells");
-    for (int64_t k = 0; k < ncells; k++) {
-      const int64_t first = offsets[k], n = offsets[k + 1] - first;
-      const int type = (int) types[k];
-      element_of.push_back(-1);
-      if (type == 1 || type == 2 || type == 4) continue;    // points, and lines of several parts
-      MeshElement e = {ElementType::TRIANGLE, 0, k, {0, 0, 0, 0, 0, 0, 0, 0}};
-      if (type == 3)
-        e.type = ElementType::LINE;
-      else if (type == 5)
-        e.type = ElementType::TRIANGLE;
-      else if (type == 8 || type == 9)
-        e.type = ElementType::QUAD;
-      else if (type == 10)
-        e.type = ElementType::TETRAHEDRON;
-      else if (type == 11 || type == 12)
-        e.type = ElementType::HEXAHEDRON;
-      else
-        fail("cell " + std::to_string(k) + " is of VTK's type " + std::to_string(type) +
-             ", which is not supported: only lines, triangles, quadrangles, tetrahedra, and "
-             "hexahedra of "
-             "first order are");
-      if (n != element_nodes(e.type) || first < 0 || first + n > (int64_t) cells.size())
-        fail("cell " + std::to_string(k) + " has a wrong number of points");
-      for (int j = 0; j < n; j++) {
-        const int64_t node = cells[first + j];
-        if (node < 0 || node >= (int64_t) mesh.nodes.size())
-          fail("cell " + std::to_string(k) + " has the point " + std::to_string(node) +
-               ", which the file does not have");
-        e.node[j] = (int) node;
-        for (int i = 0; i < j; i++)
-          if (e.node[i] == e.node[j])
-            fail("cell " + std::to_string(k) + " has the point " + std::to_string(node) + " twice");
-      }
-      // pixels and voxels count along x, y, z
-      if (type == 8 || type == 11) std::swap(e.node[2], e.node[3]);
-      if (type == 11) std::swap(e.node[6], e.node[7]);
-      element_of.back() = (int) mesh.elements.size();
-      mesh.elements.push_back(e);
+    if (xml.type() != "UnstructuredGrid")
+      fail("is a VTK file of type '" + xml.type() + "', expected UnstructuredGrid (.vtu)");
+    const auto piece = xml.open();
+    const uint64_t n = xml.count(piece, "NumberOfPoints");
+    ncells = (int64_t) xml.count(piece, "NumberOfCells");
+    const auto points = xml.section("Points", n);
+    if (points.empty() || points[0].width != 3) fail("has no points with three components");
+    set_nodes(points[0].values);
+    for (const auto &array : xml.section("Cells", VtkXml::ANY)) {
+      if (array.name == "connectivity") cells = whole(array.values);
+      if (array.name == "types") types = whole(array.values);
+      if (array.name != "offsets") continue;
+      offsets = whole(array.values);    // of ends
+      offsets.insert(offsets.begin(), 0);
     }
-    for (auto &d : of_cells) {
-      std::vector<double> kept;
-      for (int64_t k = 0; k < ncells; k++)
-        for (int c = 0; c < d.width && element_of[k] >= 0; c++)
-          kept.push_back(d.values[k * d.width + c]);
-      d.values.swap(kept);
-      mesh.data.push_back(d);
-    }
-    try {
-      mesh.check_repeated();
-    } catch (const std::runtime_error &e) {
-      fail(e.what());
-    }
+    if ((int64_t) offsets.size() != ncells + 1) fail("the offsets are not those of all cells");
+    for (const auto &array : xml.section("PointData", n))
+      mesh.data.push_back({array.name, true, array.width, array.values});
+    for (const auto &array : xml.section("CellData", ncells))
+      of_cells.push_back({array.name, false, array.width, array.values});
+    return made();
   }
+
+ private:
+  VtkXml xml;
 };
 
 }    // namespace
+
+Mesh MPM_NS::read_vtu_mesh(const std::string &text, const std::string &name)
+{
+  return VtuReader(text, name).read();
+}
 
 Mesh MPM_NS::read_vtk_mesh(std::istream &in, const std::string &name)
 {
