@@ -121,6 +121,55 @@ TEST(MeshFile, TypesAndGroups)
   expect_error(space_2 + make(two.name, "elements", "types physical"), "in the sets");
 }
 
+// parts of Abaqus are where instances put them, moved and turned; sets of parts have elements of all of them, those of the assembly of one
+TEST(MeshFile, PartsOfAbaqus)
+{
+  const std::string cube = "*PART, NAME=Cube\n*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,2\n"
+                           "6,1,0,2\n7,1,1,2\n8,0,1,2\n*ELEMENT, TYPE=C3D8, ELSET=all\n"
+                           "1, 1,2,3,4,5,6,7,8\n*END PART\n",
+                    tet = "*Part, name=Tet\n*Node\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n"
+                          "*Element, type=C3D4, elset=all\n1, 1,2,3,4\n*End Part\n",
+                    assembly = "*Assembly, name=a\n*Instance, name=c-1, part=Cube\n*End Instance\n"
+                               "*Instance, name=c-2, part=CUBE\n0, 0, 3\n"
+                               "0, 0, 3, 1, 0, 3, 90\n*End Instance\n"
+                               "*Instance, name=t-1, part=tet\n5, 0, 0\n*End Instance\n"
+                               "*Node\n1, 9, 9, 9\n*Elset, elset=one, instance=c-2\n1\n"
+                               "*Elset, elset=two\none, t-1\n*End Assembly\n";
+  const std::string space = box(3, "si", "f f f", "-4 7 -4 7 -4 7", 1, 0.2);
+  const auto scene = [&](const std::string &text) {
+    const ScratchFile file("parts.inp", text);
+    return std::make_unique<Scene>(space + make(file.name, "elements", "groups physical"));
+  };
+  const auto run = scene(cube + tet + assembly);
+  const auto points = run->gather();
+  ASSERT_EQ(points.size(), 3u);
+  // the second one is moved to z from 3 to 5, and lies then along -y
+  const double centres[3][3] = {{0.5, 0.5, 1.0}, {0.5, -1.0, 3.5}, {5.25, 0.25, 0.25}};
+  const double volumes[3] = {2.0, 2.0, 1.0 / 6.0};
+  for (int k = 0; k < 3; k++) {
+    EXPECT_NEAR(points[k].vol, volumes[k], 1e-14);
+    for (int d = 0; d < 3; d++) EXPECT_NEAR(points[k].x[d], centres[k][d], 1e-14) << k << d;
+  }
+  for (const auto &[group, count] :
+       {std::pair("all", 3.0), std::pair("c-2", 1.0), std::pair("one", 1.0), std::pair("two", 2.0)})
+    EXPECT_EQ(run->evaluate(strprintf("count(%s)", group)), count) << group;
+  EXPECT_EQ(scene(cube + tet)->gather().size(), 2u) << "each part once";
+
+  const auto failure = [&](const std::string &text) {
+    const ScratchFile file("bad.inp", text);
+    Scene bad;
+    return bad.error(space + make(file.name, "elements"));
+  };
+  const std::string good = cube + tet + assembly;
+  EXPECT_THAT(failure(replaced(good, "part=tet", "part=ball")), HasSubstr("no part ball"));
+  EXPECT_THAT(failure(replaced(good, "instance=c-2", "instance=d")), HasSubstr("no instance d"));
+  EXPECT_THAT(failure(replaced(good, "one, t-1", "none")), HasSubstr("'none', which is not"));
+  EXPECT_THAT(failure(replaced(good, "1, 0, 3, 90", "1, 0, 3")), HasSubstr("seven of a rotation"));
+  EXPECT_THAT(failure(replaced(good, "1, 0, 3, 90", "0, 0, 3, 90")), HasSubstr("no direction"));
+  EXPECT_THAT(failure(replaced(good, "5, 0, 0", "x, 0, 0")), HasSubstr("'x' is not a number"));
+  EXPECT_THAT(failure(cube + cube), HasSubstr("defined twice"));
+}
+
 TEST(MeshFile, DataBecomeFields)
 {
   for (const std::string &text : {vtk(true, MeshOutput::TEXT), vtk(false, MeshOutput::BIG),

@@ -38,10 +38,14 @@ class AbaqusReader {
         element(text);
       else if (section == ELSET)
         members(text);
+      else if (section == INSTANCE)
+        place(text);
     }
     if (!row.empty()) fail("the last element has too few nodes");
+    for (std::size_t k = parts.size() > 1 ? 1 : 0; k < parts.size(); k++)
+      for (const auto &set : parts[k].late) add_late(parts[k], set);
+    assemble();
     if (mesh.nodes.empty() || mesh.elements.empty()) fail("the file has no nodes or no elements");
-    for (const auto &set : late) add_late(set);
     try {
       mesh.check_repeated();
     } catch (const std::runtime_error &e) {
@@ -51,24 +55,39 @@ class AbaqusReader {
   }
 
  private:
-  enum Section { OTHER, NODE, ELEMENT, ELSET };
+  enum Section { OTHER, NODE, ELEMENT, ELSET, INSTANCE };
   struct Late {    // a set, which may come before its elements or other sets
     std::string name;
     std::vector<std::string> members;
     std::vector<std::array<int64_t, 3>> ranges;    // first, last, step
+    std::string instance;                          // that its members are of, in an assembly
+    int line;
+  };
+  struct Part {
+    std::string name;
+    Mesh mesh;
+    std::unordered_map<int64_t, int> node_place, element_place;
+    std::vector<Late> late;
+  };
+  struct Instance {
+    std::string name, part;
+    std::vector<std::vector<double>> lines;    // translation; two points of the axis, and angle
     int line;
   };
   std::istream &in;
   std::string name;
   int line = 0;
   Section section = OTHER;
-  Mesh mesh;
-  std::unordered_map<int64_t, int> node_place, element_place;
+  Mesh mesh;                     // of all
+  std::vector<Part> parts{1};    // the first one is what is outside of *PART
+  std::size_t now = 0;           // the present one
+  std::vector<Instance> instances;
+  std::vector<Late> of_assembly;
   ElementType type = ElementType::TRIANGLE;
   bool left_out = false, generate = false;
   int nnodes = 0, set = -1;
   std::vector<int64_t> row;    // of an element, which may go on in the next line
-  std::vector<Late> late;
+  Late *list = nullptr;        // the present set
 
   [[noreturn]] void fail(const std::string &what) const
   {
@@ -110,7 +129,7 @@ class AbaqusReader {
     if (!row.empty()) fail("the element before has too few nodes");
     const auto words = split(text);
     const std::string key = upper(words[0]);
-    std::string kind, of;
+    std::string kind, of, called, part, instance;
     generate = false;
     for (std::size_t k = 1; k < words.size(); k++) {
       const auto equal = words[k].find('=');
@@ -122,6 +141,9 @@ class AbaqusReader {
           : value.substr(first, value.find_last_not_of(" \t\"") - first + 1);
       if (option == "TYPE") kind = upper(bare);
       if (option == "ELSET") of = bare;
+      if (option == "NAME") called = bare;
+      if (option == "PART") part = bare;
+      if (option == "INSTANCE") instance = bare;
       if (option == "GENERATE") generate = true;
       if (option == "INPUT" && (key == "*NODE" || key == "*ELEMENT" || key == "*ELSET"))
         fail("the option INPUT of " + key + " is not supported: put the lines into this file");
@@ -133,11 +155,25 @@ class AbaqusReader {
     else if (key == "*ELEMENT") {
       section = ELEMENT;
       find_type(kind);
-      set = of.empty() ? -1 : number_of(of);
+      set = of.empty() ? -1 : number_of(parts[now].mesh, of);
     } else if (key == "*ELSET") {
       if (of.empty()) fail("*ELSET needs the option ELSET");
       section = ELSET;
-      late.push_back({of, {}, {}, line});
+      auto &all = instance.empty() ? parts[now].late : of_assembly;
+      all.push_back({of, {}, {}, instance, line});
+      list = &all.back();
+    } else if (key == "*PART") {
+      if (called.empty()) fail("*PART needs the option NAME");
+      if (find_part(called)) fail("the part " + called + " is defined twice");
+      now = parts.size();
+      parts.emplace_back();
+      parts.back().name = called;
+    } else if (key == "*ENDPART")
+      now = 0;
+    else if (key == "*INSTANCE") {
+      if (called.empty() || part.empty()) fail("*INSTANCE needs the options NAME and PART");
+      section = INSTANCE;
+      instances.push_back({called, part, {}, line});
     }
   }
 
@@ -168,7 +204,7 @@ class AbaqusReader {
     nnodes = element_nodes(type);
   }
 
-  int number_of(const std::string &of)
+  static int number_of(Mesh &mesh, const std::string &of)
   {
     for (std::size_t k = 0; k < mesh.sets.size(); k++)
       if (upper(mesh.sets[k].name) == upper(of)) return (int) k;
@@ -187,22 +223,24 @@ class AbaqusReader {
       if (words[d + 1].empty() || *end || !std::isfinite(x[d]))
         fail("'" + words[d + 1] + "' is not a coordinate");
     }
-    if (!node_place.emplace(integer(words[0]), (int) mesh.nodes.size()).second)
-      fail("node " + words[0] + " is defined twice: a file must have one part");
-    mesh.nodes.push_back(x);
+    auto &mine = parts[now];
+    if (!mine.node_place.emplace(integer(words[0]), (int) mine.mesh.nodes.size()).second)
+      fail("node " + words[0] + " is defined twice: put parts between *PART and *END PART");
+    mine.mesh.nodes.push_back(x);
   }
 
   void element(const std::string &text)
   {
     if (left_out) return;
+    auto &mine = parts[now];
     for (const auto &word : split(text)) row.push_back(integer(word));
     if ((int) row.size() < nnodes + 1) return;
     if ((int) row.size() > nnodes + 1)
       fail("element " + std::to_string(row[0]) + " has too many nodes");
     MeshElement e = {type, 0, row[0], {0, 0, 0, 0, 0, 0, 0, 0}};
     for (int k = 0; k < nnodes; k++) {
-      const auto found = node_place.find(row[k + 1]);
-      if (found == node_place.end())
+      const auto found = mine.node_place.find(row[k + 1]);
+      if (found == mine.node_place.end())
         fail("element " + std::to_string(row[0]) + " has the node " + std::to_string(row[k + 1]) +
              ", which the file does not define before");
       e.node[k] = found->second;
@@ -211,52 +249,166 @@ class AbaqusReader {
           fail("element " + std::to_string(row[0]) + " has the node " + std::to_string(row[k + 1]) +
                " twice");
     }
-    const int place = (int) mesh.elements.size();
-    if (!element_place.emplace(row[0], place).second)
-      fail("element " + std::to_string(row[0]) + " is defined twice: a file must have one part");
-    if (set >= 0) mesh.sets[set].elements.push_back(place);
-    mesh.elements.push_back(e);
+    const int place = (int) mine.mesh.elements.size();
+    if (!mine.element_place.emplace(row[0], place).second)
+      fail("element " + std::to_string(row[0]) +
+           " is defined twice: put parts between *PART and *END PART");
+    if (set >= 0) mine.mesh.sets[set].elements.push_back(place);
+    mine.mesh.elements.push_back(e);
     row.clear();
   }
 
   void members(const std::string &text)
   {
     auto words = split(text);
-    auto &list = late.back().members;
     if (!generate) {
-      list.insert(list.end(), words.begin(), words.end());
+      list->members.insert(list->members.end(), words.begin(), words.end());
       return;
     }
     if (words.size() == 2) words.push_back("1");
     if (words.size() != 3)
       fail("GENERATE needs the first and the last number, and may have a step");
-    late.back().ranges.push_back({integer(words[0]), integer(words[1]), integer(words[2])});
-    if (late.back().ranges.back()[2] < 1) fail("the step of GENERATE must be positive");
+    list->ranges.push_back({integer(words[0]), integer(words[1]), integer(words[2])});
+    if (list->ranges.back()[2] < 1) fail("the step of GENERATE must be positive");
   }
 
-  void add_late(const Late &from)
+  /** A line of *INSTANCE. */
+  void place(const std::string &text)
+  {
+    auto &mine = instances.back();
+    const std::size_t most = mine.lines.empty() ? 3 : 7;
+    std::vector<double> numbers;
+    for (const auto &word : split(text)) {
+      char *end;
+      numbers.push_back(strtod(word.c_str(), &end));
+      if (word.empty() || *end || !std::isfinite(numbers.back()))
+        fail("'" + word + "' is not a number of where the instance " + mine.name + " is");
+    }
+    if (mine.lines.size() == 2 || numbers.size() > most || (most == 7 && numbers.size() != 7))
+      fail("the instance " + mine.name +
+           " needs three numbers of its translation, and may have seven of a rotation");
+    numbers.resize(most, 0.0);
+    if (most == 7 && numbers[0] == numbers[3] && numbers[1] == numbers[4] &&
+        numbers[2] == numbers[5])
+      fail("the axis of the instance " + mine.name + " has no direction");
+    mine.lines.push_back(numbers);
+  }
+
+  Part *find_part(const std::string &of)
+  {
+    for (std::size_t k = 1; k < parts.size(); k++)
+      if (upper(parts[k].name) == upper(of)) return &parts[k];
+    return nullptr;
+  }
+
+  /** A node of a part at its place in the assembly: moved, and then turned around an axis by an angle in degrees (O. Rodrigues). */
+  static std::array<double, 3> moved(const Instance &of, std::array<double, 3> x)
+  {
+    if (of.lines.empty()) return x;
+    for (int d = 0; d < 3; d++) x[d] += of.lines[0][d];
+    if (of.lines.size() == 1) return x;
+    const auto &turn = of.lines[1];
+    double axis[3], from[3], length = 0.0;
+    for (int d = 0; d < 3; d++) {
+      axis[d] = turn[3 + d] - turn[d];
+      from[d] = x[d] - turn[d];
+      length += axis[d] * axis[d];
+    }
+    double along = 0.0;
+    for (int d = 0; d < 3; d++) along += (axis[d] /= std::sqrt(length)) * from[d];
+    const double angle = turn[6] * std::acos(-1.0) / 180.0, c = std::cos(angle),
+                 sine = std::sin(angle);
+    for (int d = 0; d < 3; d++) {
+      const int e = (d + 1) % 3, f = (d + 2) % 3;
+      x[d] = turn[d] + c * from[d] + sine * (axis[e] * from[f] - axis[f] * from[e]) +
+          (1.0 - c) * along * axis[d];
+    }
+    return x;
+  }
+
+  /** What there is outside of parts, or the parts where instances put them; without instances each part once, where its nodes are. Sets of parts
+   *  have the elements of all instances, and each of several instances is a set. */
+  void assemble()
+  {
+    if (parts.size() == 1) {
+      mesh = std::move(parts[0].mesh);
+      return;
+    }
+    if (!parts[0].mesh.elements.empty()) fail("the file has elements in its parts, and outside");
+    const bool named = !instances.empty();
+    for (std::size_t k = 1; k < parts.size() && !named; k++)
+      instances.push_back({parts[k].name, parts[k].name, {}, line});
+    std::vector<int> first;    // element of each instance
+    for (const auto &each : instances) {
+      line = each.line;
+      const Part *const part = find_part(each.part);
+      if (!part) fail("there is no part " + each.part);
+      const int node = (int) mesh.nodes.size(), element = (int) mesh.elements.size();
+      first.push_back(element);
+      for (const auto &x : part->mesh.nodes) mesh.nodes.push_back(moved(each, x));
+      for (auto e : part->mesh.elements) {
+        for (int k = 0; k < element_nodes(e.type); k++) e.node[k] += node;
+        mesh.elements.push_back(e);
+      }
+      auto sets = part->mesh.sets;
+      MeshSet all{each.name, {}};
+      for (int k = 0; k < (int) part->mesh.elements.size(); k++) all.elements.push_back(k);
+      if (instances.size() > 1) sets.push_back(all);
+      for (const auto &more : sets)
+        for (const int k : more.elements)
+          mesh.sets[number_of(mesh, more.name)].elements.push_back(element + k);
+    }
+    for (const auto &set : of_assembly) {
+      line = set.line;
+      const auto of = std::find_if(instances.begin(), instances.end(), [&](const Instance &each) {
+        return upper(each.name) == upper(set.instance);
+      });
+      if (of == instances.end()) fail("there is no instance " + set.instance);
+      auto part = *find_part(of->part);
+      part.mesh.sets.clear();
+      add_late(part, set);
+      auto &all = mesh.sets[number_of(mesh, set.name)].elements;
+      for (const int k : part.mesh.sets[0].elements)
+        all.push_back(first[of - instances.begin()] + k);
+    }
+    for (const auto &set : parts[0].late) {    // of other sets of the assembly
+      std::vector<int> more;
+      line = set.line;
+      for (const auto &word : set.members) {
+        const int other = number_of(mesh, word);
+        if (mesh.sets[other].elements.empty())
+          fail("the set " + set.name + " has the set '" + word + "', which is not defined before");
+        const auto &elements = mesh.sets[other].elements;
+        more.insert(more.end(), elements.begin(), elements.end());
+      }
+      auto &all = mesh.sets[number_of(mesh, set.name)].elements;
+      all.insert(all.end(), more.begin(), more.end());
+    }
+  }
+
+  void add_late(Part &of, const Late &from)
   {
     line = from.line;
     std::vector<int> more;
     for (const auto &word : from.members) {
       if (!word.empty() && word.find_first_not_of("0123456789") == std::string::npos) {
-        const auto found = element_place.find(strtoll(word.c_str(), nullptr, 10));
-        if (found != element_place.end()) more.push_back(found->second);
+        const auto found = of.element_place.find(strtoll(word.c_str(), nullptr, 10));
+        if (found != of.element_place.end()) more.push_back(found->second);
         continue;    // else an element that was left out
       }
-      const bool known = std::any_of(mesh.sets.begin(), mesh.sets.end(), [&](const MeshSet &set) {
-        return upper(set.name) == upper(word);
-      });
-      if (!known)
+      const auto known =
+          std::find_if(of.mesh.sets.begin(), of.mesh.sets.end(), [&](const MeshSet &each) {
+            return upper(each.name) == upper(word);
+          });
+      if (known == of.mesh.sets.end())
         fail("the set " + from.name + " has the set '" + word + "', which is not defined before");
-      const int other = number_of(word);
-      more.insert(more.end(), mesh.sets[other].elements.begin(), mesh.sets[other].elements.end());
+      more.insert(more.end(), known->elements.begin(), known->elements.end());
     }
     for (const auto &[first, last, step] : from.ranges)
       for (const auto &[label, place] :
-           element_place)    // and not all numbers, which may be very many
+           of.element_place)    // and not all numbers, which may be very many
         if (label >= first && label <= last && (label - first) % step == 0) more.push_back(place);
-    auto &all = mesh.sets[number_of(from.name)].elements;
+    auto &all = of.mesh.sets[number_of(of.mesh, from.name)].elements;
     all.insert(all.end(), more.begin(), more.end());
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());

@@ -27,7 +27,7 @@ Mesh read_vtk_mesh(std::istream &, const std::string &name);
 /** The same in XML (.vtu, see table/vtk_xml.h), of the whole file. */
 Mesh read_vtu_mesh(const std::string &text, const std::string &name);
 
-/** Input files of Abaqus: *NODE, *ELEMENT, and *ELSET, of one part. Sets of elements are in Mesh::sets, those of *ELEMENT,
+/** Input files of Abaqus: *NODE, *ELEMENT, and *ELSET, in parts, too, where *INSTANCE puts them. Sets of elements are in Mesh::sets, those of *ELEMENT,
  *  ELSET=... first. What else the file has says nothing about the mesh and is not read. */
 Mesh read_abaqus(std::istream &, const std::string &name);
 
