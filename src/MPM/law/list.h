@@ -45,7 +45,8 @@ namespace {
 #include "law/rubber.h"
 #include "law/woven.h"
 MPM_FAMILY(elastic, CLOSED, LawLinear, LawNeoHookean, LawNeoHookeanSplit, LawStVenantKirchhoff,
-           LawHencky, LawCorotated, LawMooneyRivlin, LawOgden, LawTransverselyIsotropic, LawOrthotropic, LawWoven)
+           LawHencky, LawCorotated, LawMooneyRivlin, LawOgden, LawTransverselyIsotropic,
+           LawOrthotropic, LawWoven)
 #endif
 
 #if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_viscoelastic)
