@@ -50,6 +50,8 @@ using namespace MPM_NS;
 // layers of faces in the air that have velocities of the water: those that a point which is just below the surface
 // reaches, also from where it is after half a step
 static constexpr int AIR_LAYERS = 3;
+// what quadratic splines add to a velocity along itself, in parts of its second difference
+static constexpr double SMOOTHED = 0.125;
 // residuals that are as small as this share of speed/spacing are rounding
 static constexpr double ROUNDING = 1.0e-14;
 // relative change of the time step with which there are two solves: less is as small in the pressure
@@ -219,6 +221,8 @@ Options MPMIncompressibleOptions::declare(int dim)
         open[open_face / 2][open_face % 2] = has_open = true;
       })
       .standard("none: all pockets are closed");
+  o.add("sharp", {yes_no(sharp)},
+        "points move with velocities that are not smoothed by their interpolation");
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
                 "share of an excess of points in a cell that goes elsewhere in a step")});
@@ -264,6 +268,9 @@ Options MPMIncompressibleOptions::declare(int dim)
          "cannot be used with implicit yes: use explicit viscosity, or leave solid out"},
         {!solid_groups.empty() && reflect > 0.0, "reflect",
          "would count forces of solids twice, and cannot be used with solid: leave it out"},
+        {!region_ids.empty() || !solid_groups.empty(), "sharp",
+         "is for flows between walls of the box, and cannot be used with region, stick, or solid: "
+         "leave it out"},
         {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"},
         {!has_gas, "outside", "is about the gas in pockets: add the keyword gas"},
         {!has_gas, "open", "is about the gas in pockets: add the keyword gas"},
@@ -460,6 +467,9 @@ void FixMPMIncompressible::init()
                implicit ? "implicit yes" : "reflect");
   inflow = std::make_unique<MPMFlowInflow>(lmp, cells, *this);
   if (!inflow->any()) inflow.reset();
+  if (sharp && (grains || inflow))
+    error->all(FLERR, Error::NOLASTLINE, "Fix {} {}: sharp cannot be used with {}: remove it",
+               style, id, grains ? "grains of fix mpm/immersed" : "points of fix mpm/emit");
   if (inflow && reflect > 0.0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: reflect cannot be used with points of fix mpm/emit: remove it", style,
@@ -820,6 +830,7 @@ void FixMPMIncompressible::initial_integrate(int)
   if (grains) grains->end(velocity);
   if (grains || inflow) pressure->set_mobility(nullptr);    // points spread among grains, too
 
+  if (sharp) find_paths();
   if (spread > 0.0) find_shift();
   if (bodies) bodies->move(dt);
 
@@ -833,7 +844,8 @@ void FixMPMIncompressible::initial_integrate(int)
                                        inflow.get(),
                                        solids.get(),
                                        transfer == AUTO ? unseen : nullptr,
-                                       of_shift};
+                                       of_shift,
+                                       sharp ? paths.data() : nullptr};
   if (solids) solids->deform(velocity.data(), dt, viscosity);
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
@@ -1137,6 +1149,34 @@ void FixMPMIncompressible::go_on_into_air()
   cells.reflect_velocities(velocity.data());
 }
 
+/* ----------------------------------------------------------------------
+   Interpolation with quadratic splines adds h^2/8 of the second derivative along a component to it. That much less of the second
+   differences along all axes, of all components, leaves what is free of divergence free of it. Where a neighbor has no
+   velocity, far out in the air, there is no such difference
+------------------------------------------------------------------------- */
+
+void FixMPMIncompressible::find_paths()
+{
+  const int dim = cells.lattice.dim;
+  paths.assign(velocity.size(), 0.0);
+  for (const auto &cell : cells.cells)
+    for (int c = 0; c < dim; c++) {
+      const int64_t face = (int64_t) cell.number * dim + c;
+      double second = 0.0;
+      for (int d = 0; d < dim; d++) {
+        const int64_t lower = (int64_t) cell.near[2 * d] * dim + c,
+                      upper = (int64_t) cell.near[2 * d + 1] * dim + c;
+        const bool have_lower = known[lower] > 0.0 || cell.walls >> 2 * d & 1,
+                   have_upper = known[upper] > 0.0 || cell.walls >> (2 * d + 1) & 1;
+        if (have_lower && have_upper)
+          second += velocity[lower] - 2.0 * velocity[face] + velocity[upper];
+      }
+      paths[face] = velocity[face] - SMOOTHED * second;
+    }
+  cells.publish(paths.data(), dim);
+  cells.reflect_paths(paths.data());
+}
+
 /** Displacements by which points that have come too close spread again. */
 void FixMPMIncompressible::find_shift()
 {
@@ -1379,9 +1419,10 @@ double FixMPMIncompressible::memory_usage()
   if (curved) bytes += curved->memory_usage();
   if (gas) bytes += gas->memory_usage() + gas_rows->memory_usage();
   if (stress) bytes += stress->memory_usage();
-  for (const auto *list : {&elastic, &at_surface, &potentials, &viscous_velocity, &before_forces,
-                           &mobility, &sums, &share, &old, &star, &more, &velocity, &known,
-                           &pressures, &shift, &without_hold, &start_of_part, &psi_of_parts})
+  for (const auto *list :
+       {&paths, &elastic, &at_surface, &potentials, &viscous_velocity, &before_forces, &mobility,
+        &sums, &share, &old, &star, &more, &velocity, &known, &pressures, &shift, &without_hold,
+        &start_of_part, &psi_of_parts})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -53,6 +53,7 @@ struct MPMIncompressibleOptions {
   bool transfer_is_given = false;
   double flip = 0.0;       ///< share of FLIP, with AUTO that of this step
   double reflect = 0.0;    ///< share of the change by the pressure that comes once more
+  bool sharp = false;      ///< paths of points
   double spread = 0.5;     ///< share of an excess of points that spreads in a step
   double tolerance = 1.0e-9;
   int most_iterations = 10000;
@@ -155,6 +156,7 @@ class FixMPMIncompressible :
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
   double halvings = 0.0;            // of steps and their parts, so far
   double energy_of_spread = 0.0;    // that spreading has added to points so far, of this rank
+  std::vector<double> paths;        // [cell][dim] velocities that points move with, if sharp
   double gone = 0.0;                // most that points have moved since neighbor lists were made
 
   struct {
@@ -180,6 +182,7 @@ class FixMPMIncompressible :
   void check_depths();
   void note_filling();
   void fit_gradients();
+  void find_paths();
   void find_shift();
   void go_on_into_air();
   void find_velocities();

@@ -303,7 +303,11 @@ void MPMFlowLattice::list_images()
         int index[3];
         grid.node_index(grid.blocks[slot], n, index);
         const int i = index[d], last = lattice.ncell[d], number = slot * NODES_PER_BLOCK + n;
-        if (i == 0 || i == last) at_walls.push_back({number, d});
+        if (i == 0 || i == last) {
+          int next[3] = {index[0], index[1], index[2]};
+          next[d] += i == 0 ? 1 : -1;
+          at_walls.push_back({number, d, i == 0 ? 0 : 1, (int) grid.locate(next)});
+        }
         if (i < -1 || i > last + 1 || (i >= 0 && i < last)) continue;
         const int side = i < 0 ? 0 : 1, wall = side ? last : 0;
         index[d] = std::max(0, std::min(2 * wall - i, last));
@@ -390,6 +394,29 @@ void MPMFlowLattice::reflect_velocities(double *values, bool moving) const
         to[c] = image->of_face == image->number ? 0.0 : -from;
       else
         to[c] = wall.sticks && moving ? 2.0 * wall.v[c] - from : from;
+    }
+  }
+}
+
+void MPMFlowLattice::reflect_paths(double *values) const
+{
+  const int dim = lattice.dim;
+  for (const auto &at : at_walls) {
+    const bool even = walls[at.axis][at.side].sticks && at.inner >= 0;
+    values[(int64_t) at.number * dim + at.axis] =
+        even ? -values[(int64_t) at.inner * dim + at.axis] / 3.0 : 0.0;
+  }
+  for (auto image = images.rbegin(); image != images.rend(); ++image) {
+    double *const to = values + (int64_t) image->number * dim;
+    const auto &wall = walls[image->axis][image->side];
+    for (int c = 0; c < dim; c++) {
+      const bool normal = c == image->axis;
+      if (normal && image->of_face == image->number) continue;
+      const double from = values[(int64_t) (normal ? image->of_face : image->of_cell) * dim + c];
+      if (normal)
+        to[c] = wall.sticks ? from : -from;
+      else
+        to[c] = wall.sticks ? 2.0 * wall.v[c] - from : from;
     }
   }
 }

@@ -102,6 +102,9 @@ class MPMFlowLattice : protected Pointers {
   void keep_owned(double *values, int width) const;
   /** Velocities [cell][dim] at walls and beyond; moving: those of the walls count. */
   void reflect_velocities(double *values, bool moving = true) const;
+  /** Velocities that points move with [cell][dim], at walls and beyond: those normal to a wall without slip grow with the square of the
+   *  distance, so that they are even, and the face in the wall has what makes them zero there when interpolated. */
+  void reflect_paths(double *values) const;
   /** Even images of values in the middle of cells. */
   void reflect_cells(double *values) const;
   /** Images of values in the middle of cells, by f(cell that it is an image of, axis, side, value there). */
@@ -147,7 +150,8 @@ class MPMFlowLattice : protected Pointers {
   std::vector<Range> of_visitors;    // their bases when cells were found
   std::vector<Image> images;         // by axis
   struct AtWall {
-    int number, axis;
+    int number, axis, side;
+    int inner;    // the next one within, if there is any, or -1
   };
   std::vector<AtWall> at_walls;    // cells whose lower face is one
 

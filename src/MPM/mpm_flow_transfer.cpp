@@ -340,13 +340,20 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       // velocities are those in the middle of the step where points have been at its start, and paths are straight
 
       double middle[3] = {x[0], x[1], x[2]}, at_middle[dim];
-      for (int d = 0; d < dim; d++) middle[d] += 0.5 * points.dt * now[d];
+      const double *start = now;
+      double at_start[dim];
+      if (update.paths) {
+        interpolate<dim>(near, w, update.paths, at_start, nullptr);
+        start = at_start;
+      }
+      for (int d = 0; d < dim; d++) middle[d] += 0.5 * points.dt * start[d];
       places.keep_inside(middle);
       places.find(middle, w);
       reach.find(cells.grid, block, w.base);
-      interpolate<dim>(Cells<dim>(reach), w, velocity, at_middle, nullptr);
+      interpolate<dim>(Cells<dim>(reach), w, update.paths ? update.paths : velocity, at_middle,
+                       nullptr);
       for (int d = 0; d < dim; d++) {
-        const double u = at_middle[d] + update.reflect * (now[d] - at_middle[d]) + more[d];
+        const double u = at_middle[d] + update.reflect * (start[d] - at_middle[d]) + more[d];
         x[d] += points.dt * u + shift[d];
       }
       places.keep_inside(x);

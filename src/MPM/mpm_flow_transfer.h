@@ -54,6 +54,8 @@ struct MPMFlowUpdate {
   double *squares = nullptr;
   /** Two sums over the points of this rank are added to it, of what the shift does: the change of the kinetic energy, and the work of forces on the way. */
   double *of_shift = nullptr;
+  const double *paths =
+      nullptr;    ///< [cell][dim] velocities that points move with; null: those that they get
 };
 
 /** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a
