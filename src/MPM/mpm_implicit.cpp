@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
@@ -33,7 +34,9 @@ static constexpr double PROJECTED = 1.0e-12;    // relative change by one action
 static constexpr double ROUNDED = 1.0e-9;       // what walls leave free of a node, to a projection
 static constexpr int MOST_REPEATS = 200;
 static constexpr int MOST_TIED =
-    48;    // nodes that lines of walls chain together, of which levels know
+    48;    // nodes in a group that lines of walls tie, all of which are told one by one
+static constexpr int APART =
+    7;    // spacings between those of larger groups that are told at a time
 static constexpr double ENOUGH = 0.9;    // of the slope that may be left, with the other sign
 static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
@@ -871,7 +874,8 @@ void MPMImplicit::prepare_levels()
 }
 
 /** Groups of nodes that walls hold together along lines through inclined surfaces, and the part of P that is in them: from unit vectors
- *  of one node of each group at a time.  Where lines of several surfaces chain many nodes together, these stay without. */
+ *  of one node of each group at a time.  Where lines of several surfaces chain many nodes together, along
+ *  edges, each has the part of those that are near. */
 void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
 {
   const auto index_of = [&](int64_t node) {
@@ -935,11 +939,18 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
   for (int k = 0; k < (int) nodes.index.size(); k++) clusters[root(k)].push_back(k);
   std::vector<int> place(nodes.index.size(), -1);
   int most = 0;
-  for (const auto &cluster : clusters) {
-    if ((int) cluster.size() > MOST_TIED) continue;
-    most = std::max(most, (int) cluster.size());
-    for (int k = 0; k < (int) cluster.size(); k++) place[cluster[k]] = k;
-  }
+  std::map<LatticeIndex, int> colors;
+  for (const auto &cluster : clusters)
+    for (int k = 0; k < (int) cluster.size(); k++) {
+      int &of = place[cluster[k]];
+      of = k;
+      if ((int) cluster.size() > MOST_TIED) {
+        LatticeIndex color{0, 0, 0};
+        for (int d = 0; d < 3; d++) color[d] = (nodes.index[cluster[k]][d] % APART + APART) % APART;
+        of = colors.emplace(color, (int) colors.size()).first->second;
+      }
+      most = std::max(most, of + 1);
+    }
 
   // what each of them gives to the others
 
@@ -953,9 +964,23 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
       if (const int number = nodes.find(index_of(n)); number >= 0 && place[number] >= 0)
         local.push_back({n, number});
   std::vector<std::vector<SplineMultigrid::Tie>> rows(local.size());
-  for (std::size_t i = 0; i < local.size(); i++)
-    for (const int other : clusters[root(local[i].number)])
+  std::vector<std::vector<int>> of_rows(local.size());
+  for (std::size_t i = 0; i < local.size(); i++) {
+    const LatticeIndex &at = nodes.index[local[i].number];
+    const auto &cluster = clusters[root(local[i].number)];
+    const auto add = [&](int other) {
       rows[i].push_back({local[i].node, nodes.index[other], {}});
+      of_rows[i].push_back(other);
+    };
+    if ((int) cluster.size() <= MOST_TIED)
+      for (const int other : cluster) add(other);
+    for (int k = 0; (int) cluster.size() > MOST_TIED && k < APART * APART * APART; k++) {
+      const LatticeIndex index{at[0] + k % APART - APART / 2, at[1] + k / APART % APART - APART / 2,
+                               at[2] + k / (APART * APART) - APART / 2};
+      const int other = nodes.find(index);
+      if (other >= 0 && root(other) == root(local[i].number)) add(other);
+    }
+  }
   std::vector<double> unit(nreals());
   for (int k = 0; k < most; k++)
     for (int column = 0; column < width; column++) {
@@ -964,14 +989,15 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
         if (place[at.number] == k) unit[width * at.node + column] = 1.0;
       project(unit.data());
       for (std::size_t i = 0; i < local.size(); i++)
-        for (int a = 0; a < width && k < (int) rows[i].size(); a++)
-          rows[i][k].P[width * a + column] = unit[width * local[i].node + a];
+        for (std::size_t j = 0; j < rows[i].size(); j++)
+          for (int a = 0; a < width && place[of_rows[i][j]] == k; a++)
+            rows[i][j].P[width * a + column] = unit[width * local[i].node + a];
     }
   for (std::size_t i = 0; i < local.size(); i++) {
     bool held = false;
     for (int k = 0; k < (int) rows[i].size(); k++)
       for (int ab = 0; ab < width * width; ab++) {
-        const double of_unity = k == place[local[i].number] && ab % (width + 1) == 0;
+        const double of_unity = of_rows[i][k] == local[i].number && ab % (width + 1) == 0;
         held = held || std::fabs(rows[i][k].P[ab] - of_unity) > PROJECTED;
       }
     if (held) of_nodes.insert(of_nodes.end(), rows[i].begin(), rows[i].end());
