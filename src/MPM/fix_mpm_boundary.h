@@ -19,6 +19,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "fix.h"
 #include "mpm_first_note.h"
 #include "mpm_friction_heat.h"
+#include "mpm_line_ties.h"
 #include "mpm_node_action.h"
 #include "mpm_region_surface.h"
 #include "mpm_trial_contact.h"
@@ -65,6 +66,7 @@ class FixMPMBoundary :
     public Fix,
     public MPMNodeAction,
     public MPMRubbing,
+    public MPMLineTies,
     private MPMTrialContact,
     private MPMBoundaryOptions {
  public:
@@ -88,6 +90,7 @@ class FixMPMBoundary :
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override;
   bool decides_contact(const MPMField &) const override;
   bool is_projection() const override { return !decides(); }
+  void list_ties(const MPMField &, std::vector<int64_t> &, std::vector<int64_t> &) const override;
   MPMTrialContact *trial_contact() override { return decides() || follows ? this : nullptr; }
   void act(double dt, Stage) override;
 

@@ -337,3 +337,29 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
   }
   now.normal = nullptr;
 }
+
+/* ----------------------------------------------------------------------
+   lines through the surface of a region; lines of faces are along the normal
+------------------------------------------------------------------------- */
+
+void FixMPMBoundary::list_ties(const MPMField &field, std::vector<int64_t> &ties,
+                               std::vector<int64_t> &others) const
+{
+  const auto add = [](std::vector<int64_t> &to, const int64_t *node, int64_t n) {
+    to.push_back(n);
+    to.insert(to.end(), node, node + n);
+  };
+  for (const auto &list : nodes) {
+    if (list.field != &field) continue;
+    for (const auto &crossing : list.crossings) add(ties, crossing.node, crossing.n);
+    for (const auto &knot : list.knots) add(ties, knot.node.data(), (int64_t) knot.node.size());
+    for (const auto &approach : list.approaches) add(ties, approach.node, approach.n);
+    for (const auto &line : list.lines) add(others, line.node, list.faces[line.face].length());
+    for (const auto &orbit : list.orbits) {
+      others.push_back(orbit.last - orbit.first + 2);
+      others.push_back(orbit.wall);
+      others.push_back(orbit.inner);
+      for (int k = orbit.first; k < orbit.last; k++) others.push_back(list.members[k].node);
+    }
+  }
+}

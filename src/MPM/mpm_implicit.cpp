@@ -12,6 +12,7 @@
 #include "mpm_body_contact.h"
 #include "mpm_field.h"
 #include "mpm_implicit_pressure.h"
+#include "mpm_line_ties.h"
 #include "mpm_node_action.h"
 #include "mpm_physics.h"
 #include "mpm_plan.h"
@@ -23,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
@@ -31,6 +33,10 @@ using namespace MPM_NS;
 static constexpr double PROJECTED = 1.0e-12;    // relative change by one action more
 static constexpr double ROUNDED = 1.0e-9;       // what walls leave free of a node, to a projection
 static constexpr int MOST_REPEATS = 200;
+static constexpr int MOST_TIED =
+    48;    // nodes in a group that lines of walls tie, all of which are told one by one
+static constexpr int APART =
+    7;    // spacings between those of larger groups that are told at a time
 static constexpr double ENOUGH = 0.9;    // of the slope that may be left, with the other sign
 static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
@@ -853,12 +859,149 @@ void MPMImplicit::prepare_levels()
     project(unit.data());
     for (int64_t k = 0; k < nreals(); k++) projection[width * k + column] = unit[k];
   }
+  std::vector<SplineMultigrid::Tie> ties_of_nodes;
+  if (constrained) find_ties(ties_of_nodes);
   left_over.nodes.clear();
   left_over.blocks.clear();
-  for (int64_t n = 0; constrained && n < (int64_t) mass.size(); n++)
-    find_left_over(n, &projection[width * width * n]);
-  multigrid->begin(constrained ? projection.data() : nullptr, blocks.data());
+  auto tie = ties_of_nodes.begin();
+  for (int64_t n = 0; constrained && n < (int64_t) mass.size(); n++) {
+    const bool tied = tie != ties_of_nodes.end() && tie->node == n;
+    while (tie != ties_of_nodes.end() && tie->node == n) ++tie;
+    if (!tied) find_left_over(n, &projection[width * width * n]);
+  }
+  multigrid->begin(constrained ? projection.data() : nullptr, blocks.data(), ties_of_nodes);
   fill_levels();
+}
+
+/** Groups of nodes that walls hold together along lines through inclined surfaces, and the part of P that is in them: from unit vectors
+ *  of one node of each group at a time.  Where lines of several surfaces chain many nodes together, along
+ *  edges, each has the part of those that are near. */
+void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
+{
+  const auto index_of = [&](int64_t node) {
+    int at[3];
+    grid.node_index(node, at);
+    LatticeIndex index{0, 0, 0};
+    for (int d = 0; d < grid.lattice.dim; d++) index[d] = grid.lattice.wrap(d, at[d]);
+    return index;
+  };
+  std::vector<int64_t> groups[2];
+  for (auto *action : field.plan->actions)
+    if (const auto *const holds = dynamic_cast<const MPMLineTies *>(action))
+      holds->list_ties(field, groups[0], groups[1]);
+  std::vector<LatticeIndex> mine[2], all[2];
+  for (int kind = 0; kind < 2; kind++) {
+    for (std::size_t k = 0; k < groups[kind].size();) {
+      const int64_t number = groups[kind][k++];
+      // those that have a mass
+      const std::size_t head = mine[kind].size();
+      mine[kind].push_back({0, 0, 0});
+      for (int64_t i = 0; i < number; i++, k++)
+        if (const int64_t node = groups[kind][k]; node >= 0 && mass[node] > 0.0)
+          mine[kind].push_back(index_of(node));
+      mine[kind][head][0] = (int) (mine[kind].size() - head) - 1;
+    }
+    all[kind] = ranks.gather(mine[kind]);
+  }
+
+  // clusters of groups that have nodes in common
+
+  LatticeNodes nodes;
+  std::vector<int> parent;
+  const auto root = [&](int k) {
+    while (parent[k] != k) k = parent[k] = parent[parent[k]];
+    return k;
+  };
+  const auto join = [&](const LatticeIndex *list, int number) {
+    int first = -1;
+    for (int i = 0; i < number; i++) {
+      const int at = nodes.add(list[i]);
+      if (at == (int) parent.size()) parent.push_back(at);
+      if (first >= 0) parent[root(at)] = root(first);
+      first = at;
+    }
+  };
+  for (std::size_t k = 0; k < all[0].size(); k += all[0][k][0] + 1)
+    if (all[0][k][0] > 1) join(&all[0][k + 1], all[0][k][0]);
+  if (nodes.index.empty()) return;
+  for (bool more = true; more;) {
+    const std::size_t before = nodes.index.size();
+    for (std::size_t k = 0; k < all[1].size(); k += all[1][k][0] + 1) {
+      const LatticeIndex *const list = &all[1][k + 1];
+      if (std::any_of(list, list + all[1][k][0], [&](const LatticeIndex &index) {
+            return nodes.find(index) >= 0;
+          }))
+        join(list, all[1][k][0]);
+    }
+    more = nodes.index.size() > before;
+  }
+  std::vector<std::vector<int>> clusters(nodes.index.size());
+  for (int k = 0; k < (int) nodes.index.size(); k++) clusters[root(k)].push_back(k);
+  std::vector<int> place(nodes.index.size(), -1);
+  int most = 0;
+  std::map<LatticeIndex, int> colors;
+  for (const auto &cluster : clusters)
+    for (int k = 0; k < (int) cluster.size(); k++) {
+      int &of = place[cluster[k]];
+      of = k;
+      if ((int) cluster.size() > MOST_TIED) {
+        LatticeIndex color{0, 0, 0};
+        for (int d = 0; d < 3; d++) color[d] = (nodes.index[cluster[k]][d] % APART + APART) % APART;
+        of = colors.emplace(color, (int) colors.size()).first->second;
+      }
+      most = std::max(most, of + 1);
+    }
+
+  // what each of them gives to the others
+
+  struct Local {
+    int64_t node;
+    int number;
+  };
+  std::vector<Local> local;
+  for (int64_t n = 0; n < (int64_t) mass.size(); n++)
+    if (mass[n] > 0.0)
+      if (const int number = nodes.find(index_of(n)); number >= 0 && place[number] >= 0)
+        local.push_back({n, number});
+  std::vector<std::vector<SplineMultigrid::Tie>> rows(local.size());
+  std::vector<std::vector<int>> of_rows(local.size());
+  for (std::size_t i = 0; i < local.size(); i++) {
+    const LatticeIndex &at = nodes.index[local[i].number];
+    const auto &cluster = clusters[root(local[i].number)];
+    const auto add = [&](int other) {
+      rows[i].push_back({local[i].node, nodes.index[other], {}});
+      of_rows[i].push_back(other);
+    };
+    if ((int) cluster.size() <= MOST_TIED)
+      for (const int other : cluster) add(other);
+    for (int k = 0; (int) cluster.size() > MOST_TIED && k < APART * APART * APART; k++) {
+      const LatticeIndex index{at[0] + k % APART - APART / 2, at[1] + k / APART % APART - APART / 2,
+                               at[2] + k / (APART * APART) - APART / 2};
+      const int other = nodes.find(index);
+      if (other >= 0 && root(other) == root(local[i].number)) add(other);
+    }
+  }
+  std::vector<double> unit(nreals());
+  for (int k = 0; k < most; k++)
+    for (int column = 0; column < width; column++) {
+      std::fill(unit.begin(), unit.end(), 0.0);
+      for (const auto &at : local)
+        if (place[at.number] == k) unit[width * at.node + column] = 1.0;
+      project(unit.data());
+      for (std::size_t i = 0; i < local.size(); i++)
+        for (std::size_t j = 0; j < rows[i].size(); j++)
+          for (int a = 0; a < width && place[of_rows[i][j]] == k; a++)
+            rows[i][j].P[width * a + column] = unit[width * local[i].node + a];
+    }
+  for (std::size_t i = 0; i < local.size(); i++) {
+    bool held = false;
+    for (int k = 0; k < (int) rows[i].size(); k++)
+      for (int ab = 0; ab < width * width; ab++) {
+        const double of_unity = of_rows[i][k] == local[i].number && ab % (width + 1) == 0;
+        held = held || std::fabs(rows[i][k].P[ab] - of_unity) > PROJECTED;
+      }
+    if (held) of_nodes.insert(of_nodes.end(), rows[i].begin(), rows[i].end());
+  }
 }
 
 /** Rounds what walls leave free of a node, S [width][width], to a projection, and keeps the inverse of its block in what that holds, if the two differ. */

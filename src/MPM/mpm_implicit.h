@@ -334,6 +334,7 @@ class MPMImplicit : private MPMNodeSystem {
   void find_blocks();
   void prepare_blocks();
   void prepare_levels();
+  void find_ties(std::vector<MPM_NS::SplineMultigrid::Tie> &);
   void find_left_over(int64_t node, double *S);
   void add_left_over(const double *r, double *z) const;
   void fill_levels();

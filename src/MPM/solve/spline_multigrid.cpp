@@ -262,9 +262,11 @@ struct SplineMultigrid::Levels {
   LinearSystem *system = nullptr;
   std::vector<double> projection;    // [node][width][width], empty: none
   std::vector<char> plain;           // [node] it has no constraint
+  std::vector<Tie> ties;             // of nodes that are held together with others, by node
+  std::vector<char> tied;            // [node] it is one of these
   std::vector<double> inverse;       // [node][width][width], 0 in the rim
   std::vector<char> in_system;       // [node] it has a stiffness
-  std::vector<double> held_part;     // [node of the rim][width][width]
+  std::vector<Block> held_part;      // what stands for what is held in the rim, one triangle
   double largest = 0.0;
   bool usable = true;    // all factors are there
   std::vector<double> work[3], rest;
@@ -278,11 +280,27 @@ struct SplineMultigrid::Levels {
   std::vector<double> rim_element;
   Blocks rim_blocks;
   RimFactors rim_factors;
+  std::vector<Block> rim_ties;    // of all ranks: row u, column x of u = P x
   std::vector<double> rim_x, rim_b;
 
   // from the nodes of this rank to those of its part of the first coarse level, and from these to the level
   LatticeNodes mine;
   CoarseParts to_mine;
+  // of nodes with constraints, whose functions are those of several others where these are tied, and of these in the rim
+  struct HeldPart {
+    int node;
+    double W[9];
+  };
+  struct HeldParts {
+    std::vector<int> first{0};    // [node + 1]
+    std::vector<HeldPart> parts;
+    const HeldPart *begin(int64_t node) const { return parts.data() + first[node]; }
+    const HeldPart *end(int64_t node) const { return parts.data() + first[node + 1]; }
+    double memory_usage() const
+    {
+      return first.capacity() * sizeof(int) + parts.capacity() * sizeof(HeldPart);
+    }
+  } held_to_mine, held_to_rim;
   std::vector<int> number, of_ranks;
   std::vector<double> partial, of_all;
 
@@ -296,12 +314,8 @@ struct SplineMultigrid::Levels {
   Means means, rim_means;    // of nodes of this rank's part of the first level, and of the rim
 
   // of a system that is factorized as a whole, once it has been
-  LatticeNodes of_whole;    // all of its nodes
-  struct Held {
-    int node;
-    double P[9];
-  };
-  std::vector<Held> held_nodes;      // those that are not free
+  LatticeNodes of_whole;             // all of its nodes
+  std::vector<Block> held_nodes;     // those that are not free: row u, column x of u = P x
   bool again = false;                // its structure is known
   std::vector<Block> held_blocks;    // what stands for what is held
   std::vector<Block> sent, of_all_blocks;
@@ -347,6 +361,87 @@ struct SplineMultigrid::Levels {
         to[a] += (transposed ? P[b * width + a] : P[a * width + b]) * from[b];
     }
   }
+  /** Calls f(index, P) for the nodes x of u = sum P x of a node with constraints. */
+  template <class F> void each_source(int64_t node, const F &f) const
+  {
+    if (!tied[node]) return f(index_of(node), projection_of(node));
+    auto tie = std::lower_bound(ties.begin(), ties.end(), node, [](const Tie &a, int64_t of) {
+      return a.node < of;
+    });
+    for (; tie != ties.end() && tie->node == node; ++tie) f(tie->other, tie->P);
+  }
+  /** Calls f(i, W_i, j, W_j) for the parts i and j of a node. */
+  template <class F> void each_pair(const HeldParts &of, int64_t node, const F &f) const
+  {
+    for (auto i = of.begin(node); i != of.end(node); ++i)
+      for (auto j = of.begin(node); j != of.end(node); ++j)
+        if (i->node >= j->node) f(*i, *j);
+  }
+  /** What the other directions of a node with constraints have, so that those are no motions without stiffness: c (1 - P)^T (1 - P). */
+  template <class F>
+  void each_held(const HeldParts &of, int64_t node, int self, double c, const F &f) const
+  {
+    const int w = width;
+    std::vector<HeldPart> rest(of.begin(node), of.end(node));
+    bool there = false;
+    for (auto &part : rest) {
+      for (int ab = 0; ab < w * w; ab++) part.W[ab] = -part.W[ab];
+      if (part.node != self) continue;
+      for (int a = 0; a < w; a++) part.W[a * w + a] += 1.0;
+      there = true;
+    }
+    if (!there) {
+      rest.push_back({self, {}});
+      for (int a = 0; a < w; a++) rest.back().W[a * w + a] = 1.0;
+    }
+    for (const auto &i : rest)
+      for (const auto &j : rest) {
+        if (i.node < j.node) continue;
+        Block block{i.node, j.node, {}};
+        add_product(i.W, j.W, c, block.value);
+        f(block);
+      }
+  }
+  /** to += c A^T B */
+  void add_product(const double *A, const double *B, double c, double *to) const
+  {
+    const int w = width;
+    for (int k = 0; k < w; k++)
+      for (int a = 0; a < w; a++)
+        for (int b = 0; b < w; b++) to[a * w + b] += c * A[k * w + a] * B[k * w + b];
+  }
+  /** to += W from, or W^T from. */
+  void add_part(const double *W, bool transposed, double c, const double *from, double *to) const
+  {
+    for (int a = 0; a < width; a++)
+      for (int b = 0; b < width; b++)
+        to[a] += c * (transposed ? W[b * width + a] : W[a * width + b]) * from[b];
+  }
+  /** rim_b <- P^T rim_b, or rim_x <- P rim_x, of nodes that are tied. */
+  void tie_rim(std::vector<double> &x, bool transposed) const
+  {
+    if (rim_ties.empty()) return;
+    const int w = width;
+    const auto before = x;
+    for (const auto &tie : rim_ties) std::fill_n(x.data() + (std::size_t) tie.row * w, w, 0.0);
+    for (const auto &tie : rim_ties) {
+      const int from = transposed ? tie.row : tie.column, to = transposed ? tie.column : tie.row;
+      add_part(tie.value, transposed, 1.0, before.data() + (std::size_t) from * w,
+               x.data() + (std::size_t) to * w);
+    }
+  }
+  void project_whole(double *x, bool transposed) const
+  {
+    const int w = width;
+    std::vector<double> before(x, x + of_whole.index.size() * w);
+    for (const auto &held : held_nodes) std::fill_n(x + (std::size_t) held.row * w, w, 0.0);
+    for (const auto &held : held_nodes) {
+      const int from = transposed ? held.row : held.column,
+                to = transposed ? held.column : held.row;
+      add_part(held.value, transposed, 1.0, before.data() + (std::size_t) from * w,
+               x + (std::size_t) to * w);
+    }
+  }
   LatticeIndex index_of(int64_t node) const
   {
     int at[3];
@@ -361,6 +456,7 @@ struct SplineMultigrid::Levels {
   void find_parents();
   void start(int n, const int64_t *nodes);
   void flush();
+  void add_rim(int row, int column, const double *K);
   void add_masses(const double *mass);
   void merge_ranks();
   void number_blocks();
@@ -383,7 +479,8 @@ SplineMultigrid::SplineMultigrid(const Grid &grid, LatticeRanks &ranks, int widt
 
 SplineMultigrid::~SplineMultigrid() = default;
 
-void SplineMultigrid::begin(const double *projection, const double *blocks)
+void SplineMultigrid::begin(const double *projection, const double *blocks,
+                            const std::vector<Tie> &ties)
 {
   const auto before = std::move(on);
   on.reset(new Levels(before->grid, before->ranks, before->width, before->order, before->few,
@@ -397,6 +494,12 @@ void SplineMultigrid::begin(const double *projection, const double *blocks)
       for (int a = 0; a < w; a++)
         for (int b = 0; b < w; b++)
           if (projection[(node * w + a) * w + b] != (a == b ? 1.0 : 0.0)) on->plain[node] = 0;
+  }
+  on->ties = ties;
+  on->tied.assign(nnodes, 0);
+  for (const auto &tie : ties) {
+    on->tied[tie.node] = 1;
+    on->plain[tie.node] = 0;
   }
   on->find_rim(blocks);
   on->find_parents();
@@ -446,6 +549,10 @@ void SplineMultigrid::Levels::find_rim(const double *given)
   const auto in_rim = rim_of(everywhere, ranks.gather(owned_stiffness), dim, order + 1, cells);
   for (std::size_t k = 0; k < in_rim.size(); k++)
     if (in_rim[k]) rim.add(everywhere.index[k]);
+  std::vector<LatticeIndex> others;
+  for (const auto &tie : ties) others.push_back(tie.other);
+  for (const auto &index : ranks.gather(others))
+    if (everywhere.find(index) >= 0) rim.add(index);
   rim_factors.start(rim.index, dim, width);
   std::vector<int> list;
   for (int64_t node = 0; node < grid.nnodes(); node++) {
@@ -458,6 +565,24 @@ void SplineMultigrid::Levels::find_rim(const double *given)
     list.push_back(found->second);
   }
   rim_of_ranks = ranks.gather(list);
+  std::vector<Block> mine_tied;
+  for (const auto &tie : ties) {
+    const int other = rim.find(tie.other);
+    if (!grid.owns(tie.node) || rim_number[tie.node] < 0 || other < 0) continue;
+    mine_tied.push_back({rim_number[tie.node], other, {}});
+    std::copy_n(tie.P, w * w, mine_tied.back().value);
+  }
+  rim_ties = ranks.gather(mine_tied);
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    if (rim_number[node] >= 0 && !plain[node])
+      each_source(node, [&](const LatticeIndex &index, const double *P) {
+        const int at = tied[node] ? rim.find(index) : rim_number[node];
+        if (at < 0) return;
+        held_to_rim.parts.push_back({at, {}});
+        std::copy_n(P, w * w, held_to_rim.parts.back().W);
+      });
+    held_to_rim.first.push_back((int) held_to_rim.parts.size());
+  }
 }
 
 void SplineMultigrid::Levels::find_parents()
@@ -475,6 +600,29 @@ void SplineMultigrid::Levels::find_parents()
                   });
     to_mine.end_function();
   }
+  const int ww = width * width;
+  for (int64_t node = 0; node < grid.nnodes(); node++) {
+    const std::size_t first = held_to_mine.parts.size();
+    const auto add = [&](int at, double weight, const double *P) {
+      auto part = held_to_mine.parts.begin() + first;
+      while (part != held_to_mine.parts.end() && part->node != at) ++part;
+      if (part == held_to_mine.parts.end()) {
+        held_to_mine.parts.push_back({at, {}});
+        part = held_to_mine.parts.end() - 1;
+      }
+      for (int ab = 0; ab < ww; ab++) part->W[ab] += weight * P[ab];
+    };
+    if (!plain[node] && !tied[node])
+      for (const auto &part : to_mine.of(node)) add(part.node, part.weight, projection_of(node));
+    else if (!plain[node])
+      each_source(node, [&](const LatticeIndex &index, const double *P) {
+        if (whole) return add(mine.add(index), 1.0, P);
+        each_parent(order, dim, index, period, [&](const LatticeIndex &parent, double weight) {
+          add(mine.add(parent), weight, P);
+        });
+      });
+    held_to_mine.first.push_back((int) held_to_mine.parts.size());
+  }
   place.assign(mine.index.size(), -1);
 }
 
@@ -486,17 +634,32 @@ void SplineMultigrid::Levels::start(int n, const int64_t *of)
   held = false;
   for (const int64_t node : nodes) {
     held = held || !plain[node];
-    for (const auto &part : to_mine.of(node))
-      if (place[part.node] < 0) {
-        place[part.node] = local.size();
-        local.push_back(part.node);
-      }
+    const auto add = [&](int at) {
+      if (place[at] >= 0) return;
+      place[at] = local.size();
+      local.push_back(at);
+    };
+    if (plain[node])
+      for (const auto &part : to_mine.of(node)) add(part.node);
+    else
+      for (auto part = held_to_mine.begin(node); part != held_to_mine.end(node); ++part)
+        add(part->node);
   }
   element.assign(local.size() * local.size() * width * width, 0.0);
   rim_local.clear();
   for (int i = 0; i < n; i++)
     if (rim_number[nodes[i]] >= 0) rim_local.push_back(i);
   rim_element.assign(rim_local.size() * rim_local.size() * width * width, 0.0);
+}
+
+/** A block of the rim, with its transposed. */
+void SplineMultigrid::Levels::add_rim(int row, int column, const double *K)
+{
+  const int w = width;
+  const bool lower = row >= column;
+  auto &to = lower ? rim_blocks.at(row, column) : rim_blocks.at(column, row);
+  for (int a = 0; a < w; a++)
+    for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
 }
 
 void SplineMultigrid::Levels::flush()
@@ -517,15 +680,28 @@ void SplineMultigrid::Levels::flush()
     for (int J = 0; J <= I; J++) {
       const int64_t i = nodes[rim_local[I]], j = nodes[rim_local[J]];
       const int row = rim_number[i], column = rim_number[j];
-      if (!rim_factors.together(row, column)) continue;
-      Matrix K = Eigen::Map<const Matrix>(rim_element.data() + (I * m + J) * w * w, w, w);
-      if (!plain[i]) K = (Eigen::Map<const Matrix>(projection_of(i), w, w).transpose() * K).eval();
-      if (!plain[j]) K = (K * Eigen::Map<const Matrix>(projection_of(j), w, w)).eval();
-      const bool lower = row >= column;
-      if (!lower) K.transposeInPlace();
-      auto &to = lower ? rim_blocks.at(row, column) : rim_blocks.at(column, row);
-      for (int a = 0; a < w; a++)
-        for (int b = 0; b < w; b++) to.value[a * w + b] += K(a, b);
+      const double *const K = rim_element.data() + (I * m + J) * w * w;
+      if (plain[i] && plain[j]) {
+        if (rim_factors.together(row, column)) add_rim(row, column, K);
+        continue;
+      }
+      const HeldPart of_i{row, {1.0}}, of_j{column, {1.0}};
+      const auto begin = [&](int64_t node, const HeldPart &own) {
+        return plain[node] ? &own : held_to_rim.begin(node);
+      };
+      const auto end = [&](int64_t node, const HeldPart &own) {
+        return plain[node] ? &own + 1 : held_to_rim.end(node);
+      };
+      for (auto p = begin(i, of_i); p != end(i, of_i); ++p)
+        for (auto q = begin(j, of_j); q != end(j, of_j); ++q) {
+          // a node and itself: both orders of two of its parts are the same block
+          if ((I == J && p < q) || !rim_factors.together(p->node, q->node)) continue;
+          Matrix block = Eigen::Map<const Matrix>(K, w, w);
+          if (!plain[i]) block = (Eigen::Map<const Matrix>(p->W, w, w).transpose() * block).eval();
+          if (!plain[j]) block = (block * Eigen::Map<const Matrix>(q->W, w, w)).eval();
+          if (I != J && p->node == q->node) block += block.transpose().eval();
+          add_rim(p->node, q->node, block.data());
+        }
     }
   for (const int node : local) place[node] = -1;
   local.clear();
@@ -586,13 +762,20 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
 
   o.G.assign((std::size_t) nc * m * w, 0.0);
   for (int i = 0; i < n; i++) {
-    const double *const P = o.projection_of(nodes[i]);
-    for (const auto &part : o.to_mine.of(nodes[i])) {
-      double *const g = o.G.data() + (std::size_t) o.place[part.node] * m * w;
+    const auto g_of = [&](int coarse) {
+      return o.G.data() + (std::size_t) o.place[coarse] * m * w;
+    };
+    if (o.plain[nodes[i]]) {
+      for (const auto &part : o.to_mine.of(nodes[i]))
+        for (int l = 0; l < ngrad; l++)
+          for (int a = 0; a < w; a++)
+            g_of(part.node)[(l * w + a) * w + a] += part.weight * gradient[i * ngrad + l];
+      continue;
+    }
+    for (auto part = o.held_to_mine.begin(nodes[i]); part != o.held_to_mine.end(nodes[i]); ++part)
       for (int l = 0; l < ngrad; l++)
         for (int ab = 0; ab < w * w; ab++)
-          g[l * w * w + ab] += part.weight * gradient[i * ngrad + l] * P[ab];
-    }
+          g_of(part->node)[l * w * w + ab] += gradient[i * ngrad + l] * part->W[ab];
   }
   for (int J = 0; J < nc; J++) {
     const double *const gJ = o.G.data() + (std::size_t) J * m * w;
@@ -619,19 +802,34 @@ void SplineMultigrid::add_mean(int64_t around, int kind, const double sums[3], i
   Means::Head of_rim = head;
   const std::size_t first = o.means.values.size();
   for (int i = 0; i < n; i++) {
-    double free[3] = {0.0, 0.0, 0.0};
-    o.project(nodes[i], changes + (std::size_t) i * o.width, true, free);
-    for (const auto &part : o.to_mine.of(nodes[i])) {
-      int &at = o.place[part.node];
+    const double *const change = changes + (std::size_t) i * o.width;
+    const auto value_of = [&](int coarse) {
+      int &at = o.place[coarse];
       if (at < 0) {
         at = (int) (o.means.values.size() - first);
-        o.means.values.push_back({part.node, {0.0, 0.0, 0.0}});
+        o.means.values.push_back({coarse, {0.0, 0.0, 0.0}});
       }
-      for (int a = 0; a < 3; a++) o.means.values[first + at].value[a] += part.weight * free[a];
+      return o.means.values[first + at].value;
+    };
+    const bool in_rim = o.rim_number[nodes[i]] >= 0;
+    const auto add_to_rim = [&](int at) {
+      o.rim_means.values.push_back({at, {0.0, 0.0, 0.0}});
+      of_rim.count++;
+      return o.rim_means.values.back().value;
+    };
+    if (o.plain[nodes[i]]) {
+      for (const auto &part : o.to_mine.of(nodes[i])) {
+        double *const to = value_of(part.node);
+        for (int a = 0; a < o.width; a++) to[a] += part.weight * change[a];
+      }
+      if (in_rim) std::copy_n(change, o.width, add_to_rim(o.rim_number[nodes[i]]));
+      continue;
     }
-    if (o.rim_number[nodes[i]] < 0) continue;
-    o.rim_means.values.push_back({o.rim_number[nodes[i]], {free[0], free[1], free[2]}});
-    of_rim.count++;
+    for (auto part = o.held_to_mine.begin(nodes[i]); part != o.held_to_mine.end(nodes[i]); ++part)
+      o.add_part(part->W, true, 1.0, change, value_of(part->node));
+    if (!in_rim) continue;
+    for (auto part = o.held_to_rim.begin(nodes[i]); part != o.held_to_rim.end(nodes[i]); ++part)
+      o.add_part(part->W, true, 1.0, change, add_to_rim(part->node));
   }
   head.count = (int) (o.means.values.size() - first);
   for (std::size_t k = first; k < o.means.values.size(); k++) o.place[o.means.values[k].node] = -1;
@@ -645,21 +843,17 @@ void SplineMultigrid::Levels::add_masses(const double *mass)
   const int w = width;
   for (int64_t node = 0; node < grid.nnodes(); node++) {
     if (!grid.owns(node) || !(mass[node] > 0.0)) continue;
-    double PP[9] = {0.0};
-    for (int a = 0; a < w; a++)
-      for (int b = 0; b < w; b++) {
-        PP[a * w + b] = a == b;
-        if (plain[node]) continue;
-        const double *const P = projection_of(node);
-        PP[a * w + b] = 0.0;
-        for (int c = 0; c < w; c++) PP[a * w + b] += P[c * w + a] * P[c * w + b];
-      }
+    if (!plain[node]) {
+      each_pair(held_to_mine, node, [&](const HeldPart &i, const HeldPart &j) {
+        add_product(i.W, j.W, mass[node], blocks.at(i.node, j.node).value);
+      });
+      continue;
+    }
     for (const auto &i : to_mine.of(node))
       for (const auto &j : to_mine.of(node)) {
         if (j.node > i.node) continue;
         auto &to = blocks.at(i.node, j.node);
-        for (int ab = 0; ab < w * w; ab++)
-          to.value[ab] += i.weight * j.weight * mass[node] * PP[ab];
+        for (int a = 0; a < w; a++) to.value[a * w + a] += i.weight * j.weight * mass[node];
       }
   }
 }
@@ -692,12 +886,15 @@ void SplineMultigrid::Levels::merge_ranks()
     }
   of_ranks = ranks.gather(list);
   if (whole) {
-    std::vector<Held> mine_held;
+    std::vector<Block> mine_held;
     for (int64_t node = 0; node < grid.nnodes(); node++) {
       const int at = number[to_mine.of(node).begin()->node];
       if (!grid.owns(node) || at < 0 || plain[node]) continue;
-      mine_held.push_back({at, {}});
-      std::copy_n(projection_of(node), w * w, mine_held.back().P);
+      for (auto part = held_to_mine.begin(node); part != held_to_mine.end(node); ++part) {
+        if (number[part->node] < 0) continue;
+        mine_held.push_back({at, number[part->node], {}});
+        std::copy_n(part->W, w * w, mine_held.back().value);
+      }
     }
     ranks.gather(mine_held, held_nodes);
     of_whole = all;
@@ -923,7 +1120,6 @@ void SplineMultigrid::Levels::invert_blocks(const double *given)
   const int w = width;
   inverse.assign(grid.nnodes() * w * w, 0.0);
   in_system.assign(grid.nnodes(), 0);
-  held_part.assign(rim.index.size() * w * w, 0.0);
   for (int64_t node = 0; node < grid.nnodes(); node++) {
     Matrix D = Eigen::Map<const Matrix>(given + node * w * w, w, w);
     D = (0.5 * (D + D.transpose())).eval();
@@ -935,22 +1131,25 @@ void SplineMultigrid::Levels::invert_blocks(const double *given)
         Eigen::Map<Matrix>(inverse.data() + node * w * w, w, w) = inverse_of(D);
       continue;
     }
-    const Matrix P = Eigen::Map<const Matrix>(projection_of(node), w, w);
-    const Matrix rest = Matrix::Identity(w, w) - P, held = scale * rest.transpose() * rest;
     if (whole) {
       const int k = to_mine.of(node).begin()->node;
-      auto &to = blocks.at(k, k);
-      if (!grid.owns(node)) continue;
-      held_blocks.push_back({k, k, {}});
-      for (int ab = 0; ab < w * w; ab++)
-        to.value[ab] += held_blocks.back().value[ab] = held(ab / w, ab % w);
+      each_held(held_to_mine, node, k, scale, [&](const Block &held) {
+        auto &to = blocks.at(held.row, held.column);
+        if (!grid.owns(node)) return;
+        held_blocks.push_back(held);
+        for (int ab = 0; ab < w * w; ab++) to.value[ab] += held.value[ab];
+      });
       continue;
     }
     if (rim_number[node] >= 0) {
       if (grid.owns(node))
-        Eigen::Map<Matrix>(held_part.data() + (std::size_t) rim_number[node] * w * w, w, w) = held;
+        each_held(held_to_rim, node, rim_number[node], scale, [&](const Block &held) {
+          held_part.push_back(held);
+        });
       continue;
     }
+    const Matrix P = Eigen::Map<const Matrix>(projection_of(node), w, w);
+    const Matrix rest = Matrix::Identity(w, w) - P, held = scale * rest.transpose() * rest;
     const Matrix free = P.transpose() * D * P + held;
     const Matrix inverted = P * inverse_of(free) * P.transpose();
     Eigen::Map<Matrix>(inverse.data() + node * w * w, w, w) = inverted;
@@ -963,12 +1162,19 @@ void SplineMultigrid::Levels::factorize_rim(const double *mass)
   for (const int64_t node : rim_owned) {
     const int k = rim_number[node];
     auto &to = rim_blocks.at(k, k);
-    Matrix PP = Matrix::Identity(w, w);
-    if (!plain[node]) PP = Eigen::Map<const Matrix>(projection_of(node), w, w);
-    PP = (PP.transpose() * PP).eval();
-    for (int ab = 0; ab < w * w; ab++)
-      to.value[ab] +=
-          held_part[(std::size_t) k * w * w + ab] + (mass ? mass[node] * PP(ab / w, ab % w) : 0.0);
+    if (!mass) continue;
+    if (plain[node])
+      for (int a = 0; a < w; a++) to.value[a * w + a] += mass[node];
+    else
+      each_pair(held_to_rim, node, [&](const HeldPart &i, const HeldPart &j) {
+        if (rim_factors.together(i.node, j.node))
+          add_product(i.W, j.W, mass[node], rim_blocks.at(i.node, j.node).value);
+      });
+  }
+  for (const auto &held : held_part) {
+    if (!rim_factors.together(held.row, held.column)) continue;
+    auto &to = rim_blocks.at(held.row, held.column);
+    for (int ab = 0; ab < w * w; ab++) to.value[ab] += held.value[ab];
   }
   rim_means.each_of_all(ranks, [&](const NodeValue *begin, const NodeValue *end, double c) {
     Blocks more;
@@ -1000,13 +1206,20 @@ void SplineMultigrid::Levels::by_blocks(const double *r, double *z)
   if (rim.index.empty()) return;
   partial.resize(rim_owned.size() * w);
   for (std::size_t k = 0; k < rim_owned.size(); k++)
-    project(rim_owned[k], r + rim_owned[k] * w, true, partial.data() + k * w);
+    if (tied[rim_owned[k]])
+      std::copy_n(r + rim_owned[k] * w, w, partial.data() + k * w);
+    else
+      project(rim_owned[k], r + rim_owned[k] * w, true, partial.data() + k * w);
   ranks.gather(partial, of_all);
   for (std::size_t k = 0; k < rim_of_ranks.size(); k++)
     for (int a = 0; a < w; a++) rim_b[rim_of_ranks[k] * w + a] = of_all[k * w + a];
+  tie_rim(rim_b, true);
   rim_factors.solve(rim_b.data(), rim_x.data());
+  tie_rim(rim_x, false);
   for (int64_t node = 0; node < grid.nnodes(); node++)
-    if (rim_number[node] >= 0)
+    if (rim_number[node] >= 0 && tied[node])
+      std::copy_n(rim_x.data() + rim_number[node] * w, w, z + node * w);
+    else if (rim_number[node] >= 0)
       project(node, rim_x.data() + rim_number[node] * w, false, z + node * w);
 }
 
@@ -1125,11 +1338,15 @@ void SplineMultigrid::precondition(const double *r, double *z)
   partial.assign(o.number.size() * w, 0.0);
   for (int64_t node = 0; node < nnodes; node++) {
     if (!o.grid.owns(node) || !o.in_system[node]) continue;
-    double left[3], force[3];
+    double left[3];
     for (int a = 0; a < w; a++) left[a] = r[node * w + a] - (o.whole ? 0.0 : o.rest[node * w + a]);
-    o.project(node, left, true, force);
+    if (!o.plain[node]) {
+      for (auto part = o.held_to_mine.begin(node); part != o.held_to_mine.end(node); ++part)
+        o.add_part(part->W, true, 1.0, left, partial.data() + part->node * w);
+      continue;
+    }
     for (const auto &part : o.to_mine.of(node))
-      for (int a = 0; a < w; a++) partial[part.node * w + a] += part.weight * force[a];
+      for (int a = 0; a < w; a++) partial[part.node * w + a] += part.weight * left[a];
   }
   std::size_t kept = 0;
   for (std::size_t k = 0; k < o.number.size(); k++)
@@ -1147,12 +1364,17 @@ void SplineMultigrid::precondition(const double *r, double *z)
 
   for (int64_t node = 0; node < nnodes; node++) {
     if (!o.in_system[node]) continue;
-    double motion[3] = {0.0, 0.0, 0.0}, free[3];
-    for (const auto &part : o.to_mine.of(node))
-      if (const int from = o.number[part.node]; from >= 0)
-        for (int a = 0; a < w; a++) motion[a] += part.weight * coarse.x[from * w + a];
-    o.project(node, motion, false, free);
-    for (int a = 0; a < w; a++) z[node * w + a] += free[a];
+    double motion[3] = {0.0, 0.0, 0.0};
+    if (o.plain[node]) {
+      for (const auto &part : o.to_mine.of(node))
+        if (const int from = o.number[part.node]; from >= 0)
+          for (int a = 0; a < w; a++) motion[a] += part.weight * coarse.x[from * w + a];
+    } else {
+      for (auto part = o.held_to_mine.begin(node); part != o.held_to_mine.end(node); ++part)
+        if (const int from = o.number[part->node]; from >= 0)
+          o.add_part(part->W, false, 1.0, coarse.x.data() + from * w, motion);
+    }
+    for (int a = 0; a < w; a++) z[node * w + a] += motion[a];
   }
   if (!o.whole) o.smooth(r, z, false);
 }
@@ -1170,22 +1392,9 @@ int SplineMultigrid::place_in_whole(const LatticeIndex &index) const
 void SplineMultigrid::solve_whole(double *b)
 {
   auto &o = *on;
-  const int w = o.width;
-  const auto project = [&](bool transposed) {
-    for (const auto &held : o.held_nodes) {
-      double from[3];
-      double *const of = b + (std::size_t) held.node * w;
-      std::copy_n(of, w, from);
-      for (int i = 0; i < w; i++) {
-        of[i] = 0.0;
-        for (int j = 0; j < w; j++)
-          of[i] += (transposed ? held.P[j * w + i] : held.P[i * w + j]) * from[j];
-      }
-    }
-  };
-  project(true);
+  o.project_whole(b, true);
   o.factors.solve(b, b);
-  project(false);
+  o.project_whole(b, false);
 }
 
 bool SplineMultigrid::usable() const
@@ -1220,15 +1429,18 @@ double SplineMultigrid::memory_usage() const
       (o.held_blocks.capacity() + o.sent.capacity() + o.of_all_blocks.capacity()) * sizeof(Block) +
       o.slots.capacity() * sizeof(int) +
       (o.rim_owned.capacity() + o.nodes.capacity()) * sizeof(int64_t);
-  bytes += o.held_nodes.capacity() * sizeof(Levels::Held);
+  bytes +=
+      (o.held_nodes.capacity() + o.rim_ties.capacity() + o.held_part.capacity()) * sizeof(Block) +
+      o.ties.capacity() * sizeof(Tie) + o.held_to_mine.memory_usage() +
+      o.held_to_rim.memory_usage() + o.tied.capacity();
   for (const auto *list : {&o.rim, &o.mine, &o.of_whole})
     bytes += list->index.capacity() * sizeof(LatticeIndex) + list->number.size() * HASHED;
   for (const auto *list :
        {&o.rim_number, &o.rim_of_ranks, &o.rim_local, &o.number, &o.of_ranks, &o.local, &o.place})
     bytes += list->capacity() * sizeof(int);
   for (const auto *list :
-       {&o.projection, &o.inverse, &o.held_part, &o.work[0], &o.work[1], &o.work[2], &o.rest,
-        &o.rim_element, &o.rim_x, &o.rim_b, &o.partial, &o.of_all, &o.element, &o.G, &o.T})
+       {&o.projection, &o.inverse, &o.work[0], &o.work[1], &o.work[2], &o.rest, &o.rim_element,
+        &o.rim_x, &o.rim_b, &o.partial, &o.of_all, &o.element, &o.G, &o.T})
     bytes += list->capacity() * sizeof(double);
   bytes += o.last.nonZeros() * (sizeof(double) + sizeof(int)) + o.last.rows() * sizeof(int);
   for (const auto &level : o.coarse) {

@@ -39,10 +39,17 @@ class SplineMultigrid {
   SplineMultigrid(const Grid &, LatticeRanks &, int width, int order, int few = 0, int all = 0);
   ~SplineMultigrid();
 
+  /** Constraints that hold several nodes together: of u = sum P x of a node over itself and others, P [width][width] of one of them. */
+  struct Tie {
+    int64_t node;
+    LatticeIndex other;
+    double P[9];
+  };
   /** A new operator, for the blocks of nodes that the grid has now.  projection: [node][width][width], P u being free motions of
    *  a node; null where there are no constraints.  blocks: [node][width][width] of K + m at the diagonal, of all ranks,
-   *  before constraints.  Both are copied.  Collective. */
-  void begin(const double *projection, const double *blocks);
+   *  before constraints.  ties: by node, of those whose projection is not this one but that of the whole of P, with all of their others.
+   *  All are copied.  Collective. */
+  void begin(const double *projection, const double *blocks, const std::vector<Tie> &ties = {});
   /** The same operator with other stiffnesses and masses: the same nodes, points that reach the same ones of them, and the same projection.
    *  False, on all ranks, where begin() is needed as the system has levels, or none has been finished. */
   bool begin_again();

@@ -1,0 +1,31 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_LINE_TIES_H
+#define LMP_MPM_LINE_TIES_H
+
+#include <cstdint>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Of an action on nodes that is a projection, or becomes one: which nodes it holds together. */
+class MPMLineTies {
+ public:
+  /** Adds groups of nodes of a field, one after the other, each with its number of nodes first, -1: none: those on a line through an
+   *  inclined surface (ties), and others, of which the projection node by node serves as well but where they share nodes with these. */
+  virtual void list_ties(const MPMField &, std::vector<int64_t> &ties,
+                         std::vector<int64_t> &others) const = 0;
+
+ protected:
+  ~MPMLineTies() = default;
+};
+
+}    // namespace LAMMPS_NS
+#endif
