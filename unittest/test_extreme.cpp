@@ -452,3 +452,25 @@ TEST(AdaptiveTimeStep, FollowsWithinOneStep)
   EXPECT_EQ(run.error("run 3\n"), "");
   EXPECT_LT(run.lmp->update->dt, 0.02 * before);
 }
+
+// A pressure beyond what a law bears makes points vanish, which the end of the run tells; not where one becomes stiff
+SERIAL_TEST(Told, PointsThatVanish)
+{
+  const auto told = [](const std::string &law) {
+    return lines_that_say(
+               plane("lj", "p f", "0 4 0 12", 1, 0.3) +
+                   "fix grid all mpm 1.0\nregion body block 0 4 0 10 INF INF\ncreate_points 1 "
+                   "region body ppc 2\n"
+                   "fix m all mpm/material density 1 " +
+                   law +
+                   "\nfix floor all mpm/boundary ylo slip\n"
+                   "region top block INF INF 9.5 INF INF INF\ngroup top region top\n"
+                   "variable f equal -3*(time/80*(time<80)+(time>=80))*lx/count(top)\n"
+                   "fix load top addforce 0 v_f 0\nfix dt all mpm/dt 0.5 until 100\nrun 100000\n",
+               "of its volume: its law")
+        .size();
+  };
+  EXPECT_EQ(told("corotated 1 0.3"), 1u);
+  EXPECT_EQ(told("stvenant/kirchhoff 1 0.3"), 1u);
+  EXPECT_EQ(told("neohookean 1 0.3"), 0u);
+}

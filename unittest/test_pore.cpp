@@ -197,6 +197,33 @@ SERIAL_TEST(Surface, AreaOfAFlux)
   }
 }
 
+// Water through a face of the box is the flux times the area of the soil there, wherever nodes are: up to 1.9 % were missing
+SERIAL_TEST(Surface, AreaOfAFace)
+{
+  for (const char *shape : {"quadratic", "cubic"})
+    for (int k = 0; k < 10; k++) {
+      Scene run(replaced(column(4, "2.2e8 1000 9810 soil m 0.4 constant 1e-5 ylo flux 1e-4 every 1",
+                                SOIL, 1.2, 0.1 * k),
+                         "origin", strprintf("shape %s origin", shape)) +
+                "timestep 1e-5\nrun 20\n");
+      EXPECT_NEAR(measured(strprintf("%s, %d", shape, k),
+                           run.fix("water")->compute_scalar() / (1.0 * 1e-4 * 20e-5)),
+                  1.0, 1e-6);
+    }
+  for (const double shift : {0.0, 0.3, 0.7}) {
+    const double h = 0.125;
+    Scene run(space("si", "f f f", "0 1 0 1 0 1", 1, 0.3 * h) +
+              strprintf("create_points 1 box spacing %g\n", 0.5 * h) +
+              strprintf("fix grid all mpm %g origin %g %g %g\n", h, shift * h, 0.4 * h, 0.6 * h) +
+              "fix m all mpm/material " + SOIL +
+              "\nfix water all mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-5 xhi flux 1e-4 "
+              "every 1\ntimestep 1e-5\nrun 20\n");
+    EXPECT_NEAR(
+        measured(strprintf("3d, %g", shift), run.fix("water")->compute_scalar() / (1e-4 * 20e-5)),
+        1.0, 1e-3);
+  }
+}
+
 // what comes to points is what comes through the surface, as volume of water and as mass
 TEST(Water, IsKept)
 {

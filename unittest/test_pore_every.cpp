@@ -234,6 +234,44 @@ TEST(Restart, Continues)
     expect_continues(blocks(std::string("free pressure 0 initial v_p every ") + every), OF_BLOCKS);
 }
 
+// What follows on a file that was written between two flows may have other conditions, with which water flows in each step, or be implicit: points have
+// the pressure that the motion has made since the last flow
+TEST(Restart, GoesOnWithOtherConditions)
+{
+  const auto fixes = [](const std::string &more) {
+    return "fix grid all mpm 0.1 origin 0 0\nfix m all mpm/material " + std::string(SOIL) +
+        "\nfix floor all mpm/boundary ylo slip\nfix water all mpm/pore 2.2e8 1000 9810 soil m 0.4 "
+        "constant 1e-6 " +
+        more + "\ntimestep 4e-5\n";
+  };
+  const std::string scene = column(10, "2.2e8 1000 9810 soil m 0.4 constant 1e-6 every 4", SOIL) +
+      "variable v atom -0.01*y\nvelocity all set NULL v_v NULL\n";
+  const auto range = [](Scene &run) {
+    double most = 0.0;
+    for (const auto &point : water_of_points(run)) most = std::max(most, std::fabs(point.p));
+    return most;
+  };
+  const auto mean = [](Scene &run) {
+    double sum = 0.0;
+    for (const auto &point : water_of_points(run)) sum += point.p;
+    return sum;
+  };
+  const ScratchFile file("other");
+  Scene before(scene + PORE + "timestep 4e-5\nrun 11\n");    // two steps after a flow
+  before.commands("write_restart " + file.name + "\n");
+  Scene same("read_restart " + file.name + "\nneighbor 0.03 bin\n" + fixes("every 4") + PORE +
+             "run 1\n");
+  for (const std::string more : {"every 1", "relax 0.4", "yhi pressure 0 every 3",
+                                 "free pressure 0", "\nfix solve all mpm/implicit euler"}) {
+    Scene other("read_restart " + file.name + "\nneighbor 0.03 bin\n" + fixes(more) + PORE +
+                "run 0\n");
+    EXPECT_LT(measured(more, water_difference(before, other) / range(before)), 1e-12);
+    other.commands("run 1\n");
+    if (more != "every 1") continue;
+    EXPECT_NEAR(measured("mean a step later", mean(other) / mean(same)), 1.0, 1e-3);
+  }
+}
+
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string scene = column(4, "2e7 1000 9810 soil m 0.4 constant 1e-5", SOIL);

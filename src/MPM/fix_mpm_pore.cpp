@@ -361,7 +361,8 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   state.declare(pressure, "mpm/pore:pressure", 1 + domain->dimension, [this](int, double *row) {
     row[0] = initial_value;
   });
-  if (waits()) state.declare(since, "mpm/pore:since");
+  // also where water does not wait now: the run that goes on from a restart file may have other conditions
+  if (can_wait()) state.declare(since, "mpm/pore:since");
   if (formulation == U_V_P) state.declare(inertia, "mpm/pore:flow", domain->dimension);
   if (can_dry())
     state.declare(content, "mpm/pore:water", [](int, double *row) {
@@ -585,7 +586,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   steps.clear();
   steps.add(in_step, present);
   find_seals();
-  if (!sets_every && needs_each_step()) every = 1;
+  if (!sets_every) every = needs_each_step() ? 1 : AUTO;
   for (auto *field : plan.fields) {
     fields.push_back(std::make_unique<MPMPore>(lmp, *field, water, conditions, gravity, relax,
                                                formulation == U_V_P));
@@ -621,12 +622,31 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   find_crossing();
   warn_of_contact();
   is_implicit = !wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();
+  if (!waits()) end_wait();
   watched.points = -1;    // velocities may have been set since the last run
   watched.flows = 0;
   // soils that dry have no other formulation, and bodies that are brought to rest no motion of their own
   watches_inertia = !inertia_known && formulation == U_P && !is_implicit && !can_dry() &&
       find_fixes<FixMPMRelax>(lmp).empty();
   if (is_implicit) init_implicit();
+}
+
+/** Where water flows in each step from now on, a run before this one, or that of a restart file, may have ended between two flows:
+ *  points have then all of their pressure, and the next flow the time of the wait, too. */
+void FixMPMPore::end_wait()
+{
+  for (int i = 0; i < atom->nlocal && can_wait(); i++) {
+    const bool changed = waited.steps > 0.0 && since[i] > 0.0 && atom->vfrac[i] > 0.0;
+    const MPMPoreSoil *const soil = changed ? soil_of(i) : nullptr;
+    if (soil) pressure[i][0] += soil->undrained(since[i], MPMPoints::get(atom)->jacobian(i), water);
+    since[i] = 0.0;
+  }
+  waited.steps = 0.0;
+  if (!is_implicit) return;
+  // explicit steps that follow begin anew
+  waited.time = 0.0;
+  rates_known = false;
+  thinned = std::numeric_limits<double>::max();
 }
 
 void FixMPMPore::find_crossing()
@@ -1018,7 +1038,7 @@ void FixMPMPore::look_for_smoothing(double duration)
                    "use {}, a smaller spacing, or fix mpm/implicit",
                    id, MPMPore::Smoothing::WAVELENGTH, 100.0 * smoothed,
                    waits() ? "every" : "relax", most.over_flow,
-                   waits() ? "no every and a small relax" : "a smaller relax");
+                   waits() ? "every 1 and a small relax" : "a smaller relax");
 }
 
 /** From one of some flows to the next, see MPMPore::inertia(): what counts is slower than waves of the lattice. */
@@ -1220,7 +1240,7 @@ void FixMPMPore::restart(char *buf)
   conducted = same[3];
   exchanged = same[4];
   coarse = same[5] != 0.0;
-  if (waits()) waited = {same[6], same[7]};
+  waited = {same[6], same[7]};
   thinned = same[8];
 }
 

@@ -130,7 +130,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   MPMRows pressure;    // [n][1+dim] with its gradient
   MPMRows inertia;     // [n][dim] flow with inertia, see MPMPoreMotion
   double *since =
-      nullptr;    // [n] J after the last flow, where water flows in one of several steps
+      nullptr;    // [n] J after the last flow, where water flows in one of several steps; 0: not known
   double *warmth = nullptr;     // [n] temperature up to which grains and water have expanded
   double *content = nullptr;    // [n] volume of water, where a soil can dry (MPMPoreSuction)
   int initial_index = -1;       // of a variable
@@ -205,7 +205,10 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void look_for_shut_pores();
   bool is_time_to_flow() const;
   bool waits() const { return every != 1; }
+  /** Could it, with other conditions? */
+  bool can_wait() const { return formulation == U_P && !can_dry(); }
   bool needs_each_step() const;
+  void end_wait();
   double reach_of_stages() const;
   int stages_of(double duration, double limit) const;
   void find_crossing();

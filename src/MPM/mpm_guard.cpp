@@ -171,17 +171,16 @@ void MPMGuard::check_places() const
     if (quadratic && lattice.periodic[d] && low + lattice.ncell[d] - high < 3.0 - NEAR) bad = false;
     if (!bad) continue;
     if (comm->me == 0)
-      if (comm->me) continue;
-    error->warning(FLERR,
-                   quadratic
-                       ? "Fix mpm {}: round-off decides whether the outermost points along {} "
-                         "reach the next node, and in frame total with scheme usl and this "
-                         "transfer about their stress, as they are in the middle of cells: "
-                         "use other ones (ppc 2), transfer apic, or scheme musl"
-                       : "Fix mpm {}: round-off decides in which cell points along {} are, and "
-                         "in frame total about their stress, as they are on faces of cells: "
-                         "use other ones (ppc), or another origin",
-                   field.id(), (char) ('x' + d));
+      error->warning(FLERR,
+                     quadratic
+                         ? "Fix mpm {}: round-off decides whether the outermost points along {} "
+                           "reach the next node, and in frame total with scheme usl and this "
+                           "transfer about their stress, as they are in the middle of cells: "
+                           "use other ones (ppc 2), transfer apic, or scheme musl"
+                         : "Fix mpm {}: round-off decides in which cell points along {} are, and "
+                           "in frame total about their stress, as they are on faces of cells: "
+                           "use other ones (ppc), or another origin",
+                     field.id(), (char) ('x' + d));
     return;
   }
 }

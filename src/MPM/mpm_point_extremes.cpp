@@ -12,6 +12,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "error.h"
 #include "math/matrix.h"
 #include "mpm_field.h"
 #include "mpm_points.h"
@@ -23,6 +24,9 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+// of its initial volume that a point has when nothing holds it any more
+static constexpr double COLLAPSED = 1.0e-3;
 
 std::string LAMMPS_NS::point_extremes(LAMMPS *lmp, const MPMField &field)
 {
@@ -58,6 +62,13 @@ std::string LAMMPS_NS::point_extremes(LAMMPS *lmp, const MPMField &field)
   if (limit < std::numeric_limits<double>::max())
     text = fmt::format(", at the end {:.2g} of the limit {:.6g}", field.step_dt() / limit, limit);
   if (all[1].value == NONE) return text;
+  if (-all[0].value < COLLAPSED && lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "Fix mpm {}: point {} has been pressed to {:.3g} of its volume: its law "
+                        "bears no more than a finite pressure, or none (corotated, "
+                        "stvenant/kirchhoff, ...), beyond which points vanish: use one that "
+                        "becomes stiff (neohookean), or check loads and units",
+                        field.id(), of_all[0], -all[0].value);
   return text +
       fmt::format(
              "\n  volumes {:.4g} (point {}) to {:.4g} (point {}) times the initial ones, speeds "

@@ -99,6 +99,12 @@ struct MPMPoreSoil {
       storage[p] = of_water * pores + of_grains * std::max(0.0, biot * J[p] - pores);
     }
   }
+
+  /** Change of the pressure as J has changed since it was this, and no water left. */
+  double undrained(double since, double J, const MPMPoreWater &water) const
+  {
+    return biot * (since / J - 1.0) / storage_at(J, water);
+  }
 };
 
 /** Flow w over the gradient i of the pressure that drives it, where i = w/mobility + quadratic w^2. */

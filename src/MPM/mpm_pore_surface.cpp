@@ -261,24 +261,27 @@ int MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
 }
 
 /** How far before the plane of a face of the box the soil ends on the line of nodes through this one, in node spacings,
- *  negative: beyond; 0 for what may be noise. sum_i x_i g_i/sum_i g_i over the line is the place of a surface, exactly
- *  for points in even distances. */
-double MPMPoreSurface::end_off_face(const int *index, int face, double wall) const
+ *  negative: beyond; 0 for what may be noise. sum_i x_i g_i/sum_i g_i over the line is the place of a surface, and sum_i g_i the share of
+ *  the area of the line that it has, both exactly for points in even distances: those of one node are off by up to 5 %. */
+double MPMPoreSurface::end_off_face(const int *index, int face, double wall, double &share) const
 {
   const auto &lattice = field.lattice;
   const int axis = face / 2;
   const double sign = face % 2 ? 1.0 : -1.0, far = profile->reach() + IS_APART;
   const double first = sign * (wall - lattice.origin[axis]) / lattice.h - sign * index[axis];
+  const double side = lattice.cell_volume() / lattice.h;
   double area = 0.0, moment = 0.0;
   int at[3] = {index[0], index[1], index[2]};
   for (int k = (int) std::ceil(first - far); k <= (int) std::floor(first + far); k++) {
     at[axis] = index[axis] + (sign > 0.0 ? k : -k);
     const int64_t number = field.grid.locate(at);
     if (number < 0) continue;
-    const double out = std::max(0.0, sign * nodes[number * field.pic.nreal + GRADIENT + axis]);
+    const double out =
+        std::max(0.0, sign * nodes[number * field.pic.nreal + GRADIENT + axis] / side);
     area += out;
     moment += out * (first - k);
   }
+  share = std::min(1.0, area);
   if (!(area > 0.0)) return 0.0;
   const double gap = moment / area;
   return gap * std::clamp((fabs(gap) - AT_FACE) / (OFF_FACE - AT_FACE), 0.0, 1.0);
@@ -328,14 +331,14 @@ void MPMPoreSurface::find_places()
         if (!(touch > 0.0)) continue;
         g[axis] *= 1.0 - touch;
         if (conditions[face].kind == MPMPoreCondition::CLOSED) continue;
-        const double off = end_off_face(index, face, wall);
+        double share;
+        const double off = end_off_face(index, face, wall, share);
         const double below = depth - off;
         if (fabs(below) >= 1.0) continue;
         double at[3] = {x[0], x[1], x[2]}, normal[3] = {0.0, 0.0, 0.0};
         at[axis] = wall - sign * off * h;
         normal[axis] = sign;
-        const double part = std::min(1.0, out / function(below));
-        add_place(stencil, face, touch * part * (1.0 - fabs(below)) * side, touch, at, normal);
+        add_place(stencil, face, touch * share * (1.0 - fabs(below)) * side, touch, at, normal);
       }
       if (conditions[FREE].kind == MPMPoreCondition::CLOSED) continue;
       for (int d = 0; d < dim && by_area(); d++) free_normals[dim * number + d] = side * g[d];

@@ -135,7 +135,7 @@ class MPMPoreSurface : protected Pointers {
   void map_volume();
   double function(double depth) const;
   double open_part(const double *x) const;
-  double end_off_face(const int *index, int face, double wall) const;
+  double end_off_face(const int *index, int face, double wall, double &share) const;
   double pressure_outside(const MPMPoreCondition &, const double *x) const;
   int add_nodes(class MPMStencil &, const double *x);
   void add_place(class MPMStencil &, int part, double area, double touch, const double *at,

@@ -37,7 +37,7 @@ using namespace MPM_NS;
 double MPMPore::undrained(const Soil &s, int i, double J) const
 {
   const double last = (*waiting)[i];
-  return last > 0.0 ? s.of.biot * (last / J - 1.0) / s.of.storage_at(J, water) : 0.0;
+  return last > 0.0 ? s.of.undrained(last, J, water) : 0.0;
 }
 
 double MPMPore::undrained(int i) const
