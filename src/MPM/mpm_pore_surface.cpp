@@ -338,7 +338,10 @@ void MPMPoreSurface::find_places()
         double at[3] = {x[0], x[1], x[2]}, normal[3] = {0.0, 0.0, 0.0};
         at[axis] = wall - sign * off * h;
         normal[axis] = sign;
-        add_place(stencil, face, touch * share * (1.0 - fabs(below)) * side, touch, at, normal);
+        // what a flux brings is its area; with pressures the resistance of the soil decides, and what a node has of that goes by its own part
+        const bool is_flux = conditions[face].kind == MPMPoreCondition::FLUX;
+        const double part = is_flux ? share : std::min(1.0, out / function(below));
+        add_place(stencil, face, touch * part * (1.0 - fabs(below)) * side, touch, at, normal);
       }
       if (conditions[FREE].kind == MPMPoreCondition::CLOSED) continue;
       for (int d = 0; d < dim && by_area(); d++) free_normals[dim * number + d] = side * g[d];

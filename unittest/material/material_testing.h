@@ -364,7 +364,6 @@ inline const Sample samples[] = {
     {"neohookean/split", "density 1000 neohookean/split 1e6 0.3"},
     {"stvenant/kirchhoff", "density 1000 stvenant/kirchhoff 1e6 0.3"},
     {"hencky", "density 1000 hencky 1e6 0.3"},
-    {"corotated", "density 1000 corotated 1e6 0.3"},
     {"mooney/rivlin", "density 1000 mooney/rivlin 0.3e6 0.1e6 2e6"},
     {"ogden", "density 1000 ogden 2e6 term 0.63e6 1.3 term 0.0012e6 5 term -0.01e6 -2"},
     {"transversely/isotropic",
@@ -466,6 +465,7 @@ inline const Sample samples[] = {
      "density 1000 hencky 1e6 0.3 viscosity maxwell term 2e5 0.1 term 1e5 0.01 term 1e5 1e-5"},
     {"maxwell linear", "density 1000 linear 1e6 0.3 viscosity maxwell term 2e5 0.1"},
     {"maxwell fluid", "density 1000 eos tait 1e6 7 viscosity maxwell term 2e5 0.1"},
+    {"corotated", "density 1000 corotated 1e6 0.3"},
 };
 
 }    // namespace material_testing

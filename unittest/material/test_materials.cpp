@@ -953,7 +953,7 @@ TEST(Definition, OfFOnlyWhatIsDeclared)
       EXPECT_LT(difference, 1e-6);    // round-off, large near a pole of eos shock
     shapes += material->uses_F();
   }
-  EXPECT_EQ(shapes, 11);    // hyperelastic ones, two of them with a viscosity
+  EXPECT_EQ(shapes, 12);    // hyperelastic ones, two of them with a viscosity
 }
 
 TEST(Definition, DescribesItself)
