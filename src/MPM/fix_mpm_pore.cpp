@@ -339,8 +339,7 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   sets_relax = options.given("relax");
   sets_stages = options.given("stages");
   sets_every = options.given("every");
-  if (!sets_every) every = needs_each_step() ? 1 : AUTO;
-  if (waits() && sets_relax)
+  if (sets_every && waits() && sets_relax)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/pore relax has no meaning with every {}, where points take the pressure of "
                "the nodes in each flow: remove it",

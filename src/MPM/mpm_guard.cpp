@@ -84,15 +84,6 @@ void MPMGuard::check_other_points()
         all[1], example_all);
 }
 
-/* ----------------------------------------------------------------------
-   In the total frame points stay where they are in their cells, also where round-off decides about strain
-   and stress. Linear and Bernstein functions have gradients that jump at faces of cells. Those of quadratic
-   functions do not, but near the end of one (grad N)^2/N does not vanish: as forces are made with one
-   grad N and strain, of new velocities, with another one, a node that only this point reaches, with
-   the mass m_p N, changes its strain by an amount that does not depend on N, unless N is zero. Only
-   the outermost points have such nodes.
-------------------------------------------------------------------------- */
-
 /** Of new points, by the tangent at rest; 0: of fluids, and where the law has no tangent of its own. */
 static double poisson_ratio(const Material &material)
 {
@@ -133,6 +124,15 @@ void MPMGuard::check_locking()
         field.id(), field.materials[k]->id, ratio);
   }
 }
+
+/* ----------------------------------------------------------------------
+   In the total frame points stay where they are in their cells, also where round-off decides about strain
+   and stress. Linear and Bernstein functions have gradients that jump at faces of cells. Those of quadratic
+   functions do not, but near the end of one (grad N)^2/N does not vanish: as forces are made with one
+   grad N and strain, of new velocities, with another one, a node that only this point reaches, with
+   the mass m_p N, changes its strain by an amount that does not depend on N, unless N is zero. Only
+   the outermost points have such nodes.
+------------------------------------------------------------------------- */
 
 void MPMGuard::check_places() const
 {

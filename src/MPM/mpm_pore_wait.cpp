@@ -55,13 +55,15 @@ void MPMPore::gather(const Soil &s, int first, int n, const double *J, const MPM
                       *const initial = atom->vfrac + first;
   double *const last = *waiting + first, *const part = in_forces.data() + first,
                 *const value = mean.data() + first, *row = state[first];
-  double change[BATCH];
-  for (int p = 0; p < n && after_wait; p++) {
-    const double since = last[p] > 0.0 ? last[p] : J[p];
-    change[p] = alpha * (since - J[p]) * initial[p] / C[p];
+  if (after_wait) {
+    double change[BATCH];
+    for (int p = 0; p < n; p++) {
+      const double since = last[p] > 0.0 ? last[p] : J[p];
+      change[p] = alpha * (since - J[p]) * initial[p] / C[p];
+    }
+    for (int p = 0; p < n; p++, row += width) value[p] = row[0] += change[p];
+    for (int p = 0; p < n; p++) part[p] *= value[p];
   }
-  for (int p = 0; p < n && after_wait; p++, row += width) value[p] = row[0] += change[p];
-  for (int p = 0; p < n && after_wait; p++) part[p] *= value[p];
   for (int p = 0; p < n; p++) largest = std::max(largest, V[p]);
   look_at_layers(lie[&s - soils.data()], first, n, V);
   std::copy_n(J, n, last);

@@ -163,6 +163,8 @@ TEST(MeshFile, PartsOfAbaqus)
   const std::string good = cube + tet + assembly;
   EXPECT_THAT(failure(replaced(good, "part=tet", "part=ball")), HasSubstr("no part ball"));
   EXPECT_THAT(failure(replaced(good, "instance=c-2", "instance=d")), HasSubstr("no instance d"));
+  EXPECT_THAT(failure(replaced(good, "one, t-1", "1")),
+              HasSubstr("of an instance it does not name"));
   EXPECT_THAT(failure(replaced(good, "one, t-1", "none")), HasSubstr("'none', which is not"));
   EXPECT_THAT(failure(replaced(good, "1, 0, 3, 90", "1, 0, 3")), HasSubstr("seven of a rotation"));
   EXPECT_THAT(failure(replaced(good, "1, 0, 3, 90", "0, 0, 3, 90")), HasSubstr("no direction"));

@@ -43,7 +43,11 @@ class AbaqusReader {
     }
     if (!row.empty()) fail("the last element has too few nodes");
     for (std::size_t k = parts.size() > 1 ? 1 : 0; k < parts.size(); k++)
-      for (const auto &set : parts[k].late) add_late(parts[k], set);
+      for (const auto &set : parts[k].late) {
+        line = set.line;
+        add_to_set(parts[k].mesh, set.name, members_of(set, parts[k].mesh, &parts[k].element_place),
+                   0);
+      }
     assemble();
     if (mesh.nodes.empty() || mesh.elements.empty()) fail("the file has no nodes or no elements");
     try {
@@ -354,9 +358,7 @@ class AbaqusReader {
       MeshSet all{each.name, {}};
       for (int k = 0; k < (int) part->mesh.elements.size(); k++) all.elements.push_back(k);
       if (instances.size() > 1) sets.push_back(all);
-      for (const auto &more : sets)
-        for (const int k : more.elements)
-          mesh.sets[number_of(mesh, more.name)].elements.push_back(element + k);
+      for (const auto &more : sets) add_to_set(mesh, more.name, more.elements, element);
     }
     for (const auto &set : of_assembly) {
       line = set.line;
@@ -364,52 +366,50 @@ class AbaqusReader {
         return upper(each.name) == upper(set.instance);
       });
       if (of == instances.end()) fail("there is no instance " + set.instance);
-      auto part = *find_part(of->part);
-      part.mesh.sets.clear();
-      add_late(part, set);
-      auto &all = mesh.sets[number_of(mesh, set.name)].elements;
-      for (const int k : part.mesh.sets[0].elements)
-        all.push_back(first[of - instances.begin()] + k);
+      const Part *const part = find_part(of->part);
+      add_to_set(mesh, set.name, members_of(set, part->mesh, &part->element_place),
+                 first[of - instances.begin()]);
     }
     for (const auto &set : parts[0].late) {    // of other sets of the assembly
-      std::vector<int> more;
       line = set.line;
-      for (const auto &word : set.members) {
-        const int other = number_of(mesh, word);
-        if (mesh.sets[other].elements.empty())
-          fail("the set " + set.name + " has the set '" + word + "', which is not defined before");
-        const auto &elements = mesh.sets[other].elements;
-        more.insert(more.end(), elements.begin(), elements.end());
-      }
-      auto &all = mesh.sets[number_of(mesh, set.name)].elements;
-      all.insert(all.end(), more.begin(), more.end());
+      add_to_set(mesh, set.name, members_of(set, mesh, nullptr), 0);
     }
   }
 
-  void add_late(Part &of, const Late &from)
+  /** Elements of a set, by their numbers, and by other sets of the mesh. elements: places by number; null: numbers tell nothing. */
+  std::vector<int> members_of(const Late &from, const Mesh &of,
+                              const std::unordered_map<int64_t, int> *elements) const
   {
-    line = from.line;
-    std::vector<int> more;
+    std::vector<int> all;
     for (const auto &word : from.members) {
       if (!word.empty() && word.find_first_not_of("0123456789") == std::string::npos) {
-        const auto found = of.element_place.find(strtoll(word.c_str(), nullptr, 10));
-        if (found != of.element_place.end()) more.push_back(found->second);
+        if (!elements)
+          fail("the set " + from.name + " has element " + word +
+               ", of an instance it does not name");
+        const auto found = elements->find(strtoll(word.c_str(), nullptr, 10));
+        if (found != elements->end()) all.push_back(found->second);
         continue;    // else an element that was left out
       }
-      const auto known =
-          std::find_if(of.mesh.sets.begin(), of.mesh.sets.end(), [&](const MeshSet &each) {
-            return upper(each.name) == upper(word);
-          });
-      if (known == of.mesh.sets.end())
+      const auto known = std::find_if(of.sets.begin(), of.sets.end(), [&](const MeshSet &each) {
+        return upper(each.name) == upper(word);
+      });
+      if (known == of.sets.end())
         fail("the set " + from.name + " has the set '" + word + "', which is not defined before");
-      more.insert(more.end(), known->elements.begin(), known->elements.end());
+      all.insert(all.end(), known->elements.begin(), known->elements.end());
     }
+    if (!from.ranges.empty() && !elements)
+      fail("the set " + from.name + " has elements of an instance that it does not name");
     for (const auto &[first, last, step] : from.ranges)
-      for (const auto &[label, place] :
-           of.element_place)    // and not all numbers, which may be very many
-        if (label >= first && label <= last && (label - first) % step == 0) more.push_back(place);
-    auto &all = of.mesh.sets[number_of(of.mesh, from.name)].elements;
-    all.insert(all.end(), more.begin(), more.end());
+      for (const auto &[label, place] : *elements)    // and not all numbers, which may be very many
+        if (label >= first && label <= last && (label - first) % step == 0) all.push_back(place);
+    return all;
+  }
+
+  /** more: places of elements from a first one on. */
+  static void add_to_set(Mesh &mesh, const std::string &of, const std::vector<int> &more, int first)
+  {
+    auto &all = mesh.sets[number_of(mesh, of)].elements;
+    for (const int k : more) all.push_back(first + k);
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
   }
