@@ -81,10 +81,7 @@ class MPMConduction : protected Pointers {
   double bound_of_rates() const { return conducted; }
   /** What surfaces at edges may have at the most: that bound, without what nodes with little capacity add to it where these get no
    *  heat through surfaces. */
-  double rate_at_edges() const
-  {
-    return idle.empty() ? conducted : std::min(conducted, usual_rate);
-  }
+  double rate_at_edges() const { return has_idle() ? std::min(conducted, usual_rate) : conducted; }
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. Then add_given(). */
   void find_rates(const double *source, Heats &power);
@@ -121,7 +118,8 @@ class MPMConduction : protected Pointers {
   bool looks_beyond_points() const;
   void extend_topology();
   /** Bernstein polynomials: nodes with so little capacity that nothing flows there, and no heat may come in. */
-  bool is_idle(int64_t node) const { return !idle.empty() && idle[node]; }
+  bool has_idle() const { return !idle.empty(); }
+  bool is_idle(int64_t node) const { return has_idle() && idle[node]; }
   /** Capacities of nodes for heat through faces: none of these. */
   const std::vector<double> &face_capacity();
 
