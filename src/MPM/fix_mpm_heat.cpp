@@ -840,7 +840,7 @@ int FixMPMHeat::count_stages()
     if (field.faces.any())
       field.faces.begin_step(field.face_capacity(), field.node_volume(),
                              weighs_faces(field.field) ? &body_of(field.field) : nullptr,
-                             field.temperature, &mine[NRATE * k + 1]);
+                             field.face_gradient(), field.temperature, &mine[NRATE * k + 1]);
   }
   for (auto &contact : contacts) mine.push_back(contact->begin_step());
   for (auto &skin : skins) mine.push_back(skin->begin_step());
