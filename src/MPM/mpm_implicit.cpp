@@ -1484,15 +1484,21 @@ std::vector<double> MPMImplicit::give_back(const std::vector<double> &u)
 
 /* ----------------------------------------------------------------------
    The reactions of walls are velocities of the size dt f/m for a while, which in statics with a time step of any length can be
-   large: what node actions make of them is v with a rounding error of that size. Points get v itself
+   large: what node actions make of them is v with a rounding error of that size. Points get v itself, and so does the ledger in
+   statics, which would have that error times the impulses of forces, as long as the step is
 ------------------------------------------------------------------------- */
+
+void MPMImplicit::set_velocities()
+{
+  each_record([&](const Member &, int64_t n, double *record) {
+    for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
+  });
+}
 
 void MPMImplicit::finish()
 {
   if (field.ledger.on) account();
-  each_record([&](const Member &, int64_t n, double *record) {
-    for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
-  });
+  set_velocities();
   if (options.time == MPMImplicitOptions::MIDPOINT) find_end_of_motion();
   if (options.keeps_acceleration()) keep_accelerations();
 }

@@ -129,7 +129,9 @@ class MPMImplicit : private MPMNodeSystem {
    *  of the step, with all the impulses that they bear. Returns, in statics, the kinetic energy that there is not, of nodes
    *  that this rank owns [mass velocity^2], for each field. */
   std::vector<double> step(double dt);
-  /** Node actions have acted: velocities of the step, and works of forces that the ledger does not know. */
+  /** Node actions have acted: nodes get the velocities of the step. */
+  void set_velocities();
+  /** That, and works of forces that the ledger does not know. */
   void finish();
   /** Points have moved: those of affine transfers get what their velocities at the end of the step have more than the mean ones that they
    *  have moved with. */
