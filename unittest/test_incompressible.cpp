@@ -136,6 +136,27 @@ void measure(const std::vector<double> &t, const std::vector<double> &m, double 
       std::log((peaks[0] + peaks[1]) / (peaks[last - 1] + peaks[last])) / (times[last] - times[1]);
 }
 
+/** Largest error of the velocity along x in the middle of a cavity of n cells at the heights y: that of a line through the points next to each. */
+double error_of_profile(Scene &run, int n, const std::vector<double> &y,
+                        const std::vector<double> &u)
+{
+  double worst = 0.0;
+  for (std::size_t k = 0; k < y.size(); k++) {
+    double s = 0.0, sy = 0.0, syy = 0.0, su = 0.0, suy = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double dy = run.x()[i][1] - y[k];
+      if (std::fabs(run.x()[i][0] - 0.5) > 1.0 / n || std::fabs(dy) > 1.0 / n) continue;
+      s += 1.0;
+      sy += dy;
+      syy += dy * dy;
+      su += run.v()[i][0];
+      suy += dy * run.v()[i][0];
+    }
+    worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
+  }
+  return worst;
+}
+
 }    // namespace
 
 // O1 of Taylor and Green, Re = 100, 64 x 64, at t = 1: errors of velocity and pressure, divergence, and points in cells; at rest and in a stream,
@@ -362,23 +383,10 @@ SERIAL_TEST(Cavity, Profile)
       plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.0078125\n" +
       "fix w all mpm/incompressible 0.015625 1 viscosity 0.01 wall yhi stick 1 0 wall xlo stick "
       "wall xhi stick wall ylo stick tolerance 1e-6\ntimestep 0.006\nrun 2000\n");
-  const double y[] = {0.8516, 0.7344, 0.6172, 0.5, 0.4531, 0.2813, 0.1719, 0.1016},
-               u[] = {0.23655, 0.00419, -0.13880, -0.20915, -0.21398, -0.15767, -0.10174, -0.06443};
-  double worst = 0.0;
-  for (int k = 0; k < 8; k++) {    // a line through the points next to the middle
-    double s = 0.0, sy = 0.0, syy = 0.0, su = 0.0, suy = 0.0;
-    for (int i = 0; i < run.n(); i++) {
-      const double dy = run.x()[i][1] - y[k];
-      if (std::fabs(run.x()[i][0] - 0.5) > 1.0 / n || std::fabs(dy) > 1.0 / n) continue;
-      s += 1.0;
-      sy += dy;
-      syy += dy * dy;
-      su += run.v()[i][0];
-      suy += dy * run.v()[i][0];
-    }
-    worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
-  }
-  EXPECT_LT(measured("largest error of the profile", worst), 0.008);
+  const std::vector<double> y = {0.8516, 0.7344, 0.6172, 0.5, 0.4531, 0.2813, 0.1719, 0.1016},
+                            u = {0.23655,  0.00419,  -0.13880, -0.20915,
+                                 -0.21398, -0.15767, -0.10174, -0.06443};
+  EXPECT_LT(measured("largest error of the profile", error_of_profile(run, n, y, u)), 0.008);
   EXPECT_EQ(run.n(), 4 * n * n);
   EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);    // no voids
 }
@@ -388,33 +396,35 @@ SERIAL_TEST(Cavity, Profile)
 SERIAL_TEST(Cavity, SharpPaths)
 {
   const int n = 32;
-  const double y[] = {0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9},
-               u[] = {-0.143991, -0.213816, -0.278872, -0.321256, -0.325493, -0.236991,
-                      -0.115051, 0.000871,  0.120708,  0.238760,  0.290440,  0.352734};
+  const std::vector<double> y = {0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9},
+                            u = {-0.143991, -0.213816, -0.278872, -0.321256, -0.325493, -0.236991,
+                                 -0.115051, 0.000871,  0.120708,  0.238760,  0.290440,  0.352734};
   const auto error_of = [&](const std::string &options) {
     Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.015625\n" +
               "fix w all mpm/incompressible 0.03125 1 viscosity 0.0025 wall yhi stick 1 0 wall xlo "
               "stick wall xhi stick wall ylo stick tolerance 1e-6 " +
               options + "\ntimestep 0.046875\nrun 640\n");
-    double worst = 0.0;
-    for (int k = 0; k < 12; k++) {
-      double s = 0.0, sy = 0.0, syy = 0.0, su = 0.0, suy = 0.0;
-      for (int i = 0; i < run.n(); i++) {
-        const double dy = run.x()[i][1] - y[k];
-        if (std::fabs(run.x()[i][0] - 0.5) > 1.0 / n || std::fabs(dy) > 1.0 / n) continue;
-        s += 1.0;
-        sy += dy;
-        syy += dy * dy;
-        su += run.v()[i][0];
-        suy += dy * run.v()[i][0];
-      }
-      worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
-    }
     EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);
-    return worst;
+    return error_of_profile(run, n, y, u);
   };
   EXPECT_LT(measured("largest error of the profile", error_of("reflect 0.9 sharp yes")), 0.030);
   EXPECT_GT(measured("without sharp paths", error_of("reflect 0.9")), 0.032);
+}
+
+// sharp paths are the same on four ranks, and to the last bit from a restart file
+TEST(Cavity, SharpPathsRanksAndRestart)
+{
+  const std::string last = "fix dt all mpm/dt 0.8 every 1\n";
+  const auto fixes = "fix w all mpm/incompressible 0.0625 1 viscosity 0.0025 reflect 0.9 sharp yes "
+                     "tolerance 1e-12 wall yhi stick 1 0 wall xlo stick wall xhi stick wall ylo "
+                     "stick\n" +
+      last;
+  const auto scene =
+      plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.03125\n" + fixes;
+  OnRanks run(scene, "run 40\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
+  EXPECT_LT(measured("difference", run.difference()), 1e-9);
+  Continued again(scene, 13, "neighbor 0.02 bin\n" + fixes, 20);
+  EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
 }
 
 // at rest below a lid: what is next to this is as fast after the first step, but nothing is faster, also with more than a cell per step
@@ -759,6 +769,15 @@ SERIAL_TEST(Incompressible, BadInput)
        {fix + "0.1 1000 tolerance 0", "tolerance"},
        {fix + "0.1 1000 iterations 0", "iterations"},
        {fix + "0.1 1000 law newton", "law"},
+       {fix + "0.1 1000 sharp maybe", "maybe"},
+       {"region stone sphere 0.5 0.5 0 0.2\n" + fix + "0.1 1000 region stone sharp yes",
+        "sharp is for flows between walls of the box"},
+       {"region stone sphere 0.5 0.5 0 0.2\n" + fix +
+            "0.1 1000 sharp yes viscosity 1 implicit yes stick stone",
+        "sharp is for flows between walls of the box"},
+       {"group half id <= 200\nfix m half mpm/material density 1000 neohookean 1e3 0.49\n" + fix +
+            "0.1 1000 solid half sharp yes",
+        "sharp is for flows between walls of the box"},
        {fix + "0.1 1000\nfix n all nve", "also integrated by"},
        {fix + "0.1 1000\nfix grid all mpm 0.1\nfix m all mpm/material density 1000 linear 1e5 0.3",
         "also integrated by"},
@@ -778,6 +797,12 @@ SERIAL_TEST(Incompressible, BadInput)
           fix + "0.1 1000",
       "requires material points");
   expect_error(plane("si", "s f", "0 1 0 1", 1, 0.02) + fix + "0.1 1000", "shrink-wrapped");
+  EXPECT_EQ(lines_that_say(plain +
+                               "region stone sphere 0.5 0.5 0 0.2\ndelete_atoms region stone\n" +
+                               fix + "0.1 1000 region stone sharp no\ntimestep 0.01\nrun 1\n",
+                           "ERROR")
+                .size(),
+            0u);    // what is not asked for
   for (const auto &[h, warnings] : {std::pair{"0.05", 0u}, std::pair{"0.025", 1u}})
     EXPECT_EQ(lines_that_say(plain + fix + h + " 1000\ntimestep 0.01\nrun 1\nrun 1\n",
                              "are larger than a cell")

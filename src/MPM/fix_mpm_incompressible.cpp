@@ -268,7 +268,7 @@ Options MPMIncompressibleOptions::declare(int dim)
          "cannot be used with implicit yes: use explicit viscosity, or leave solid out"},
         {!solid_groups.empty() && reflect > 0.0, "reflect",
          "would count forces of solids twice, and cannot be used with solid: leave it out"},
-        {!region_ids.empty() || !solid_groups.empty(), "sharp",
+        {sharp && (!region_ids.empty() || !solid_groups.empty()), "sharp",
          "is for flows between walls of the box, and cannot be used with region, stick, or solid: "
          "leave it out"},
         {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"},
