@@ -764,6 +764,8 @@ SERIAL_TEST(Incompressible, BadInput)
        {fix + "0.1 1000 spread 2", "spread"},
        {fix + "0.1 1000 wall zlo slip", "zlo"},
        {fix + "0.1 1000 wall xlo rough", "rough"},
+       {fix + "0.1 1000 wall xhi stick 0 1 wall xlo slip wall xhi stick",
+        "wall has the same face twice"},
        {fix + "0.1 1000 wall ylo slip", "periodic face"},
        {fix + "0.1 1000 wall xlo stick 1 0", "out of its plane"},
        {fix + "0.1 1000 tolerance 0", "tolerance"},
@@ -904,6 +906,11 @@ SERIAL_TEST(Incompressible, Others)
       "fix w left mpm/incompressible 0.1 1000\ntimestep 1e-5\n";
   expect_error(scene + "fix v right mpm/incompressible 0.1 900\nrun 1\n", "go through each other");
   EXPECT_EQ(lines_that_say(scene + "run 1\n", "as neither feels").size(), 0u);
+  EXPECT_EQ(
+      lines_that_say(scene + "run 1\n", " 200 material points belong to no fix mpm/incompressible")
+          .size(),
+      1u);
+  EXPECT_EQ(lines_that_say(scene + "fix v right nve\nrun 1\n", "belong to no fix").size(), 0u);
   EXPECT_EQ(
       lines_that_say(scene +
                          "fix grid right mpm 0.1\nfix m right mpm/material density 1000 linear "
