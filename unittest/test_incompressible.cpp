@@ -40,14 +40,18 @@ VortexErrors errors_of(Scene &run, int n, double nu, double drift)
   const double t = run.time(), k = 2.0 * PI, left = std::exp(-2.0 * nu * k * k * t);
   std::vector<int> count(n * n, 0);
   double sum = 0.0, square = 0.0, most = 0.0, p_sum = 0.0, p_square = 0.0, mean = 0.0;
-  for (int i = 0; i < run.n(); i++) mean -= run.points().tau[i][0] / run.n();
+  const auto pressure = [&run](int i) {
+    const double *const stress = run.points().tau[i];
+    return -(stress[0] + stress[1] + stress[2]) / 3.0;
+  };
+  for (int i = 0; i < run.n(); i++) mean += pressure(i) / run.n();
   for (int i = 0; i < run.n(); i++) {
     const double x = run.x()[i][0] - drift * t, y = run.x()[i][1];
     const double u = -std::cos(k * x) * std::sin(k * y) * left,
                  v = std::sin(k * x) * std::cos(k * y) * left,
                  p = -0.25 * (std::cos(2.0 * k * x) + std::cos(2.0 * k * y)) * left * left;
     const double du = run.v()[i][0] - drift - u, dv = run.v()[i][1] - v;
-    const double dp = -run.points().tau[i][0] - mean - p;
+    const double dp = pressure(i) - mean - p;
     sum += du * du + dv * dv;
     square += u * u + v * v;
     most = std::max(most, std::hypot(du, dv));
@@ -248,6 +252,38 @@ SERIAL_TEST(Vortices, ReflectKeepsEnergy)
     lost[k] = measured("energy lost", 1.0 - run.fix("w")->compute_vector(KINETIC) / 0.25);
   }
   EXPECT_LT(lost[1], 0.5 * lost[0]);
+}
+
+// the stress of points has that of viscosity, whatever they keep of velocities: between plates that move it is the same everywhere,
+// in 2d and 3d, and does not touch the pressure
+SERIAL_TEST(Plates, StressOfPoints)
+{
+  for (const char *const options :
+       {"", "implicit yes", "transfer pic", "transfer apic reflect 0.5"}) {
+    Scene flat(plane("si", "p f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.05\n" +
+               "variable u atom 3*y\nvelocity all set v_u 0 0\n"
+               "fix w all mpm/incompressible 0.1 1 viscosity 2 wall ylo stick wall yhi stick 3 0 " +
+               options +
+               "\nfix g all gravity 5 vector 0 -1 0\ncompute s all mpm/atom stress/* pressure\n"
+               "compute low all reduce min c_s[*]\ncompute high all reduce max c_s[*]\n"
+               "compute mean all reduce ave c_s[7]\ntimestep 0.0005\nrun 2\n");
+    for (const char *const of : {"c_low", "c_high"})
+      EXPECT_NEAR(flat.evaluate(std::string(of) + "[4]"), 6.0, 1e-9) << options;
+    EXPECT_NEAR(measured("pressure of the floor to the lid", flat.evaluate("c_high[7]-c_low[7]")),
+                5.0 * 0.95, 1e-6);
+    EXPECT_NEAR(flat.evaluate("c_low[1]+c_high[7]"), 0.0, 1e-9);
+    EXPECT_NEAR(flat.evaluate("c_low[3]+c_high[7]"), 0.0, 1e-9);
+  }
+  Scene deep(box(3, "si", "p p f", "0 0.4 0 0.4 0 1", 1, 0.02) +
+             "create_points 1 box spacing 0.05\nvariable u atom 3*z\nvariable v atom -1*z\n"
+             "velocity all set v_u v_v 0\nfix w all mpm/incompressible 0.1 1 viscosity 2 wall zlo "
+             "stick wall zhi "
+             "stick 3 -1 0\ncompute s all mpm/atom stress/*\ncompute low all reduce min c_s[*]\n"
+             "compute high all reduce max c_s[*]\ntimestep 0.0005\nrun 2\n");
+  const double exact[] = {0.0, 0.0, 0.0, 0.0, 6.0, -2.0};
+  for (int k = 0; k < 6; k++)
+    for (const char *const of : {"c_low", "c_high"})
+      EXPECT_NEAR(deep.evaluate(strprintf("%s[%d]", of, k + 1)), exact[k], 1e-9);
 }
 
 // flow between plates, one of which moves, or under a force: viscosity, and walls without slip (H2)

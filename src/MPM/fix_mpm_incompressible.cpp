@@ -868,7 +868,8 @@ void FixMPMIncompressible::initial_integrate(int)
                                        solids.get(),
                                        transfer == AUTO ? unseen : nullptr,
                                        of_shift,
-                                       sharp ? paths.data() : nullptr};
+                                       sharp ? paths.data() : nullptr,
+                                       viscosity};
   if (solids) solids->deform(velocity.data(), dt, viscosity);
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
