@@ -932,6 +932,27 @@ TEST(Tank, FirstTimeStep)
   }
 }
 
+// a column that collapses, hits a wall, and splashes: pressures of all points are those of water, also next to cells that are wet as they
+// are surrounded by others, and that points fill by less than one half
+SERIAL_TEST(Splash, PressuresOfPoints)
+{
+  Scene run(plane("si", "f f", "0 1 0 1", 1, 0.03) +
+            "region water block 0 0.4 0 0.6 INF INF\ncreate_points 1 region water spacing 0.0125\n"
+            "fix w all mpm/incompressible 0.025 1000\nfix g all gravity 9.81 vector 0 -1 0\n"
+            "fix dt all mpm/dt 0.5 every 1 max 0.01 until 1.0\n");
+  double least = 0.0, most = 0.0;
+  run.each_step([&](double **) {
+    for (int i = 0; i < run.n(); i++) {
+      least = std::min(least, -run.points().tau[i][0]);
+      most = std::max(most, -run.points().tau[i][0]);
+    }
+  });
+  run.commands("run 2000\n");
+  const double head = 1000.0 * 9.81 * 0.6;
+  EXPECT_GT(measured("least pressure over that of the column", least / head), -5.0);
+  EXPECT_LT(measured("greatest", most / head), 10.0);
+}
+
 // bodies of others, which a flow would go through
 SERIAL_TEST(Incompressible, Others)
 {
