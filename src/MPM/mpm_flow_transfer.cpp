@@ -321,6 +321,20 @@ template <int dim> void move_in_field(const double *shift, double *v, double *G)
   }
 }
 
+/** Of an incompressible fluid, without what its pressure has. G: gradients of the velocity, in units of the lattice. */
+template <int dim> void add_viscous(double viscosity, double h, const double *G, double *stress)
+{
+  static constexpr int PAIRS[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  const double mu = viscosity / unit_of<dim>(0, h);
+  double third = 0.0;
+  for (int c = 0; c < dim; c++) third += G[dim * c + c] / 3.0;
+  for (int c = 0; c < 3; c++) stress[c] += 2.0 * mu * ((c < dim ? G[dim * c + c] : 0.0) - third);
+  for (int k = 0; k < (dim == 2 ? 1 : 3); k++) {
+    const auto &[c, d] = PAIRS[k];
+    stress[3 + k] += mu * (G[dim * c + d] + G[dim * d + c]);
+  }
+}
+
 template <int dim>
 bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double *velocity,
          const MPMFlowUpdate &update, const double *pressure, MPMRows stress)
@@ -361,7 +375,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       const bool solid = update.solids && update.solids->holds(i);
       const int nfield = of_shift + (update.shift && !solid ? 1 : 0);
       double at_point[3][dim], G[NSLOPE], bend[dim], more[dim] = {}, G_more[NSLOPE];
-      points.gradient
+      points.gradient || update.viscosity > 0.0
           ? interpolate_all<dim, true>(nfield, around.fields, w, at_point, G, bend)
           : interpolate_all<dim, false>(nfield, around.fields, w, at_point, nullptr, nullptr);
       const double *const now = at_point[0];
@@ -374,6 +388,8 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.solids->set_pressure(stress[i], p);
       else
         for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
+      if (!solid && update.viscosity > 0.0)
+        add_viscous<dim>(update.viscosity, cells.lattice.h, G, stress[i]);
 
       if (update.inflow && update.inflow->carry(x, v, points.dt)) {
         if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);
