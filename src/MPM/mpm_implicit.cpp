@@ -993,14 +993,21 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
           for (int a = 0; a < width && place[of_rows[i][j]] == k; a++)
             rows[i][j].P[width * a + column] = unit[width * local[i].node + a];
     }
+  // a node has nothing of most of the others: what it has none of would only cost time in levels and in the rim
   for (std::size_t i = 0; i < local.size(); i++) {
+    std::vector<SplineMultigrid::Tie> kept;
     bool held = false;
-    for (int k = 0; k < (int) rows[i].size(); k++)
+    for (std::size_t k = 0; k < rows[i].size(); k++) {
+      const bool own = of_rows[i][k] == local[i].number;
+      double change = 0.0;
       for (int ab = 0; ab < width * width; ab++) {
-        const double of_unity = of_rows[i][k] == local[i].number && ab % (width + 1) == 0;
-        held = held || std::fabs(rows[i][k].P[ab] - of_unity) > PROJECTED;
+        const double of_unity = own && ab % (width + 1) == 0;
+        change = std::max(change, std::fabs(rows[i][k].P[ab] - of_unity));
       }
-    if (held) of_nodes.insert(of_nodes.end(), rows[i].begin(), rows[i].end());
+      held = held || change > PROJECTED;
+      if (own || change > PROJECTED) kept.push_back(rows[i][k]);
+    }
+    if (held) of_nodes.insert(of_nodes.end(), kept.begin(), kept.end());
   }
 }
 
