@@ -75,7 +75,7 @@ CODE
   }
 
   objects=()
-  for source in "$src"/{declare,image,lattice,law,material,mesh,transfer}/*.cpp; do
+  for source in "$src"/{declare,image,lattice,law,material,mesh,table,transfer}/*.cpp; do
     case $source in *_isa.cpp) continue ;; esac
     compile "$source" "$(object_of "$source")"
   done

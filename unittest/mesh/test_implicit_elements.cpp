@@ -54,6 +54,7 @@ SERIAL_TEST(Truss, SnapsThrough)
   };
   const Case cases[] = {{0.1, 0.00038109, 0.042360, 0.215566, "neohookean", "frame total"},
                         {0.1, 0.00038109, 0.042360, 0.215566, "neohookean", ""},
+                        {0.5, 0.03838374, 0.222120, 1.088544, "neohookean", "frame total"},
                         {1.0, 0.18740328, 0.490175, 2.229740, "neohookean", "frame total"},
                         {0.1, 0.00038109, 0.042360, 0.215566, "corotated", "frame total"},
                         {0.5, 0.03838374, 0.222120, 1.088544, "corotated", "frame total"},

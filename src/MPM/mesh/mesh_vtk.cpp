@@ -68,7 +68,8 @@ class VtkCells {
 
   void make_elements()
   {
-    if ((int64_t) types.size() != ncells) fail("CELL_TYPES are not those of all cells");
+    if ((int64_t) types.size() != ncells)
+      fail("the types of cells (CELL_TYPES) are not those of all cells");
     for (int64_t k = 0; k < ncells; k++) {
       const int64_t first = offsets[k], n = offsets[k + 1] - first;
       const int type = (int) types[k];

@@ -240,7 +240,8 @@ template <int DIM, Shape SHAPE, bool LESS> struct NodeRows {
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
         MPM_UNROLL
-        for (int j = 0; i != X && j < M; j++) row[i][j] = row[i][j] - row[X][j];
+        for (int j = 0; j < M; j++)
+          if (i != X) row[i][j] = row[i][j] - row[X][j];
       }
     }
   }
@@ -258,7 +259,8 @@ template <int DIM, Shape SHAPE, bool LESS> struct NodeRows {
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
         MPM_UNROLL
-        for (int j = 0; i != X && j < M; j++) row[X][j] = row[X][j] - row[i][j];
+        for (int j = 0; j < M; j++)
+          if (i != X) row[X][j] = row[X][j] - row[i][j];
       }
       MPM_UNROLL
       for (int i = 0; i < N; i++) {
