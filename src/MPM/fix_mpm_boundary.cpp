@@ -32,9 +32,9 @@
    with the wall, in each component, as the first node inside has of it (a field that rises from the
    wall has less at the wall than there); what is above remains in v_old, and the points lose it.
    v_old relative to the wall means: to its velocity in the last step. In its first step, a wall
-   counts as having moved like this before. Separating walls, regions, walls that turn, and friction
-   leave v_old alone; what these prescribe is updated as in PIC next to them. PIC and APIC have no use
-   for v_old.
+   counts as having moved like this before. Separating walls, walls that turn, and friction leave v_old
+   alone, and so do regions but for those that stick or slip at their surface (act_on_crossing()); what
+   these prescribe is updated as in PIC next to them. PIC and APIC have no use for v_old.
 
    AFLIP leaves v_old alone, too. With affine matrices the nodes at the wall get the velocity that the
    field has there, and no mean over some distance, so that a vibration loses nothing: the bar above
