@@ -265,7 +265,8 @@ static const char *const SKIN = "neighbor 0.5 bin\n";
 static const Change doubts[] = {
     {"None", RUN, RUN, ""},
     {"NoTimeStep", TIMESTEP, "",
-     "time step 1e-08 is the default of units si, .* limit 0\\.26[0-9]* .*: use fix mpm/dt 0\\.5"},
+     "time step 1e-08, which no command has set since units si or read_restart, .* limit "
+     "0\\.26[0-9]* .*: use fix mpm/dt 0\\.5"},
     {"SmallTimeStep", TIMESTEP, "timestep 1e-8\n",
      "time step 1e-08 is far below the limit 0\\.26[0-9]* of .* would take 1[0-9]{7} times fewer"},
     {"TimeStepOfFix", TIMESTEP, "fix dt all mpm/dt 0.5\n", ""},

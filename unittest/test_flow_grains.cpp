@@ -459,6 +459,7 @@ SERIAL_TEST(Grain, BadInput)
       scene,
       {{w + d + "2.0 0.1", "the density of the fluid is 2, but that of fix w"},
        {w + "reflect 0.5" + d + "1.0 0.1", "reflect cannot be used with grains"},
+       {w + "sharp yes" + d + "1.0 0.1", "sharp cannot be used with grains"},
        {w + "viscosity 1.0 implicit yes" + d + "1.0 0.1",
         "implicit yes cannot be used with grains"},
        {w + "\nfix d all mpm/immersed w 1.0 0.1", "are material points: use a group of grains"},

@@ -284,6 +284,7 @@ SERIAL_TEST(Channel, BadInput)
   expect_refused(
       plain,
       {{flow + "reflect 0.5" + emit, "reflect cannot be used with points of fix mpm/emit"},
+       {flow + "sharp yes" + emit, "sharp cannot be used with points of fix mpm/emit"},
        {flow + emit + " move 1 0 0", "move cannot be used with fix w"},
        {flow + emit + " temperature 3", "temperature cannot be used with fix w"},
        {flow +

@@ -167,4 +167,11 @@ SERIAL_TEST(Liquids, BadInput)
                   {fix + "liquid all 800 viscosity 1", "leave one of them out"},
                   {fix + "liquid all 800 tension 1", "leave one of them out"}},
                  "timestep 0.001\nrun 1\n");
+
+  // a group that is empty, as its points were made later, is told of once; one that has some is not
+  const std::string last = " 800\ntimestep 0.001\nrun 1\nrun 1\n",
+                    say = "keyword liquid has no points of this fix";
+  EXPECT_EQ(lines_that_say(plain + "group oil empty\n" + fix + "liquid oil" + last, say).size(),
+            1u);
+  EXPECT_EQ(lines_that_say(plain + "group oil id 1\n" + fix + "liquid oil" + last, say).size(), 0u);
 }

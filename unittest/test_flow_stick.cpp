@@ -84,6 +84,44 @@ std::string fixes(double h)
 
 }    // namespace
 
+// plates with a slope of 1:2 in a periodic box: drag of walls that are oblique to the lattice, with 8 and 16 cells between them
+SERIAL_TEST(Stick, InclinedPlates)
+{
+  const double a = 0.193,
+               period =
+                   2.0 / std::sqrt(5.0);    // half the gap; distance of plates and their images
+  std::string regions;
+  const auto plane_at = [&](const std::string &name, double s, int sign) {
+    regions += strprintf("region %s plane %.17g %.17g 0 %d %d 0\n", name.c_str(),
+                         -s / std::sqrt(5.0), 2.0 * s / std::sqrt(5.0), -sign, 2 * sign);
+  };
+  plane_at("a1", a, 1);
+  plane_at("a2", period - a, -1);
+  plane_at("b1", -a, -1);
+  plane_at("b2", a - period, 1);
+  plane_at("c1", a, -1);
+  plane_at("c2", -a, 1);
+  plane_at("high", period - a, 1);
+  plane_at("low", a - period, -1);
+  regions += "region a intersect 2 a1 a2\nregion b intersect 2 b1 b2\nregion c intersect 2 c1 c2\n"
+             "region fluid union 3 c high low\n";
+  for (const auto &[n, bound] : {std::pair(20, 0.06), {40, 0.035}}) {
+    Scene run(
+        plane("si", "p p", "0 2 0 1", 1, 0.01) + regions +
+        strprintf("create_points 1 region fluid spacing %.17g cut yes outside ignore\n"
+                  "fix w all mpm/incompressible %.17g 1 viscosity 1 implicit yes stick a stick b\n",
+                  0.5 / n, 1.0 / n) +
+        "fix g all gravity 1 vector 2 1 0\ntimestep 0.5\nrun 6\n");
+    double flow = 0.0, mass = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      flow += run.lmp->atom->rmass[i] * (2.0 * run.v()[i][0] + run.v()[i][1]) / std::sqrt(5.0);
+      mass += run.lmp->atom->rmass[i];
+    }
+    EXPECT_NEAR(measured(strprintf("%d cells: mean velocity", n), flow / mass / (a * a / 3.0)), 1.0,
+                bound);
+  }
+}
+
 // of second order, with two and four cells in the radius
 SERIAL_TEST(Stick, ArrayOfCylinders)
 {

@@ -742,6 +742,10 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"group a type 1\nfix heat a mpm/heat", "use group all"},
                   {"fix heat all mpm/heat\nfix more all mpm/heat", "more than one"}},
                  "run 1\n");
+  for (const char *cold : {"temperature -20", "convection 5 -20"})
+    expect_error(replaced(replaced(plain, "units lj", "units si"), "1 0 1", "1 300 1") +
+                     "fix heat all mpm/heat xhi radiation 0.9 300 xlo " + cold + "\nrun 1\n",
+                 "xlo: the value = -20, but it must be an absolute temperature");
   expect_error(replaced(plain, "conducting 1 0 1", "adiabatic 1 0") +
                    "fix heat all mpm/heat\nrun 1\n",
                "thermal conducting");

@@ -208,6 +208,26 @@ SERIAL_TEST(Radiation, SteadyState)
   }
 }
 
+// the same with Bernstein polynomials, at a free end and at a region, wherever these are in a cell but next to a side of it
+SERIAL_TEST(Radiation, SteadyStateOfBernstein)
+{
+  constexpr double h = 0.005, flux = 55.6 * (1000.0 - 927.0040) / 0.1;
+  for (const char *kind : {"surface", "region wall"})
+    for (const double shift : {0.0, 0.5, 1.0, 1.6}) {
+      Scene run(plane("si", "f p", "0 0.15 0 0.02", 1, 0.1 * h) +
+                "region bar block 0 0.1 INF INF INF INF\n"
+                "region wall block 0.1 0.2 INF INF INF INF\n"
+                "create_points 1 region bar spacing 0.0025\n" +
+                strprintf("fix grid all mpm %g origin %.17g 0 shape bernstein frame total\n", h,
+                          0.1 - shift * h) +
+                "fix m all mpm/material density 7850 eos linear 1e-16 thermal conducting 460 1000 "
+                "55.6\nfix heat all mpm/heat xlo temperature 1000 " +
+                kind + " radiation 0.98 300 time euler\ntimestep 1e7\nrun 4\n");
+      const double power = run.fix_vector("heat", 10)[9];
+      EXPECT_NEAR(measured(strprintf("%s, %g", kind, shift), power / (-0.02 * flux)), 1.0, 0.0005);
+    }
+}
+
 // heat is kept to round-off while bodies collide, however inexact solutions are, and the ledger closes
 PARAMETER_TEST(Closed, KeepsHeat, const char *,
                Values("time euler tolerance 1e-2", "time sdirk2 tolerance 1e-2",

@@ -161,6 +161,34 @@ SERIAL_TEST(WallOfBernstein, LightNodes)
   }
 }
 
+// a region or a face of the box need not be where the body ends, which can be in a cell with one layer of points: all heat gets out of there but
+// what a gap before a face takes of the area, and but for a cell with next to no capacity (0.3)
+SERIAL_TEST(WallOfBernstein, EndsNextToIt)
+{
+  constexpr int n = 20;
+  constexpr double h = 1.0 / n, exact = 1.0 / 1.1;
+  for (const bool face : {false, true})
+    for (const double off : {-0.2, -0.1, 0.1, 0.2})
+      for (const double beyond : {0.3, 0.4, 0.5, 0.75, 1.5}) {
+        const std::string end = strprintf("%.17g", 1.0 + off * h);
+        std::string scene =
+            replaced(bernstein_bar(n, beyond,
+                                   std::string("xlo temperature 1.0 time sdirk2 ") +
+                                       (face ? "xhi" : "region wall") + " convection 10 0.0"),
+                     "block 1 2", "block " + end + " 2");
+        if (face) scene = replaced(scene, "block 0 1.5", "block 0 " + end);
+        Scene run(scene);
+        run_to(run, 20.0, 1.0);
+        const double power = run.fix_vector("heat", 10)[face ? 1 : 9];
+        EXPECT_NEAR(measured(strprintf("%s, %g, %g", face ? "face" : "region", off, beyond),
+                             power / (-4.0 * h * exact)),
+                    1.0,
+                    beyond < 0.35 ? 0.015
+                        : face    ? 0.008
+                                  : 0.003);
+      }
+}
+
 // linear functions with points at nodes, to rounding on one side or the other: nodes behind the surface have next to no capacity, but no heat is lost
 // in them, and the error is one of first order
 SERIAL_TEST(ConvectionOfLinear, PointsAtNodes)

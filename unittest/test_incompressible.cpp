@@ -40,14 +40,18 @@ VortexErrors errors_of(Scene &run, int n, double nu, double drift)
   const double t = run.time(), k = 2.0 * PI, left = std::exp(-2.0 * nu * k * k * t);
   std::vector<int> count(n * n, 0);
   double sum = 0.0, square = 0.0, most = 0.0, p_sum = 0.0, p_square = 0.0, mean = 0.0;
-  for (int i = 0; i < run.n(); i++) mean -= run.points().tau[i][0] / run.n();
+  const auto pressure = [&run](int i) {
+    const double *const stress = run.points().tau[i];
+    return -(stress[0] + stress[1] + stress[2]) / 3.0;
+  };
+  for (int i = 0; i < run.n(); i++) mean += pressure(i) / run.n();
   for (int i = 0; i < run.n(); i++) {
     const double x = run.x()[i][0] - drift * t, y = run.x()[i][1];
     const double u = -std::cos(k * x) * std::sin(k * y) * left,
                  v = std::sin(k * x) * std::cos(k * y) * left,
                  p = -0.25 * (std::cos(2.0 * k * x) + std::cos(2.0 * k * y)) * left * left;
     const double du = run.v()[i][0] - drift - u, dv = run.v()[i][1] - v;
-    const double dp = -run.points().tau[i][0] - mean - p;
+    const double dp = pressure(i) - mean - p;
     sum += du * du + dv * dv;
     square += u * u + v * v;
     most = std::max(most, std::hypot(du, dv));
@@ -134,6 +138,27 @@ void measure(const std::vector<double> &t, const std::vector<double> &m, double 
   const std::size_t last = peaks.size() - 1;
   decay =
       std::log((peaks[0] + peaks[1]) / (peaks[last - 1] + peaks[last])) / (times[last] - times[1]);
+}
+
+/** Largest error of the velocity along x in the middle of a cavity of n cells at the heights y: that of a line through the points next to each. */
+double error_of_profile(Scene &run, int n, const std::vector<double> &y,
+                        const std::vector<double> &u)
+{
+  double worst = 0.0;
+  for (std::size_t k = 0; k < y.size(); k++) {
+    double s = 0.0, sy = 0.0, syy = 0.0, su = 0.0, suy = 0.0;
+    for (int i = 0; i < run.n(); i++) {
+      const double dy = run.x()[i][1] - y[k];
+      if (std::fabs(run.x()[i][0] - 0.5) > 1.0 / n || std::fabs(dy) > 1.0 / n) continue;
+      s += 1.0;
+      sy += dy;
+      syy += dy * dy;
+      su += run.v()[i][0];
+      suy += dy * run.v()[i][0];
+    }
+    worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
+  }
+  return worst;
 }
 
 }    // namespace
@@ -227,6 +252,38 @@ SERIAL_TEST(Vortices, ReflectKeepsEnergy)
     lost[k] = measured("energy lost", 1.0 - run.fix("w")->compute_vector(KINETIC) / 0.25);
   }
   EXPECT_LT(lost[1], 0.5 * lost[0]);
+}
+
+// the stress of points has that of viscosity, whatever they keep of velocities: between plates that move it is the same everywhere,
+// in 2d and 3d, and does not touch the pressure
+SERIAL_TEST(Plates, StressOfPoints)
+{
+  for (const char *const options :
+       {"", "implicit yes", "transfer pic", "transfer apic reflect 0.5"}) {
+    Scene flat(plane("si", "p f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.05\n" +
+               "variable u atom 3*y\nvelocity all set v_u 0 0\n"
+               "fix w all mpm/incompressible 0.1 1 viscosity 2 wall ylo stick wall yhi stick 3 0 " +
+               options +
+               "\nfix g all gravity 5 vector 0 -1 0\ncompute s all mpm/atom stress/* pressure\n"
+               "compute low all reduce min c_s[*]\ncompute high all reduce max c_s[*]\n"
+               "compute mean all reduce ave c_s[7]\ntimestep 0.0005\nrun 2\n");
+    for (const char *const of : {"c_low", "c_high"})
+      EXPECT_NEAR(flat.evaluate(std::string(of) + "[4]"), 6.0, 1e-9) << options;
+    EXPECT_NEAR(measured("pressure of the floor to the lid", flat.evaluate("c_high[7]-c_low[7]")),
+                5.0 * 0.95, 1e-6);
+    EXPECT_NEAR(flat.evaluate("c_low[1]+c_high[7]"), 0.0, 1e-9);
+    EXPECT_NEAR(flat.evaluate("c_low[3]+c_high[7]"), 0.0, 1e-9);
+  }
+  Scene deep(box(3, "si", "p p f", "0 0.4 0 0.4 0 1", 1, 0.02) +
+             "create_points 1 box spacing 0.05\nvariable u atom 3*z\nvariable v atom -1*z\n"
+             "velocity all set v_u v_v 0\nfix w all mpm/incompressible 0.1 1 viscosity 2 wall zlo "
+             "stick wall zhi "
+             "stick 3 -1 0\ncompute s all mpm/atom stress/*\ncompute low all reduce min c_s[*]\n"
+             "compute high all reduce max c_s[*]\ntimestep 0.0005\nrun 2\n");
+  const double exact[] = {0.0, 0.0, 0.0, 0.0, 6.0, -2.0};
+  for (int k = 0; k < 6; k++)
+    for (const char *const of : {"c_low", "c_high"})
+      EXPECT_NEAR(deep.evaluate(strprintf("%s[%d]", of, k + 1)), exact[k], 1e-9);
 }
 
 // flow between plates, one of which moves, or under a force: viscosity, and walls without slip (H2)
@@ -362,23 +419,10 @@ SERIAL_TEST(Cavity, Profile)
       plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.0078125\n" +
       "fix w all mpm/incompressible 0.015625 1 viscosity 0.01 wall yhi stick 1 0 wall xlo stick "
       "wall xhi stick wall ylo stick tolerance 1e-6\ntimestep 0.006\nrun 2000\n");
-  const double y[] = {0.8516, 0.7344, 0.6172, 0.5, 0.4531, 0.2813, 0.1719, 0.1016},
-               u[] = {0.23655, 0.00419, -0.13880, -0.20915, -0.21398, -0.15767, -0.10174, -0.06443};
-  double worst = 0.0;
-  for (int k = 0; k < 8; k++) {    // a line through the points next to the middle
-    double s = 0.0, sy = 0.0, syy = 0.0, su = 0.0, suy = 0.0;
-    for (int i = 0; i < run.n(); i++) {
-      const double dy = run.x()[i][1] - y[k];
-      if (std::fabs(run.x()[i][0] - 0.5) > 1.0 / n || std::fabs(dy) > 1.0 / n) continue;
-      s += 1.0;
-      sy += dy;
-      syy += dy * dy;
-      su += run.v()[i][0];
-      suy += dy * run.v()[i][0];
-    }
-    worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
-  }
-  EXPECT_LT(measured("largest error of the profile", worst), 0.008);
+  const std::vector<double> y = {0.8516, 0.7344, 0.6172, 0.5, 0.4531, 0.2813, 0.1719, 0.1016},
+                            u = {0.23655,  0.00419,  -0.13880, -0.20915,
+                                 -0.21398, -0.15767, -0.10174, -0.06443};
+  EXPECT_LT(measured("largest error of the profile", error_of_profile(run, n, y, u)), 0.008);
   EXPECT_EQ(run.n(), 4 * n * n);
   EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);    // no voids
 }
@@ -388,33 +432,35 @@ SERIAL_TEST(Cavity, Profile)
 SERIAL_TEST(Cavity, SharpPaths)
 {
   const int n = 32;
-  const double y[] = {0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9},
-               u[] = {-0.143991, -0.213816, -0.278872, -0.321256, -0.325493, -0.236991,
-                      -0.115051, 0.000871,  0.120708,  0.238760,  0.290440,  0.352734};
+  const std::vector<double> y = {0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9},
+                            u = {-0.143991, -0.213816, -0.278872, -0.321256, -0.325493, -0.236991,
+                                 -0.115051, 0.000871,  0.120708,  0.238760,  0.290440,  0.352734};
   const auto error_of = [&](const std::string &options) {
     Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.015625\n" +
               "fix w all mpm/incompressible 0.03125 1 viscosity 0.0025 wall yhi stick 1 0 wall xlo "
               "stick wall xhi stick wall ylo stick tolerance 1e-6 " +
               options + "\ntimestep 0.046875\nrun 640\n");
-    double worst = 0.0;
-    for (int k = 0; k < 12; k++) {
-      double s = 0.0, sy = 0.0, syy = 0.0, su = 0.0, suy = 0.0;
-      for (int i = 0; i < run.n(); i++) {
-        const double dy = run.x()[i][1] - y[k];
-        if (std::fabs(run.x()[i][0] - 0.5) > 1.0 / n || std::fabs(dy) > 1.0 / n) continue;
-        s += 1.0;
-        sy += dy;
-        syy += dy * dy;
-        su += run.v()[i][0];
-        suy += dy * run.v()[i][0];
-      }
-      worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
-    }
     EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);
-    return worst;
+    return error_of_profile(run, n, y, u);
   };
   EXPECT_LT(measured("largest error of the profile", error_of("reflect 0.9 sharp yes")), 0.030);
   EXPECT_GT(measured("without sharp paths", error_of("reflect 0.9")), 0.032);
+}
+
+// sharp paths are the same on four ranks, and to the last bit from a restart file
+TEST(Cavity, SharpPathsRanksAndRestart)
+{
+  const std::string last = "fix dt all mpm/dt 0.8 every 1\n";
+  const auto fixes = "fix w all mpm/incompressible 0.0625 1 viscosity 0.0025 reflect 0.9 sharp yes "
+                     "tolerance 1e-12 wall yhi stick 1 0 wall xlo stick wall xhi stick wall ylo "
+                     "stick\n" +
+      last;
+  const auto scene =
+      plane("si", "f f", "0 1 0 1", 1, 0.02) + "create_points 1 box spacing 0.03125\n" + fixes;
+  OnRanks run(scene, "run 40\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
+  EXPECT_LT(measured("difference", run.difference()), 1e-9);
+  Continued again(scene, 13, "neighbor 0.02 bin\n" + fixes, 20);
+  EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
 }
 
 // at rest below a lid: what is next to this is as fast after the first step, but nothing is faster, also with more than a cell per step
@@ -754,11 +800,22 @@ SERIAL_TEST(Incompressible, BadInput)
        {fix + "0.1 1000 spread 2", "spread"},
        {fix + "0.1 1000 wall zlo slip", "zlo"},
        {fix + "0.1 1000 wall xlo rough", "rough"},
+       {fix + "0.1 1000 wall xhi stick 0 1 wall xlo slip wall xhi stick",
+        "wall has the same face twice"},
        {fix + "0.1 1000 wall ylo slip", "periodic face"},
        {fix + "0.1 1000 wall xlo stick 1 0", "out of its plane"},
        {fix + "0.1 1000 tolerance 0", "tolerance"},
        {fix + "0.1 1000 iterations 0", "iterations"},
        {fix + "0.1 1000 law newton", "law"},
+       {fix + "0.1 1000 sharp maybe", "maybe"},
+       {"region stone sphere 0.5 0.5 0 0.2\n" + fix + "0.1 1000 region stone sharp yes",
+        "sharp is for flows between walls of the box"},
+       {"region stone sphere 0.5 0.5 0 0.2\n" + fix +
+            "0.1 1000 sharp yes viscosity 1 implicit yes stick stone",
+        "sharp is for flows between walls of the box"},
+       {"group half id <= 200\nfix m half mpm/material density 1000 neohookean 1e3 0.49\n" + fix +
+            "0.1 1000 solid half sharp yes",
+        "sharp is for flows between walls of the box"},
        {fix + "0.1 1000\nfix n all nve", "also integrated by"},
        {fix + "0.1 1000\nfix grid all mpm 0.1\nfix m all mpm/material density 1000 linear 1e5 0.3",
         "also integrated by"},
@@ -778,6 +835,12 @@ SERIAL_TEST(Incompressible, BadInput)
           fix + "0.1 1000",
       "requires material points");
   expect_error(plane("si", "s f", "0 1 0 1", 1, 0.02) + fix + "0.1 1000", "shrink-wrapped");
+  EXPECT_EQ(lines_that_say(plain +
+                               "region stone sphere 0.5 0.5 0 0.2\ndelete_atoms region stone\n" +
+                               fix + "0.1 1000 region stone sharp no\ntimestep 0.01\nrun 1\n",
+                           "ERROR")
+                .size(),
+            0u);    // what is not asked for
   for (const auto &[h, warnings] : {std::pair{"0.05", 0u}, std::pair{"0.025", 1u}})
     EXPECT_EQ(lines_that_say(plain + fix + h + " 1000\ntimestep 0.01\nrun 1\nrun 1\n",
                              "are larger than a cell")
@@ -869,6 +932,27 @@ TEST(Tank, FirstTimeStep)
   }
 }
 
+// a column that collapses, hits a wall, and splashes: pressures of all points are those of water, also next to cells that are wet as they
+// are surrounded by others, and that points fill by less than one half
+SERIAL_TEST(Splash, PressuresOfPoints)
+{
+  Scene run(plane("si", "f f", "0 1 0 1", 1, 0.03) +
+            "region water block 0 0.4 0 0.6 INF INF\ncreate_points 1 region water spacing 0.0125\n"
+            "fix w all mpm/incompressible 0.025 1000\nfix g all gravity 9.81 vector 0 -1 0\n"
+            "fix dt all mpm/dt 0.5 every 1 max 0.01 until 1.0\n");
+  double least = 0.0, most = 0.0;
+  run.each_step([&](double **) {
+    for (int i = 0; i < run.n(); i++) {
+      least = std::min(least, -run.points().tau[i][0]);
+      most = std::max(most, -run.points().tau[i][0]);
+    }
+  });
+  run.commands("run 2000\n");
+  const double head = 1000.0 * 9.81 * 0.6;
+  EXPECT_GT(measured("least pressure over that of the column", least / head), -5.0);
+  EXPECT_LT(measured("greatest", most / head), 10.0);
+}
+
 // bodies of others, which a flow would go through
 SERIAL_TEST(Incompressible, Others)
 {
@@ -879,6 +963,11 @@ SERIAL_TEST(Incompressible, Others)
       "fix w left mpm/incompressible 0.1 1000\ntimestep 1e-5\n";
   expect_error(scene + "fix v right mpm/incompressible 0.1 900\nrun 1\n", "go through each other");
   EXPECT_EQ(lines_that_say(scene + "run 1\n", "as neither feels").size(), 0u);
+  EXPECT_EQ(
+      lines_that_say(scene + "run 1\n", " 200 material points belong to no fix mpm/incompressible")
+          .size(),
+      1u);
+  EXPECT_EQ(lines_that_say(scene + "fix v right nve\nrun 1\n", "belong to no fix").size(), 0u);
   EXPECT_EQ(
       lines_that_say(scene +
                          "fix grid right mpm 0.1\nfix m right mpm/material density 1000 linear "

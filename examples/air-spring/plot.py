@@ -4,11 +4,19 @@
 """The tube at some times, and the swing and the air beside those of a column in one dimension (points.txt, trace.txt):
 air-spring.png; prints the period and the pressures of the air, over those of theory"""
 
+import os
+import sys
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Rectangle, Wedge
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "..", "tools"))
+
+from runge_kutta import runge_kutta
 
 A, H, P, GAMMA, RHO, G = 0.1, 0.3, 1.0e4, 1.4, 1000.0, 9.81
 LENGTH = 0.5 + 0.57811    # of the straight arms, and of the bend: that of a straight tube with its inertia in potential flow
@@ -23,10 +31,7 @@ def column(times):
     y, found = np.array([-A, 0.0]), [-A]
     for dt in np.diff(times):
         for _ in range(10):
-            k1 = slope(y)
-            k2 = slope(y + 0.05 * dt * k1)
-            k3 = slope(y + 0.05 * dt * k2)
-            y = y + dt / 60.0 * (k1 + 2.0 * k2 + 2.0 * k3 + slope(y + 0.1 * dt * k3))
+            y = runge_kutta(slope, y, 0.1 * dt)
         found.append(y[0])
     return np.array(found)
 

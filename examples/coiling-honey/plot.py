@@ -4,12 +4,18 @@
 """The thread at some times, and how far it has turned beside the theory of thin threads (points.txt, trace.txt): coiling-honey.png;
 prints the frequency over that of theory"""
 
+import os
 import sys
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "..", "tools"))
+
+from runge_kutta import runge_kutta
 
 K = float(sys.argv[1]) if len(sys.argv) > 1 else 6.0    # height of the needle over the diameter
 D, U, NU, G = 0.0005, 0.1, 50.0 / 1400.0, 9.81
@@ -39,11 +45,7 @@ def unit_coil(unknown, weight, inertia, steps=200):
     y = np.concatenate([[0, 0, 0, 0, 0, -1, 0, 0, 0, omega], unknown[:6]])
     ds = 1.0 / steps
     for _ in range(steps):
-        a = slope(y)
-        b = slope(y + 0.5 * ds * a)
-        c = slope(y + 0.5 * ds * b)
-        d = slope(y + ds * c)
-        y = y + ds / 6.0 * (a + 2 * b + 2 * c + d)
+        y = runge_kutta(slope, y, ds)
     x, t, bend, spin = y[:3], y[3:6], y[6:9], y[9]
     return np.concatenate([[x[2] + 1.0, x[1]], cross(turn, x) + t, turn + cross(t, bend) + spin * t])
 

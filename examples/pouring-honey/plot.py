@@ -4,10 +4,18 @@
 """The ribbon at some times, and its speed on its way down beside that of Trouton's equation (points.txt, trace.txt):
 pouring-honey.png; prints how far they are apart, and the times of folds"""
 
+import os
+import sys
+
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "..", "..", "tools"))
+
+from runge_kutta import runge_kutta
 
 H, NU, G = 0.125, 50.0 / 1400.0, 9.81
 
@@ -33,11 +41,7 @@ def trouton(length, u_first, u_last, viscosity=4.0 * NU):
         y = np.array([u_first, first])
         path = [u_first]
         for _ in range(n):
-            a = slope(y)
-            b = slope(y + 0.5 * ds * a)
-            c = slope(y + 0.5 * ds * b)
-            d = slope(y + ds * c)
-            y = y + ds / 6.0 * (a + 2 * b + 2 * c + d)
+            y = runge_kutta(slope, y, ds)
             path.append(y[0])
             if not 0.0 < y[0] < 100.0:
                 break

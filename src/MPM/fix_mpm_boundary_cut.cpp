@@ -40,6 +40,7 @@ using namespace MPM_NS;
 static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
 static constexpr double OUTSIDE = 0.25;      // node spacings
 static constexpr double AT_NODE = 1.0e-6;    // node spacings
+static constexpr double HEAVY = 0.500001;    // share of the mass of mirror images
 
 /* ---------------------------------------------------------------------- */
 
@@ -339,7 +340,7 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
 }
 
 /* ----------------------------------------------------------------------
-   lines through the surface of a region; lines of faces are along the normal
+   lines through surfaces and faces, and mirror images; those with a heavy one are others, as most of a pair is in that
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_ties(const MPMField &field, std::vector<int64_t> &ties,
@@ -354,12 +355,17 @@ void FixMPMBoundary::list_ties(const MPMField &field, std::vector<int64_t> &ties
     for (const auto &crossing : list.crossings) add(ties, crossing.node, crossing.n);
     for (const auto &knot : list.knots) add(ties, knot.node.data(), (int64_t) knot.node.size());
     for (const auto &approach : list.approaches) add(ties, approach.node, approach.n);
-    for (const auto &line : list.lines) add(others, line.node, list.faces[line.face].length());
+    for (const auto &line : list.lines) add(ties, line.node, list.faces[line.face].length());
     for (const auto &orbit : list.orbits) {
-      others.push_back(orbit.last - orbit.first + 2);
-      others.push_back(orbit.wall);
-      others.push_back(orbit.inner);
-      for (int k = orbit.first; k < orbit.last; k++) others.push_back(list.members[k].node);
+      double most = 0.0, sum = 0.0;
+      for (int k = orbit.first; k < orbit.last; k++) {
+        const double mass = list.field->grid.record(list.members[k].node)[3];
+        most = std::max(most, mass);
+        sum += mass;
+      }
+      auto &to = orbit.fixed || most > HEAVY * sum ? others : ties;
+      to.push_back(orbit.last - orbit.first);
+      for (int k = orbit.first; k < orbit.last; k++) to.push_back(list.members[k].node);
     }
   }
 }

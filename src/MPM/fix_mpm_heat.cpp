@@ -362,16 +362,20 @@ void FixMPMHeat::setup(int)
 }
 
 /** Radiation of points that have less than no temperature is nonsense: they are in degrees Celsius. Collective. */
-void FixMPMHeat::check_temperatures()
+bool FixMPMHeat::radiates() const
 {
-  const auto radiates = [](const MPMHeatCondition &c) {
+  const auto does = [](const MPMHeatCondition &c) {
     return c.kind == MPMHeatCondition::RADIATION;
   };
-  if (std::none_of(conditions, conditions + MPMHeatFaces::NFACE, radiates) &&
-      std::none_of(surfaces.begin(), surfaces.end(), [&](const auto &s) {
-        return radiates(s.condition);
-      }))
-    return;
+  return std::any_of(conditions, conditions + MPMHeatFaces::NFACE, does) ||
+      std::any_of(surfaces.begin(), surfaces.end(), [&](const auto &s) {
+           return does(s.condition);
+         });
+}
+
+void FixMPMHeat::check_temperatures()
+{
+  if (!radiates()) return;
   for (const auto &of : fields)
     for (const auto *material : of->field.materials) {
       const int column = material->find_history("temperature");
@@ -684,7 +688,14 @@ void FixMPMHeat::check_values() const
       error->all(FLERR, Error::NOLASTLINE, "Fix mpm/heat {}: {} = {:.6g}, but it must {}", where,
                  v.variable.empty() ? "the value" : "variable " + v.variable, now, needed);
   };
+  const bool absolute = radiates();
   const auto check = [&](const MPMHeatCondition &c, const std::string &where) {
+    const int T = c.kind == MPMHeatCondition::TEMPERATURE ? 0
+        : c.kind == MPMHeatCondition::CONVECTION          ? 1
+                                                          : -1;
+    if (absolute && T >= 0)
+      refuse(!(c.now[T] >= 0.0), where, c.value[T], c.now[T],
+             "be an absolute temperature, not below 0, where something radiates");
     if (c.kind < MPMHeatCondition::CONVECTION) return;
     refuse(!(c.now[0] >= 0.0), where, c.value[0], c.now[0], "not be negative");
     if (c.kind != MPMHeatCondition::RADIATION) return;
@@ -840,7 +851,7 @@ int FixMPMHeat::count_stages()
     if (field.faces.any())
       field.faces.begin_step(field.face_capacity(), field.node_volume(),
                              weighs_faces(field.field) ? &body_of(field.field) : nullptr,
-                             field.temperature, &mine[NRATE * k + 1]);
+                             field.face_gradient(), field.temperature, &mine[NRATE * k + 1]);
   }
   for (auto &contact : contacts) mine.push_back(contact->begin_step());
   for (auto &skin : skins) mine.push_back(skin->begin_step());

@@ -167,6 +167,7 @@ class FixMPMHeat :
   void look_for_leaks();
   void check(MPMHeatCondition &, const std::string &name);
   void check_values() const;
+  bool radiates() const;
   void check_temperatures();
   void evaluate_variables();
   /** Of how many kinds of exchange can a node of a field have a part? */

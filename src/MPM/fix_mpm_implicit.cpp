@@ -347,6 +347,10 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("implicit step", [this]() {
       step();
     });
+  if (place == MPMPlan::AFTER_ACTIONS && time == STATIC)
+    plan.together("implicit step", [this]() {
+      solver->set_velocities();
+    });
   if (place == MPMPlan::AFTER_SOLVE)
     plan.together("implicit step", [this]() {
       solver->finish();

@@ -152,6 +152,7 @@ Options MPMIncompressibleOptions::declare(int dim)
              kinds)})
       .then([this] {
         wall.named = true;
+        wall_is_twice |= walls[axis][side].named;
         walls[axis][side] = wall;
       })
       .standard("slip, all faces that are not periodic");
@@ -241,6 +242,7 @@ Options MPMIncompressibleOptions::declare(int dim)
       });
   o.refuse([this] {
     return OptionRules{
+        {wall_is_twice, "wall", "has the same face twice: give each face once"},
         {viscosity > 0.0, "region",
          "has no friction, and cannot be used with viscosity: use the keyword stick instead, or "
          "leave "
@@ -268,7 +270,7 @@ Options MPMIncompressibleOptions::declare(int dim)
          "cannot be used with implicit yes: use explicit viscosity, or leave solid out"},
         {!solid_groups.empty() && reflect > 0.0, "reflect",
          "would count forces of solids twice, and cannot be used with solid: leave it out"},
-        {!region_ids.empty() || !solid_groups.empty(), "sharp",
+        {sharp && (!region_ids.empty() || !solid_groups.empty()), "sharp",
          "is for flows between walls of the box, and cannot be used with region, stick, or solid: "
          "leave it out"},
         {tension == 0.0, "angle", "is about surfaces with a tension: add the keyword tension"},
@@ -552,8 +554,27 @@ void FixMPMIncompressible::check_points()
                    "move: use points with a spacing of at most {:.6g}, better {:.6g}",
                    style, id, all[2], h, 0.5 * h);
   told_of_large = all[2] > 0;
+  check_liquids();
   refuse_other_integrators(lmp, *this);
   check_others();
+}
+
+/** Groups have the points that there were at the time of their command; one that is empty is no liquid. */
+void FixMPMIncompressible::check_liquids()
+{
+  std::vector<int> mine(liquids.size(), 0), all(liquids.size(), 0);
+  for (std::size_t k = 0; k < liquids.size(); k++)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (cells.is_point(i) && atom->mask[i] & liquid_bits[k]) mine[k] = 1;
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_MAX, world);
+  for (std::size_t k = 0; k < liquids.size(); k++)
+    if (!all[k] && comm->me == 0 && !told_of_liquids)
+      error->warning(
+          FLERR,
+          "Fix {} {}: the group {} of keyword liquid has no points of this fix: put some into it, "
+          "with keyword group of create_points, or with the group command after it",
+          style, id, liquids[k].group);
+  told_of_liquids = true;
 }
 
 /** Solids have laws, and perhaps other densities. */
@@ -644,6 +665,8 @@ void FixMPMIncompressible::check_others() const
           "the other",
           id, style, other->id, other->style);
   told_of_bodies = true;
+  if (modify->get_fix_by_style("^mpm$").empty())    // which would tell
+    warn_of_forgotten_points(lmp, style, "the flow goes through them");
 }
 
 void FixMPMIncompressible::setup(int)
@@ -845,7 +868,8 @@ void FixMPMIncompressible::initial_integrate(int)
                                        solids.get(),
                                        transfer == AUTO ? unseen : nullptr,
                                        of_shift,
-                                       sharp ? paths.data() : nullptr};
+                                       sharp ? paths.data() : nullptr,
+                                       viscosity};
   if (solids) solids->deform(velocity.data(), dt, viscosity);
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);

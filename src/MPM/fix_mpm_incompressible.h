@@ -79,6 +79,7 @@ struct MPMIncompressibleOptions {
  private:
   int axis = 0, side = 0;    // of the last wall
   MPMFlowWall wall;
+  bool wall_is_twice = false;
   std::string region_id;
   Liquid liquid;
   std::string solid_group;
@@ -152,7 +153,7 @@ class FixMPMIncompressible :
       0.0;                      // last stable_dt() with forces, on restart of all ranks; 0: none
   bool forces_known = false;    // they are cleared at the start of a run
   mutable bool told_of_bodies = false, told_of_walls = false;
-  bool told_of_large = false;
+  bool told_of_large = false, told_of_liquids = false;
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
   double halvings = 0.0;            // of steps and their parts, so far
   double energy_of_spread = 0.0;    // that spreading has added to points so far, of this rank
@@ -174,6 +175,7 @@ class FixMPMIncompressible :
   double density_of(int i) const;
   void find_lightness(const MPMFlowPoints &);
   void check_points();
+  void check_liquids();
   void check_others() const;
   void check_gas() const;
   double value_of_gas(int k) const;

@@ -634,7 +634,38 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
       return thermal(run.material) != nullptr;
     });
   add_rows();
-  return bound_by_rows(most_of_rows());
+  const double most_by_rows = bound_by_rows(most_of_rows());
+  if (looks_beyond_points() && faces.any()) find_ends();
+  return most_by_rows;
+}
+
+/** Where material ends at faces. A last cell with a single layer of points conducts along one combination of its nodes alone, that of the
+ *  functions at the end of the layer: heat with other weights, as at a face some way off, would stay in these nodes. */
+void MPMConduction::find_ends()
+{
+  static constexpr double REACH = 5.0;    // node spacings: the cell of a face and the next one
+  const MPMFrame &frame = *field.frame;
+  const double reach = REACH * field.lattice.h;
+  const auto add = [&](const MPMCutRooms::Part &part) {
+    const int i = part.point;
+    const double V = part.volume * atom->vfrac[i] * frame.lattice_jacobian(i) /
+        frame.circle(frame.places()[i][0]);
+    cuts.each_node(part, [&](int node, const double *slope) {
+      for (int d = 0; d < 3; d++) ends[3 * node + d] += V * slope[d];
+    });
+  };
+  ends.assign(3 * field.grid.nnodes(), 0.0);
+  for (const auto &part : cuts.parts)
+    if (faces.is_near(frame.places()[part.point], reach)) add(part);
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; thermal(run.material) && i < run.last; i++) {
+      MPMCutRooms::Part whole;
+      if (!cuts.is_cut[i] && faces.is_near(frame.places()[i], reach) &&
+          cuts.make_whole(i, run, whole))
+        add(whole);
+    }
+  field.nodes.sum(ends.data(), 3, 0, 3);
+  field.nodes.complete(ends.data(), 3, 3);
 }
 
 void MPMConduction::add_points(const MPMRows &gradients, bool starts)
@@ -1018,7 +1049,8 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
 double MPMConduction::memory_usage() const
 {
   return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
-      cuts.memory_usage() + idle.capacity() + capacity_at_faces.capacity() * sizeof(double) +
+      cuts.memory_usage() + idle.capacity() + ends.capacity() * sizeof(double) +
+      capacity_at_faces.capacity() * sizeof(double) +
       (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
       sizeof(double);
 }

@@ -81,10 +81,7 @@ class MPMConduction : protected Pointers {
   double bound_of_rates() const { return conducted; }
   /** What surfaces at edges may have at the most: that bound, without what nodes with little capacity add to it where these get no
    *  heat through surfaces. */
-  double rate_at_edges() const
-  {
-    return idle.empty() ? conducted : std::min(conducted, usual_rate);
-  }
+  double rate_at_edges() const { return has_idle() ? std::min(conducted, usual_rate) : conducted; }
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
    *  Adds the power of sources. Then add_given(). */
   void find_rates(const double *source, Heats &power);
@@ -121,9 +118,13 @@ class MPMConduction : protected Pointers {
   bool looks_beyond_points() const;
   void extend_topology();
   /** Bernstein polynomials: nodes with so little capacity that nothing flows there, and no heat may come in. */
-  bool is_idle(int64_t node) const { return !idle.empty() && idle[node]; }
+  bool has_idle() const { return !idle.empty(); }
+  bool is_idle(int64_t node) const { return has_idle() && idle[node]; }
   /** Capacities of nodes for heat through faces: none of these. */
   const std::vector<double> &face_capacity();
+  /** Of nodes next to faces, with Bernstein polynomials: sums of V grad N over parts of rooms, which are integrals; around an axis of
+   *  symmetry for each unit of length around it. Empty with other functions. */
+  const std::vector<double> &face_gradient() const { return ends; }
 
   /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
   double capacity_of(int i) const;
@@ -151,6 +152,7 @@ class MPMConduction : protected Pointers {
   double memory_usage() const;
 
  private:
+  void find_ends();
   /** A material that conducts, and where its points have their temperature. */
   struct Thermal {
     const FixMPMMaterial *fix;
@@ -200,8 +202,9 @@ class MPMConduction : protected Pointers {
   std::vector<double>
       shares;    // [n] of their conductivity that is left, see row_bound(); empty: all. None of points in parts
   MPMCutRooms cuts;
-  std::vector<char> idle;     // [nodes], empty: none
-  double usual_rate = 0.0;    // bound of the rates of nodes inside of a body
+  std::vector<double> ends;    // [nodes][3], see face_gradient()
+  std::vector<char> idle;      // [nodes], empty: none
+  double usual_rate = 0.0;     // bound of the rates of nodes inside of a body
   std::vector<double> capacity_at_faces;
 
   std::vector<signed char> present;    // [materials of the field]: has points here, on any rank

@@ -30,9 +30,48 @@ int MPMCutRooms::dim() const
 
 /* ---------------------------------------------------------------------- */
 
-void MPMCutRooms::find(const std::function<bool(const MPMPointMap::Run &)> &wanted)
+/** The functions in the middle of a part, in cells from the origin. False if this rank does not have all nodes. */
+bool MPMCutRooms::set_nodes(const double *middle, int slot, Part &part) const
 {
   const Grid &grid = field.grid;
+  const auto &block = grid.blocks[slot];
+  const int last = dim() == 3 ? NODES : 1;
+  int first[3] = {0, 0, 0};
+  for (int d = 0; d < dim(); d++) {
+    const double low = std::floor(middle[d]), f = middle[d] - low, g = 1.0 - f;
+    first[d] = 2 * (int) low;
+    const double w[NODES] = {g * g, 2.0 * f * g, f * f}, slope[NODES] = {-g, 1.0 - 2.0 * f, f};
+    for (int k = 0; k < NODES; k++) {
+      part.w[d][k] = w[k];
+      part.slope[d][k] = slope[k] / field.lattice.h;
+    }
+  }
+  int n = 0;
+  for (int a = 0; a < NODES; a++)
+    for (int b = 0; b < NODES; b++)
+      for (int c = 0; c < last; c++) {
+        const int index[3] = {first[0] + a, first[1] + b, first[2] + c};
+        const int64_t node = grid.locate_near(block, index);
+        if (node < 0) return false;
+        part.node[n++] = (int) node;
+      }
+  return true;
+}
+
+bool MPMCutRooms::make_whole(int point, const MPMPointMap::Run &run, Part &part) const
+{
+  const auto &lattice = field.lattice;
+  const double *const x = field.frame->places()[point];
+  double middle[3];
+  for (int d = 0; d < dim(); d++) middle[d] = (x[d] - lattice.origin[d]) / (2.0 * lattice.h);
+  part = {point, 1.0, 1.0, {{0.0}, {0.0}, {1.0}}, {}, {}};
+  return set_nodes(middle, run.slot, part);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMCutRooms::find(const std::function<bool(const MPMPointMap::Run &)> &wanted)
+{
   const Lattice &lattice = field.lattice;
   const MPMFrame &frame = *field.frame;
   const int dim = lattice.dim;
@@ -41,7 +80,6 @@ void MPMCutRooms::find(const std::function<bool(const MPMPointMap::Run &)> &want
   is_cut.assign(field.atom->nmax, 0);
   for (const auto &run : field.map->runs) {
     if (!wanted(run)) continue;
-    const auto &block = grid.blocks[run.slot];
     for (int i = run.first; i < run.last; i++) {
       const double *const x = frame.places()[i];
       const double volume = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(x[0]),
@@ -67,30 +105,12 @@ void MPMCutRooms::find(const std::function<bool(const MPMPointMap::Run &)> &want
         for (piece[1] = 0; piece[1] < pieces[1]; piece[1]++)
           for (piece[2] = 0; piece[2] < pieces[2]; piece[2]++) {
             Part part = {i, 1.0, 1.0, {{0.0}, {0.0}, {1.0}}, {}, {}};
-            int first[3] = {0, 0, 0};
+            double place[3];
             for (int d = 0; d < dim; d++) {
-              const double at = middle[d][piece[d]], low = std::floor(at), f = at - low,
-                           g = 1.0 - f;
               part.volume *= length[d][piece[d]];
-              first[d] = 2 * (int) low;
-              const double w[NODES] = {g * g, 2.0 * f * g, f * f},
-                           slope[NODES] = {-g, 1.0 - 2.0 * f, f};
-              for (int k = 0; k < NODES; k++) {
-                part.w[d][k] = w[k];
-                part.slope[d][k] = slope[k] / lattice.h;
-              }
+              place[d] = middle[d][piece[d]];
             }
-            int n = 0;
-            bool known = true;
-            for (int a = 0; a < NODES; a++)
-              for (int b = 0; b < NODES; b++)
-                for (int c = 0; c < (dim == 3 ? NODES : 1); c++) {
-                  const int index[3] = {first[0] + a, first[1] + b, first[2] + c};
-                  const int64_t node = grid.locate_near(block, index);
-                  known = known && node >= 0;
-                  part.node[n++] = (int) node;
-                }
-            if (known) parts.push_back(part);
+            if (set_nodes(place, run.slot, part)) parts.push_back(part);
           }
     }
   }

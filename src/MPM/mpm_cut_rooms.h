@@ -39,6 +39,8 @@ class MPMCutRooms {
   bool any() const { return !parts.empty(); }
   /** [n] A point that is in parts. */
   std::vector<char> is_cut;
+  /** The room of a point that is not cut, as one part; false if this rank does not have all of its nodes. */
+  bool make_whole(int point, const MPMPointMap::Run &, Part &) const;
 
   /** Calls f(node, gradient of its function in the middle of the part). */
   template <class F> void each_node(const Part &part, const F &f) const
@@ -64,6 +66,7 @@ class MPMCutRooms {
   MPMField &field;
 
   int dim() const;
+  bool set_nodes(const double *middle, int slot, Part &) const;
 };
 
 }    // namespace LAMMPS_NS

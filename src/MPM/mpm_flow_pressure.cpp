@@ -388,11 +388,10 @@ void MPMFlowPressure::extend_into_air(std::vector<double> &values,
     for (int s = 0; s < 2 * cells.lattice.dim; s++) {
       const int other = cell.near[s];
       if (cell.walls >> s & 1 || !is_wet(other) || open_side(cell, s) == 0.0) continue;
-      const double in = std::max(nearest, depth(share_of[other])),
-                   out = depth(share_of[cell.number]);
+      const double in = distance(other, cell.number);    // from the wet one to the surface
       const double at = surface ? (*surface)[(int64_t) (s % 2 ? other : cell.number) * dim + s / 2]
                                 : 0.0;
-      sum += at + (psi[other] - at) * out / in;
+      sum += at + (psi[other] - at) * (in - 1.0) / in;
       n++;
     }
     if (n)

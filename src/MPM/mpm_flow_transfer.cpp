@@ -12,6 +12,7 @@
 #include "mpm_flow_reach.h"
 #include "mpm_flow_regions.h"
 #include "mpm_flow_solids.h"
+#include "mpm_flow_stencil.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,35 +72,64 @@ template <int dim> double limit_of(const double *G, double inv_h, double dt)
   return most > STEEPEST ? STEEPEST / most : 1.0;
 }
 
-/** Numbers of the cells that visit() goes to. */
-template <int dim> struct Cells {
-  int64_t at[3][3][3];
+/** What points whose places have the same base give, until it is added to the cells. */
+template <int dim> struct Gifts {
+  static constexpr int ROWS = MPMFlowStencil<dim>::ROWS;
+  static constexpr int WIDE =
+      4;    // cells along an axis that the width of points can reach: base - 1 and on
+  static constexpr int FILLED = dim == 3 ? WIDE * WIDE * WIDE : WIDE * WIDE;
+  // [c][row][k]: of faces, with one more than there are, as four are the operands of vectors
+  double momentum[dim][ROWS][4], mass[dim][ROWS][4], force[dim][ROWS][4];
+  double filled[FILLED];
+  int base[3], slot;
 
-  explicit Cells(const MPMFlowReach<dim> &reach)
+  void clear(const int at[3], int of_slot)
   {
-    visit<dim>(reach, [&](int64_t number, const int k[3]) {
-      at[k[0]][k[1]][k[2]] = number;
-    });
+    *this = {};
+    for (int d = 0; d < dim; d++) base[d] = at[d];
+    slot = of_slot;
   }
-  int64_t operator()(const int k[3]) const { return at[k[0]][k[1]][k[2]]; }
+  void add_to(const MPM_NS::Grid &grid, double *sums) const
+  {
+    constexpr int width = 3 * dim + 1;
+    const MPMFlowStencil<dim> stencil(grid, grid.blocks[slot], base);
+    for_each_axis<dim>([&](auto axis) {
+      constexpr int c = axis;
+      for (int row = 0; row < ROWS; row++)
+        for (int k = 0; k < 3; k++) {
+          double *const to = sums + stencil.template face<c>(row, k) * width + c;
+          to[0] += momentum[c][row][k];
+          to[dim] += mass[c][row][k];
+          to[2 * dim] += force[c][row][k];
+        }
+    });
+    const double *share = filled;
+    for (int kx = -1; kx < WIDE - 1; kx++)
+      for (int ky = -1; ky < WIDE - 1; ky++)
+        for (int kz = dim == 3 ? -1 : 0; kz < (dim == 3 ? WIDE - 1 : 1); kz++, share++)
+          if (*share != 0.0) sums[stencil.number(kx, ky, kz) * width + 3 * dim] += *share;
+  }
 };
 
 template <int dim>
 void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<double> &sums)
 {
-  constexpr int width = 3 * dim + 1;
+  constexpr int WIDE = Gifts<dim>::WIDE;
   const Places<dim> places(cells.lattice);
   const double h = cells.lattice.h;
   StaggeredWeights w;
   FillingWeights filling;
-  MPMFlowReach<dim> reach;
+  MPMFlowNear<dim, Gifts<dim>> near;
+  const auto add = [&](const Gifts<dim> &gifts) {
+    gifts.add_to(cells.grid, sums.data());
+  };
   double volume = 0.0, width_of_point = 0.0;
   for (const auto &run : cells.runs) {
-    const auto &block = cells.grid.blocks[run.slot];
     for (int i = run.first; i < run.last; i++) {
       places.find(points.x[i], w);
-      reach.find(cells.grid, block, w.base);
-      const Cells<dim> near(reach);
+      auto &to = near.at(w.base, add, [&](Gifts<dim> &gifts) {
+        gifts.clear(w.base, run.slot);
+      });
       const double m = points.mass[i], V = points.volume[i];
       const double *const f = points.f[i];
       double v[dim], G[flow_slopes(dim)] = {};
@@ -110,26 +140,32 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
         const double limit = limit_of<dim>(G, places.inv_h, points.dt);
         for (double &g : G) g *= limit;
       }
-      for (int c = 0; c < dim; c++) {
-        const int d = (c + 1) % dim, e = (c + 2) % 3;
-        int k[3] = {0, 0, 0};
-        for (k[d] = 0; k[d] < 2; k[d]++)
-          for (int ke = 0; ke < (dim == 3 ? 2 : 1); ke++) {
-            double hats = w.hat[d][k[d]], value = v[c] + G[dim * c + d] * w.to_middle(d, k[d]);
+      for_each_axis<dim>([&](auto axis) {
+        constexpr int c = axis, d = (c + 1) % dim, e = (c + 2) % 3;
+        double mass[4], slope[4], force[4];
+        for (int k = 0; k < 4; k++) {
+          const double N = k < 3 ? w.spline[c][k] : 0.0;
+          mass[k] = m * N;
+          slope[k] = mass[k] * G[dim * c + c] * w.to_face(c, k);
+          force[k] = N * f[c];
+        }
+        for (int kd = 0; kd < 2; kd++) {
+          const double at_d = w.to_middle(d, kd), along_d = v[c] + G[dim * c + d] * at_d;
+          for (int ke = 0; ke < dim - 1; ke++) {
+            double hats = w.hat[d][kd], value = along_d;
             if constexpr (dim == 3) {
-              k[e] = ke;
               hats *= w.hat[e][ke];
-              value += (G[3 * c + e] + G[9 + c] * w.to_middle(d, k[d])) * w.to_middle(e, ke);
+              value += (G[3 * c + e] + G[9 + c] * at_d) * w.to_middle(e, ke);
             }
-            for (k[c] = 0; k[c] < 3; k[c]++) {
-              double *const to = sums.data() + near(k) * width + c;
-              const double N = hats * w.spline[c][k[c]];
-              to[0] += m * N * (value + G[dim * c + c] * w.to_face(c, k[c]));
-              to[dim] += m * N;
-              to[2 * dim] += N * f[c];
+            const int row = kd + 2 * ke;
+            for (int k = 0; k < 4; k++) {
+              to.momentum[c][row][k] += hats * (mass[k] * value + slope[k]);
+              to.mass[c][row][k] += hats * mass[k];
+              to.force[c][row][k] += hats * force[k];
             }
           }
-      }
+        }
+      });
 
       if (V != volume) {
         volume = V;
@@ -138,17 +174,17 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
       double t[3];
       for (int d = 0; d < dim; d++) t[d] = (points.x[i][d] - places.origin[d]) * places.inv_h;
       filling.find<dim>(t, width_of_point);
-      reach.find(cells.grid, block, filling.first);
-      int k[3] = {0, 0, 0};
-      for (k[0] = 0; k[0] < 3; k[0]++)
-        for (k[1] = 0; k[1] < 3; k[1]++)
-          for (k[2] = 0; k[2] < (dim == 3 ? 3 : 1); k[2]++) {
-            double share = V;
-            for (int d = 0; d < dim; d++) share *= filling.share[d][k[d]];
-            if (share != 0.0) sums[reach.number(k) * width + 3 * dim] += share;
-          }
+      int first = 0;
+      for (int d = 0; d < dim; d++) first = WIDE * first + filling.first[d] - (w.base[d] - 1);
+      for (int k = 0; k < 3; k++)
+        for (int l = 0; l < (dim == 3 ? 3 : 1); l++) {
+          double *const row = to.filled + first + (dim == 3 ? WIDE * (WIDE * k + l) : WIDE * k);
+          const double share = V * filling.share[0][k] * (dim == 3 ? filling.share[1][l] : 1.0);
+          for (int n = 0; n < 3; n++) row[n] += share * filling.share[dim - 1][n];
+        }
     }
   }
+  near.for_all(add);
 }
 
 template <int dim>
@@ -171,36 +207,64 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
   }
 }
 
+/** Values of a field of velocities at the faces that places with the same base reach: [c][row][k]. */
+template <int dim> struct Faces {
+  double at[dim][MPMFlowStencil<dim>::ROWS][3];
+
+  void find(const MPMFlowStencil<dim> &stencil, const double *values)
+  {
+    for_each_axis<dim>([&](auto axis) {
+      constexpr int c = axis;
+      for (int row = 0; row < stencil.ROWS; row++)
+        for (int k = 0; k < 3; k++)
+          at[c][row][k] = values[stencil.template face<c>(row, k) * dim + c];
+    });
+  }
+};
+
+/** The faces of one field, for one place after the other. */
+template <int dim> class FacesNear {
+ public:
+  FacesNear(const MPM_NS::Grid &grid, const double *values) : grid(grid), values(values) {}
+  const Faces<dim> &at(const MPM_NS::Grid::Block &block, const int base[3])
+  {
+    return near.at(
+        base,
+        [](Faces<dim> &) {
+        },
+        [&](Faces<dim> &faces) {
+          faces.find(MPMFlowStencil<dim>(grid, block, base), values);
+        });
+  }
+
+ private:
+  const MPM_NS::Grid &grid;
+  const double *const values;
+  MPMFlowNear<dim, Faces<dim>> near;
+};
+
 /** Velocities of several fields at a place, and of the first one the gradients [flow_slopes(dim)] times the spacing (its square), if asked for: those of components c are linear along
  *  each of the other axes between two layers of faces. bend: [dim] second derivatives along c, times the square of the spacing. */
 template <int dim, int nfield, bool slopes>
-void interpolate(const Cells<dim> &near, const StaggeredWeights &w, const double *const *fields,
-                 double (*v)[dim], double *G, double *bend)
+void interpolate(const Faces<dim> *fields, const StaggeredWeights &w, double (*v)[dim], double *G,
+                 double *bend)
 {
   std::fill_n(v[0], nfield * dim, 0.0);
   if constexpr (slopes) {
     std::fill_n(G, flow_slopes(dim), 0.0);
     std::fill_n(bend, dim, 0.0);
   }
-  for (int c = 0; c < dim; c++) {
-    const int d = (c + 1) % dim, e = (c + 2) % 3;
+  for_each_axis<dim>([&](auto axis) {
+    constexpr int c = axis, d = (c + 1) % dim, e = (c + 2) % 3;
     const double slope[3] = {w.f[c] - 1.0, 1.0 - 2.0 * w.f[c], w.f[c]};
-    int k[3] = {0, 0, 0};
-    for (k[c] = 0; k[c] < 3; k[c]++) {
-      const double spline = w.spline[c][k[c]];
-      int64_t at[2][2];
-      for (k[d] = 0; k[d] < 2; k[d]++)
-        for (int ke = 0; ke < dim - 1; ke++) {
-          if (dim == 3) k[e] = ke;
-          at[k[d]][ke] = near(k) * dim + c;
-        }
+    for (int k = 0; k < 3; k++) {
+      const double spline = w.spline[c][k];
       for (int field = 0; field < nfield; field++) {
-        const double *const values = fields[field];
-        double layer = values[at[0][0]], along_d = values[at[1][0]] - layer, along_e = 0.0,
-               both = 0.0;
+        const auto &rows = fields[field].at[c];
+        double layer = rows[0][k], along_d = rows[1][k] - layer, along_e = 0.0, both = 0.0;
         layer += w.f[d] * along_d;
         if constexpr (dim == 3) {
-          const double next = values[at[0][1]], next_d = values[at[1][1]] - next;
+          const double next = rows[2][k], next_d = rows[3][k] - next;
           both = next_d - along_d;
           along_d += w.f[e] * both;
           along_e = next + w.f[d] * next_d - layer;
@@ -208,8 +272,8 @@ void interpolate(const Cells<dim> &near, const StaggeredWeights &w, const double
         }
         v[field][c] += spline * layer;
         if (!slopes || field > 0) continue;
-        bend[c] += k[c] == 1 ? -2.0 * layer : layer;
-        G[dim * c + c] += slope[k[c]] * layer;
+        bend[c] += k == 1 ? -2.0 * layer : layer;
+        G[dim * c + c] += slope[k] * layer;
         G[dim * c + d] += spline * along_d;
         if constexpr (dim == 3) {
           G[3 * c + e] += spline * along_e;
@@ -217,31 +281,30 @@ void interpolate(const Cells<dim> &near, const StaggeredWeights &w, const double
         }
       }
     }
-  }
+  });
 }
 
 /** The same of one field; G: null if not asked for. */
 template <int dim>
-void interpolate(const Cells<dim> &near, const StaggeredWeights &w, const double *values, double *v,
-                 double *G)
+void interpolate(const Faces<dim> &faces, const StaggeredWeights &w, double *v, double *G)
 {
   double one[1][dim], bend[dim];
-  G ? interpolate<dim, 1, true>(near, w, &values, one, G, bend)
-    : interpolate<dim, 1, false>(near, w, &values, one, nullptr, nullptr);
+  G ? interpolate<dim, 1, true>(&faces, w, one, G, bend)
+    : interpolate<dim, 1, false>(&faces, w, one, nullptr, nullptr);
   std::copy_n(one[0], dim, v);
 }
 
 /** The same of one to three fields. */
 template <int dim, bool slopes>
-void interpolate_all(int nfield, const Cells<dim> &near, const StaggeredWeights &w,
-                     const double *const *fields, double (*v)[dim], double *G, double *bend)
+void interpolate_all(int nfield, const Faces<dim> *fields, const StaggeredWeights &w,
+                     double (*v)[dim], double *G, double *bend)
 {
   if (nfield == 1)
-    interpolate<dim, 1, slopes>(near, w, fields, v, G, bend);
+    interpolate<dim, 1, slopes>(fields, w, v, G, bend);
   else if (nfield == 2)
-    interpolate<dim, 2, slopes>(near, w, fields, v, G, bend);
+    interpolate<dim, 2, slopes>(fields, w, v, G, bend);
   else
-    interpolate<dim, 3, slopes>(near, w, fields, v, G, bend);
+    interpolate<dim, 3, slopes>(fields, w, v, G, bend);
 }
 
 /** Velocity and gradients, G: [flow_slopes(dim)], at a place that is so far away. */
@@ -258,42 +321,75 @@ template <int dim> void move_in_field(const double *shift, double *v, double *G)
   }
 }
 
+/** Of an incompressible fluid, without what its pressure has. G: gradients of the velocity, in units of the lattice. */
+template <int dim> void add_viscous(double viscosity, double h, const double *G, double *stress)
+{
+  static constexpr int PAIRS[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  const double mu = viscosity / unit_of<dim>(0, h);
+  double third = 0.0;
+  for (int c = 0; c < dim; c++) third += G[dim * c + c] / 3.0;
+  for (int c = 0; c < 3; c++) stress[c] += 2.0 * mu * ((c < dim ? G[dim * c + c] : 0.0) - third);
+  for (int k = 0; k < (dim == 2 ? 1 : 3); k++) {
+    const auto &[c, d] = PAIRS[k];
+    stress[3 + k] += mu * (G[dim * c + d] + G[dim * d + c]);
+  }
+}
+
 template <int dim>
 bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double *velocity,
          const MPMFlowUpdate &update, const double *pressure, MPMRows stress)
 {
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
-  MPMFlowReach<dim> reach;
   bool all_in_reach = true;
   double squares[2] = {0.0, 0.0};
-  const double *fields[3] = {velocity};    // and those before, and the shift, if there are such
-  const int of_old = 1, of_shift = update.old ? 2 : 1;
+  const double *fields[4] = {velocity};    // and, if there are such: those before, the shift, more
+  const int of_old = 1, of_shift = update.old ? 2 : 1, of_more = of_shift + (update.shift ? 1 : 0);
   if (update.old) fields[of_old] = update.old;
   if (update.shift) fields[of_shift] = update.shift;
+  if (update.more) fields[of_more] = update.more;
+  const int nall = of_more + (update.more ? 1 : 0);
+  struct Around {
+    Faces<dim> fields[4];
+    double pressure[MPMFlowStencil<dim>::CELLS];
+  };
+  MPMFlowNear<dim, Around> near;
+  FacesNear<dim> at_starts(cells.grid, update.paths),
+      at_middles(cells.grid, update.paths ? update.paths : velocity);
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
     for (int i = run.first; i < run.last; i++) {
       double *const x = points.x[i], *const v = points.v[i];
       places.find(x, w);
-      reach.find(cells.grid, block, w.base);
-      const Cells<dim> near(reach);
+      const auto &around = near.at(
+          w.base,
+          [](Around &) {
+          },
+          [&](Around &one) {
+            const MPMFlowStencil<dim> stencil(cells.grid, block, w.base);
+            for (int field = 0; field < nall; field++)
+              one.fields[field].find(stencil, fields[field]);
+            for (int n = 0; n < stencil.CELLS; n++) one.pressure[n] = pressure[stencil.cell(n)];
+          });
       constexpr int NSLOPE = flow_slopes(dim);
       const bool solid = update.solids && update.solids->holds(i);
       const int nfield = of_shift + (update.shift && !solid ? 1 : 0);
       double at_point[3][dim], G[NSLOPE], bend[dim], more[dim] = {}, G_more[NSLOPE];
-      points.gradient
-          ? interpolate_all<dim, true>(nfield, near, w, fields, at_point, G, bend)
-          : interpolate_all<dim, false>(nfield, near, w, fields, at_point, nullptr, nullptr);
+      points.gradient || update.viscosity > 0.0
+          ? interpolate_all<dim, true>(nfield, around.fields, w, at_point, G, bend)
+          : interpolate_all<dim, false>(nfield, around.fields, w, at_point, nullptr, nullptr);
       const double *const now = at_point[0];
       double p = 0.0;
-      visit<dim>(reach, [&](int64_t number, const int k[3]) {
-        p += w.cell<dim>(k) * pressure[number];
-      });
+      for (int n = 0; n < MPMFlowStencil<dim>::CELLS; n++) {
+        const int k[3] = {n >> (dim - 1) & 1, n >> (dim - 2) & 1, dim == 3 ? n & 1 : 0};
+        p += w.cell<dim>(k) * around.pressure[n];
+      }
       if (solid)
         update.solids->set_pressure(stress[i], p);
       else
         for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
+      if (!solid && update.viscosity > 0.0)
+        add_viscous<dim>(update.viscosity, cells.lattice.h, G, stress[i]);
 
       if (update.inflow && update.inflow->carry(x, v, points.dt)) {
         if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);
@@ -314,7 +410,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       else
         std::copy_n(now, dim, v);
       if (update.more) {
-        interpolate<dim>(near, w, update.more, more, points.gradient ? G_more : nullptr);
+        interpolate<dim>(around.fields[of_more], w, more, points.gradient ? G_more : nullptr);
         for (int c = 0; c < dim; c++) v[c] += more[c];
         for (int e = 0; points.gradient && e < NSLOPE; e++) G[e] += G_more[e];
       }
@@ -343,15 +439,13 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       const double *start = now;
       double at_start[dim];
       if (update.paths) {
-        interpolate<dim>(near, w, update.paths, at_start, nullptr);
+        interpolate<dim>(at_starts.at(block, w.base), w, at_start, nullptr);
         start = at_start;
       }
       for (int d = 0; d < dim; d++) middle[d] += 0.5 * points.dt * start[d];
       places.keep_inside(middle);
       places.find(middle, w);
-      reach.find(cells.grid, block, w.base);
-      interpolate<dim>(Cells<dim>(reach), w, update.paths ? update.paths : velocity, at_middle,
-                       nullptr);
+      interpolate<dim>(at_middles.at(block, w.base), w, at_middle, nullptr);
       for (int d = 0; d < dim; d++) {
         const double u = at_middle[d] + update.reflect * (start[d] - at_middle[d]) + more[d];
         x[d] += points.dt * u + shift[d];
@@ -374,13 +468,12 @@ void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, cons
 {
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
-  MPMFlowReach<dim> reach;
+  FacesNear<dim> near(cells.grid, velocity);
   double v[dim], G[flow_slopes(dim)];
   for (const auto &run : cells.runs)
     for (int i = run.first; i < run.last; i++) {
       places.find(points.x[i], w);
-      reach.find(cells.grid, cells.grid.blocks[run.slot], w.base);
-      interpolate<dim>(Cells<dim>(reach), w, velocity, v, G);
+      interpolate<dim>(near.at(cells.grid.blocks[run.slot], w.base), w, v, G);
       for (int e = 0; e < flow_slopes(dim); e++)
         points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
     }

@@ -56,6 +56,7 @@ struct MPMFlowUpdate {
   double *of_shift = nullptr;
   const double *paths =
       nullptr;    ///< [cell][dim] velocities that points move with; null: those that they get
+  double viscosity = 0.0;    ///< stress that points of the fluid have besides the pressure
 };
 
 /** Cells from points. sums: [cell][3 dim + 1] momentum, mass, and force at faces, volume in the middle of cells. A point gives a

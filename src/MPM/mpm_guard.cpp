@@ -52,36 +52,9 @@ void MPMGuard::check_integrators() const
   refuse_other_integrators(lmp, field.fix);
 }
 
-/* ----------------------------------------------------------------------
-   groups have the atoms that there were at the time of their command: points that were made later are
-   easily forgotten
-------------------------------------------------------------------------- */
-
 void MPMGuard::check_other_points()
 {
-  int moved = 0;    // groups that something moves
-  for (auto *ifix : modify->get_fix_list())
-    if (ifix->time_integrate || utils::strmatch(ifix->style, "^mpm$")) moved |= ifix->groupbit;
-  bigint mine[2] = {0, 0}, all[2];    // points, those that do not move
-  tagint example = 0, example_all;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->vfrac[i] > 0.0)) continue;
-    mine[0]++;
-    if (atom->mask[i] & moved) continue;
-    mine[1]++;
-    example = std::max(example, atom->tag[i]);
-  }
-  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
-  npoints = all[0];
-  if (all[1] == 0) return;
-  MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  if (comm->me == 0)
-    error->warning(
-        FLERR,
-        "{} material points belong to no fix mpm, for instance point {}: they do not "
-        "move and have no stress; if they shall, put them into the group of a fix mpm with "
-        "keyword group of create_points, or with the group command after it",
-        all[1], example_all);
+  npoints = warn_of_forgotten_points(lmp, "mpm", "have no stress");
 }
 
 /** Of new points, by the tangent at rest; 0: of fluids, and where the law has no tangent of its own. */

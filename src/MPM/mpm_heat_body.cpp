@@ -116,7 +116,7 @@ void MPMHeatBody::find_surface()
   if (!all) {
     share.assign(field.grid.nnodes(), 0.0);
     gradient.assign(3 * field.grid.nnodes(), 0.0);
-    held = share;
+    if (spreads()) held = share;
     return;
   }
   for (const auto &[image, of] : images)
@@ -302,13 +302,15 @@ double MPMHeatBody::conducting(int64_t node) const
 bool MPMHeatBody::find_response(Line &line) const
 {
   line.response = line.conducting = 0.0;
-  double awake = 0.0;
-  for (int k = 0; k < line.n; k++) {
-    if (line.weight[k] > 0.0 && conduction->is_idle(line.node[k])) line.weight[k] = 0.0;
-    awake += line.weight[k];
+  if (conduction->has_idle()) {
+    double awake = 0.0;
+    for (int k = 0; k < line.n; k++) {
+      if (line.weight[k] > 0.0 && conduction->is_idle(line.node[k])) line.weight[k] = 0.0;
+      awake += line.weight[k];
+    }
+    if (!(awake > LEAST)) return false;
+    for (int k = 0; k < line.n; k++) line.weight[k] /= awake;
   }
-  if (!(awake > LEAST)) return false;
-  for (int k = 0; k < line.n; k++) line.weight[k] /= awake;
   for (int k = 0; k < line.n; k++)
     if (line.weight[k] > 0.0) line.conducting += line.weight[k] *= conducting(line.node[k]);
   if (!(line.conducting > LEAST)) return false;

@@ -369,7 +369,8 @@ double MPMHeatFaces::width(int64_t node, int axis) const
 }
 
 void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<double> &capacity,
-                           const std::vector<double> &volume, const MPMHeatBody *body) const
+                           const std::vector<double> &volume, const MPMHeatBody *body,
+                           const std::vector<double> &ends) const
 {
   const Grid &grid = field.grid;
   const double cell = width(line.node[0], face.axis) * grid.lattice.cell_volume();
@@ -393,7 +394,11 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
   line.area = std::min(1.0, aside) * cell / grid.lattice.h *
       (face.axis ? circle(line.node[0]) : field.frame->circle(face.x)) *
       std::min(1.0, (near - TOUCHES) / (IS_AT_FACE - TOUCHES));
-  if (!weigh_by_surface(face, line, body)) {
+  const auto conducting = [&](int64_t node) {
+    return body ? body->conducting(node) : capacity[node] > 0.0 ? 1.0 : 0.0;
+  };
+  if ((!body && ends.empty()) ||
+      !weigh_by_surface(face, line, body ? body->gradient : ends, conducting)) {
     double sum = 0.0;
     for (int k = 0; k < face.n; k++) {
       line.weight[k] = face.weight[k] * std::min(1.0, part[k] / (ENOUGH * most));
@@ -414,13 +419,14 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
    that is in equilibrium. Where material is too thin, that of the other side of it reduces these sums.
 ------------------------------------------------------------------------- */
 
-bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line, const MPMHeatBody *body) const
+bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line,
+                                    const std::vector<double> &gradient,
+                                    const std::function<double(int64_t)> &conducting) const
 {
-  if (!body) return false;
   double weight[MOST], sum = 0.0;
   for (int k = 0; k < face.n; k++) {
-    const double G = body->gradient[3 * line.node[k] + face.axis];
-    weight[k] = std::max(0.0, face.face % 2 ? G : -G) * body->conducting(line.node[k]);
+    const double G = gradient[3 * line.node[k] + face.axis];
+    weight[k] = std::max(0.0, face.face % 2 ? G : -G) * conducting(line.node[k]);
     sum += weight[k];
   }
   const double length = face.axis ? circle(line.node[0]) : field.frame->circle(face.x);
@@ -462,6 +468,7 @@ void MPMHeatFaces::mark_near(std::vector<char> &near) const
 
 void MPMHeatFaces::begin_step(const std::vector<double> &capacity,
                               const std::vector<double> &volume, const MPMHeatBody *body,
+                              const std::vector<double> &ends,
                               const std::vector<double> &temperature, double rates[3])
 {
   for (auto &face : faces) {
@@ -469,7 +476,7 @@ void MPMHeatFaces::begin_step(const std::vector<double> &capacity,
     for (auto &line : face.lines) {
       line.response = line.area = line.rate = 0.0;
       line.joint = false;
-      prepare(face, line, capacity, volume, body);
+      prepare(face, line, capacity, volume, body, ends);
       if (condition.kind <= MPMHeatCondition::FLUX) continue;
       double T = 0.0;
       for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];

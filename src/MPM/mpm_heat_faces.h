@@ -68,11 +68,13 @@ class MPMHeatFaces : protected Pointers {
 
   /** Marks blocks [slot] with nodes of lines. */
   void mark_near(std::vector<char> &near) const;
-  /** Lines that touch material in this step, from the capacities and volumes of nodes. body: null, or its surface.
+  /** Lines that touch material in this step, from the capacities and volumes of nodes. body: null, or its surface; ends: in the place of
+   *  this sums of V grad N alone, or empty.
    *  rates: raised to the largest rates of this rank at which temperatures at the faces of each axis follow those
    *  outside [1/time]. */
   void begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
-                  const MPMHeatBody *body, const std::vector<double> &temperature, double rates[3]);
+                  const MPMHeatBody *body, const std::vector<double> &ends,
+                  const std::vector<double> &temperature, double rates[3]);
   /** Its field is one lattice of several of a body (MPMHeatLevels): nodes at the rim have a part of their volume by their functions. */
   bool is_level = false;
   /** Is a place on the lattice at most so far from a face? */
@@ -150,10 +152,12 @@ class MPMHeatFaces : protected Pointers {
   double last[3] = {};     // rates of the last step
 
   void prepare(const Face &, Line &, const std::vector<double> &capacity,
-               const std::vector<double> &volume, const MPMHeatBody *) const;
+               const std::vector<double> &volume, const MPMHeatBody *,
+               const std::vector<double> &ends) const;
   double width(int64_t node, int axis) const;
   double circle(int64_t node) const;
-  bool weigh_by_surface(const Face &, Line &, const MPMHeatBody *) const;
+  bool weigh_by_surface(const Face &, Line &, const std::vector<double> &gradient,
+                        const std::function<double(int64_t)> &conducting) const;
   void find_groups();
   void slow_down(Group &, double conduction) const;
   void set_up(Group &) const;

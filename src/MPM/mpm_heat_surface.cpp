@@ -200,18 +200,19 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
     place.condition = condition;
     place.key = node * lattice.dim + a;
     if (thin) look_behind(*thin, place, index, part, into);
-    keep(place, index, at);
+    keep(place, index);
   });
 }
 
-/** Adds a place, or those of the lines of the field that it is for. */
-void MPMHeatSurfaces::keep(const Place &whole, const int *index, double at)
+/** Adds a place, or those of the lines of the field that it is for: heat goes to the end of the body, and not to a region some way off,
+ *  see MPMConduction::find_ends(). */
+void MPMHeatSurfaces::keep(const Place &whole, const int *index)
 {
   if (!body.spreads()) {
     places.push_back(whole);
     return;
   }
-  if (!body.spread(index, at, whole.into, whole.line, parts)) return;
+  if (!body.spread(index, whole.line.place, whole.into, whole.line, parts)) return;
   for (const auto &part : parts) {
     Place place = whole;
     place.line = part.line;
@@ -371,7 +372,7 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
     place.condition = condition;
     place.key = node * dim + a;
     if (thin) look_behind(*thin, place, index, part, into);
-    keep(place, index, index[a] + part);
+    keep(place, index);
   });
 }
 

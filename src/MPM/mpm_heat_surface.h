@@ -104,7 +104,7 @@ class MPMHeatSurfaces : protected Pointers {
   void find_filled();
   void find_covered();
   void find_free(int condition, MPMHeatThin *);
-  void keep(const Place &, const int *index, double at);
+  void keep(const Place &, const int *index);
   void look_behind(MPMHeatThin &, const Place &, const int *index, double part,
                    const double *into) const;
   double room(int64_t node) const;

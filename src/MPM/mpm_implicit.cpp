@@ -31,7 +31,6 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double PROJECTED = 1.0e-12;    // relative change by one action more
-static constexpr double ROUNDED = 1.0e-9;       // what walls leave free of a node, to a projection
 static constexpr int MOST_REPEATS = 200;
 static constexpr int MOST_TIED =
     48;    // nodes in a group that lines of walls tie, all of which are told one by one
@@ -45,8 +44,7 @@ static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are no
 static constexpr int TURN = 1000;                   // iterations in which GMRES must gain something
 static constexpr int IN_A_PART = 15;                // Newton iterations, of a step that has failed
 static constexpr int DO_WELL = 15;                  // iterations with levels of other tangents
-static constexpr int TOO_OLD =
-    300;    // of these, after which levels of the present ones are tried; or left_over
+static constexpr int TOO_OLD = 300;    // of these, after which levels of the present ones are tried
 static constexpr double SLIP = 1.0e-5;               // of friction, in node spacings
 static constexpr double SOFT = 0.1, HARDER = 0.1;    // the same at first, and its change
 static constexpr double NEARLY = 1.0e-3;             // of all forces, for that change
@@ -569,7 +567,6 @@ void MPMImplicit::precondition(const double *r, double *z)
 {
   if (by_levels) {
     multigrid->precondition(r, z);
-    if (left_over.used) add_left_over(r, z);
     // nodes that are left alone, see find_reach(), have a stiffness, but no mass
     for (int64_t k = 0; by_reach && k < nreals(); k++)
       if (!(mass[k / width] > 0.0)) z[k] = 0.0;
@@ -842,9 +839,8 @@ static void round_projection(int n, double *S)
 }
 
 /** Levels of the present tangents, from the blocks of the diagonal. What walls leave free of each node is told from unit vectors.
- *  Faces that hold pairs of mirror images together are not quite of that kind, and neither are lines of nodes through the surface of a
- *  region: levels then take the heavier node for free, and the lighter one for held. If linear systems need motions that this
- *  loses, see add_left_over(). */
+ *  Where walls hold nodes together, see find_ties(), it is for all of these. Pairs of mirror images at faces, and bodies that touch, are not
+ *  quite of that kind: levels then take the heavier node of a pair for free, and the lighter one for held. */
 void MPMImplicit::prepare_levels()
 {
   const Clock timed(*this, PRECONDITIONERS);
@@ -861,20 +857,14 @@ void MPMImplicit::prepare_levels()
   }
   std::vector<SplineMultigrid::Tie> ties_of_nodes;
   if (constrained) find_ties(ties_of_nodes);
-  left_over.nodes.clear();
-  left_over.blocks.clear();
-  auto tie = ties_of_nodes.begin();
-  for (int64_t n = 0; constrained && n < (int64_t) mass.size(); n++) {
-    const bool tied = tie != ties_of_nodes.end() && tie->node == n;
-    while (tie != ties_of_nodes.end() && tie->node == n) ++tie;
-    if (!tied) find_left_over(n, &projection[width * width * n]);
-  }
+  for (int64_t n = 0; constrained && n < (int64_t) mass.size(); n++)
+    round_projection(width, &projection[width * width * n]);
   multigrid->begin(constrained ? projection.data() : nullptr, blocks.data(), ties_of_nodes);
   fill_levels();
 }
 
-/** Groups of nodes that walls hold together along lines through inclined surfaces, and the part of P that is in them: from unit vectors
- *  of one node of each group at a time.  Where lines of several surfaces chain many nodes together, along
+/** Groups of nodes that walls hold together, along lines through surfaces and faces, and the part of P that is in them: from
+ *  unit vectors of one node of each group at a time.  Where lines of several surfaces chain many nodes together, along
  *  edges, each has the part of those that are near. */
 void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
 {
@@ -993,42 +983,22 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
           for (int a = 0; a < width && place[of_rows[i][j]] == k; a++)
             rows[i][j].P[width * a + column] = unit[width * local[i].node + a];
     }
+  // a node has nothing of most of the others: what it has none of would only cost time in levels and in the rim
   for (std::size_t i = 0; i < local.size(); i++) {
+    std::vector<SplineMultigrid::Tie> kept;
     bool held = false;
-    for (int k = 0; k < (int) rows[i].size(); k++)
+    for (std::size_t k = 0; k < rows[i].size(); k++) {
+      const bool own = of_rows[i][k] == local[i].number;
+      double change = 0.0;
       for (int ab = 0; ab < width * width; ab++) {
-        const double of_unity = of_rows[i][k] == local[i].number && ab % (width + 1) == 0;
-        held = held || std::fabs(rows[i][k].P[ab] - of_unity) > PROJECTED;
+        const double of_unity = own && ab % (width + 1) == 0;
+        change = std::max(change, std::fabs(rows[i][k].P[ab] - of_unity));
       }
-    if (held) of_nodes.insert(of_nodes.end(), rows[i].begin(), rows[i].end());
+      held = held || change > PROJECTED;
+      if (own || change > PROJECTED) kept.push_back(rows[i][k]);
+    }
+    if (held) of_nodes.insert(of_nodes.end(), kept.begin(), kept.end());
   }
-}
-
-/** Rounds what walls leave free of a node, S [width][width], to a projection, and keeps the inverse of its block in what that holds, if the two differ. */
-void MPMImplicit::find_left_over(int64_t n, double *S)
-{
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 3, 3>;
-  const int square = width * width;
-  const Eigen::Map<Matrix> of(S, width, width);
-  const Matrix before = of;
-  round_projection(width, S);
-  if (!(mass[n] > 0.0) || (of - before).cwiseAbs().maxCoeff() < ROUNDED) return;
-  Matrix inverse = Eigen::Map<const Matrix>(&blocks[square * n], width, width);
-  if (!(inverse.trace() > 0.0)) return;
-  invert(width, inverse.data());
-  const Matrix held = Matrix::Identity(width, width) - of, block = held * inverse * held;
-  left_over.nodes.push_back(n);
-  left_over.blocks.insert(left_over.blocks.end(), block.data(), block.data() + square);
-}
-
-/** Where walls hold nodes together, a motion that they leave free can be one of nodes all of which levels take for held: without a
- *  part of it, conjugate gradients stay where they are. */
-void MPMImplicit::add_left_over(const double *r, double *z) const
-{
-  const double *block = left_over.blocks.data();
-  for (const int64_t n : left_over.nodes)
-    for (int a = 0; a < width; a++, block += width)
-      for (int b = 0; b < width; b++) z[width * n + a] += block[b] * r[width * n + b];
 }
 
 /** Levels that have begun get what points and masses have. */
@@ -1074,17 +1044,6 @@ SolveReport MPMImplicit::solve_general(const double *b, double *x, const SolveGo
   return solved;
 }
 
-/** Has nothing been gained in the second half of the iterations? */
-static bool stays(const SolveReport &solved)
-{
-  constexpr std::size_t FEW = 8;
-  constexpr double SAME = 1.0e-3;
-  const auto &r = solved.residuals;
-  if (r.size() < FEW) return false;
-  const auto [least, most] = std::minmax_element(r.begin() + r.size() / 2, r.end());
-  return *most - *least <= SAME * *most;
-}
-
 /** The correction x by the forces b, without a change of the pressure. Levels take longer to make than to use: those of the first tangents of a step
  *  serve all of its iterations as long as they do well. Nothing outlives the step, as a run that goes on from a restart file
  *  must take the same way. */
@@ -1106,15 +1065,7 @@ SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal
       now.made++;
       if (!multigrid->usable()) break;
     }
-    const bool may_lose = made && constrained && !left_over.used;
-    auto solved = attempt(made && !may_lose ? goal.most_iterations : TOO_OLD);
-    if (may_lose && !solved.converged()) {
-      left_over.used = stays(solved);
-      if (left_over.used || solved.outcome == SolveReport::TOO_MANY) {
-        now.linear += solved.iterations;
-        solved = attempt(goal.most_iterations);
-      }
-    }
+    const auto solved = attempt(made ? goal.most_iterations : TOO_OLD);
     if (solved.converged()) {
       if (solved.iterations > DO_WELL) by_levels = false;
       return solved;
@@ -1328,7 +1279,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
 {
   dt = step_dt;
   now = Report();
-  by_levels = left_over.used = false;
+  by_levels = false;
   take_nodes();
   contacts.clear();
   rubs = has_friction = false;
@@ -1484,15 +1435,21 @@ std::vector<double> MPMImplicit::give_back(const std::vector<double> &u)
 
 /* ----------------------------------------------------------------------
    The reactions of walls are velocities of the size dt f/m for a while, which in statics with a time step of any length can be
-   large: what node actions make of them is v with a rounding error of that size. Points get v itself
+   large: what node actions make of them is v with a rounding error of that size. Points get v itself, and so does the ledger in
+   statics, which would have that error times the impulses of forces, as long as the step is
 ------------------------------------------------------------------------- */
+
+void MPMImplicit::set_velocities()
+{
+  each_record([&](const Member &, int64_t n, double *record) {
+    for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
+  });
+}
 
 void MPMImplicit::finish()
 {
   if (field.ledger.on) account();
-  each_record([&](const Member &, int64_t n, double *record) {
-    for (int d = 0; d < width && mass[n] > 0.0; d++) record[d] = velocity[width * n + d];
-  });
+  set_velocities();
   if (options.time == MPMImplicitOptions::MIDPOINT) find_end_of_motion();
   if (options.keeps_acceleration()) keep_accelerations();
 }
@@ -1577,8 +1534,7 @@ double MPMImplicit::memory_usage() const
                            &of_owned,  &of_system,    &turns,       &left,     &moved,
                            &solved,    &corrected,    &of_everyone, &rotations})
     bytes += list->capacity() * sizeof(double);
-  bytes += (loose_forces.capacity() + left_over.blocks.capacity()) * sizeof(double) +
-      left_over.nodes.capacity() * sizeof(int64_t);
+  bytes += loose_forces.capacity() * sizeof(double);
   for (const auto &member : members)
     bytes += member->tangent.memory_usage() + (member->loose ? member->loose->memory_usage() : 0.0);
   bytes += heavy.capacity() * sizeof(int64_t) + heavy_records.capacity() * sizeof(double *) +

@@ -129,7 +129,9 @@ class MPMImplicit : private MPMNodeSystem {
    *  of the step, with all the impulses that they bear. Returns, in statics, the kinetic energy that there is not, of nodes
    *  that this rank owns [mass velocity^2], for each field. */
   std::vector<double> step(double dt);
-  /** Node actions have acted: velocities of the step, and works of forces that the ledger does not know. */
+  /** Node actions have acted: nodes get the velocities of the step. */
+  void set_velocities();
+  /** That, and works of forces that the ledger does not know. */
   void finish();
   /** Points have moved: those of affine transfers get what their velocities at the end of the step have more than the mean ones that they
    *  have moved with. */
@@ -174,12 +176,6 @@ class MPMImplicit : private MPMNodeSystem {
   MPMLatticeRanks ranks;
   std::unique_ptr<MPM_NS::SplineMultigrid> multigrid;    // null: blocks of nodes
   bool by_levels = false;                                // does it precondition now?
-  /** Nodes of which walls hold and leave what is no projection of each by itself, and what preconditions what levels have not of them. */
-  struct {
-    std::vector<int64_t> nodes;
-    std::vector<double> blocks;    // [nodes][width][width]
-    bool used = false;             // in this step: systems were not solved without them
-  } left_over;
   /** Are pressures those around each point? The system is not symmetric then, by what moduli of these points differ. */
   bool averages() const { return field.options.averages_stress(); }
   Report now;
@@ -279,7 +275,6 @@ class MPMImplicit : private MPMNodeSystem {
   void remember(const std::vector<double> &u);
   bool make_factors(const std::vector<double> &u);
   void turn_from_factors();
-  void share_left_over();
   void share_forces();
   void find_correction();
   void learn();
@@ -335,8 +330,6 @@ class MPMImplicit : private MPMNodeSystem {
   void prepare_blocks();
   void prepare_levels();
   void find_ties(std::vector<MPM_NS::SplineMultigrid::Tie> &);
-  void find_left_over(int64_t node, double *S);
-  void add_left_over(const double *r, double *z) const;
   void fill_levels();
   MPM_NS::SolveReport solve_general(const double *b, double *x, const MPM_NS::SolveGoal &);
   MPM_NS::SolveReport solve(const double *b, double *x, const MPM_NS::SolveGoal &);

@@ -35,8 +35,6 @@ struct MPMImplicitMemory {
   double asymmetry = 0.0;         // of the same
   std::vector<int> in_factors;    // places of nodes in the system of the factors, -1: none
   std::vector<double> turned;     // rotations of the body around nodes, at the factors
-  std::vector<double>
-      left_over;    // [node][width][width] what factors lack, see add_left_over(); empty: nothing
   MPM_NS::QuasiNewton pairs;
   int64_t steps = 0, iterations = 0, last = 0;    // with these factors; those of the last step
 
@@ -49,7 +47,7 @@ struct MPMImplicitMemory {
   void clear() { *this = {}; }
   double memory_usage() const
   {
-    double reals = nodes.capacity() + walls.capacity() + turned.capacity() + left_over.capacity();
+    double reals = nodes.capacity() + walls.capacity() + turned.capacity();
     for (const auto &motion : motions) reals += motion.capacity();
     return reals * sizeof(double) + in_factors.capacity() * sizeof(int) + pairs.memory_usage();
   }

@@ -190,25 +190,8 @@ bool MPMImplicit::make_factors(const std::vector<double> &u)
     memory.in_factors.clear();
     for (const auto &index : shared.indices())
       memory.in_factors.push_back(multigrid->place_in_whole(index));
-    share_left_over();
   }
   return memory.factorized = multigrid->usable() && !large;
-}
-
-/** Blocks of what factors lack, of the nodes of all ranks. Collective. */
-void MPMImplicit::share_left_over()
-{
-  const int square = width * width;
-  int mine = !left_over.nodes.empty(), any;
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, lmp->world);
-  memory.left_over.clear();
-  if (!any) return;
-  std::vector<double> of_all(square * mass.size(), 0.0), owned;
-  for (std::size_t k = 0; k < left_over.nodes.size(); k++)
-    std::copy_n(&left_over.blocks[square * k], square, &of_all[square * left_over.nodes[k]]);
-  for (std::size_t i = 0; i < heavy_owned; i++)
-    owned.insert(owned.end(), &of_all[square * heavy[i]], &of_all[square * heavy[i]] + square);
-  shared.gather(owned, square, memory.left_over);
 }
 
 /** to = R from, or R^T from. */
@@ -261,10 +244,6 @@ void MPMImplicit::share_forces()
   for (std::size_t k = 0; k < n; k++)
     if (const int from = memory.in_factors[k]; from >= 0)
       std::copy_n(&of_system[w * from], w, &solved[w * k]);
-  const double *block = memory.left_over.data();
-  for (std::size_t k = 0; k < n && !memory.left_over.empty(); k++)
-    for (int a = 0; a < w; a++, block += w)
-      for (int b = 0; b < w; b++) solved[w * k + a] += block[b] * left[w * k + b];
   if (taken != 0.0) {
     moved.resize(n * w);
     for (std::size_t k = 0; k < n; k++) std::copy_n(&of_everyone[each * k + w], w, &moved[w * k]);

@@ -18,8 +18,8 @@ class MPMField;
 /** Of an action on nodes that is a projection, or becomes one: which nodes it holds together. */
 class MPMLineTies {
  public:
-  /** Adds groups of nodes of a field, one after the other, each with its number of nodes first, -1: none: those on a line through an
-   *  inclined surface (ties), and others, of which the projection node by node serves as well but where they share nodes with these. */
+  /** Adds groups of nodes of a field, one after the other, each with its number of nodes first, -1: none. Others: those of which the
+   *  projection node by node serves as well, but where they share nodes with ties. */
   virtual void list_ties(const MPMField &, std::vector<int64_t> &ties,
                          std::vector<int64_t> &others) const = 0;
 

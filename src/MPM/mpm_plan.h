@@ -34,6 +34,7 @@ class MPMPlan : protected Pointers {
     AFTER_POINTS_TO_NODES,    ///< nodes have what points of this rank gave them, not yet summed over ranks and images
     BEFORE_SOLVE,    ///< nodes have mass and momentum, summed over ranks
     AFTER_MOMENTUM,    ///< the momentum equation gave them velocities, which node actions have not seen
+    AFTER_ACTIONS,    ///< these have seen them; the ledger has not
     AFTER_SOLVE,      ///< nodes have their new velocities, points are where they were
     BEFORE_STRAIN,    ///< of usl and musl: the same, with the velocities that strain the points
     AFTER_MOTION      ///< the step has ended but for its checks

@@ -260,10 +260,10 @@ int MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
   return there ? (int) (node.size() - first) : 0;
 }
 
-/** How far before the plane of a face of the box the soil ends on the line of nodes through this one, in node spacings,
- *  negative: beyond; 0 for what may be noise. sum_i x_i g_i/sum_i g_i over the line is the place of a surface, and sum_i g_i the share of
- *  the area of the line that it has, both exactly for points in even distances: those of one node are off by up to 5 %. */
-double MPMPoreSurface::end_off_face(const int *index, int face, double wall, double &share) const
+/** Of the line of nodes through this one and a face of the box: sum_i x_i g_i/sum_i g_i is the place of a surface, and
+ *  sum_i g_i the share of the area of the line that it has, both exactly for points in even distances: those of one node are off
+ *  by up to 5 %. A gap that may be noise is 0. */
+MPMPoreSurface::End MPMPoreSurface::end_at_face(const int *index, int face, double wall) const
 {
   const auto &lattice = field.lattice;
   const int axis = face / 2;
@@ -281,10 +281,10 @@ double MPMPoreSurface::end_off_face(const int *index, int face, double wall, dou
     area += out;
     moment += out * (first - k);
   }
-  share = std::min(1.0, area);
-  if (!(area > 0.0)) return 0.0;
+  if (!(area > 0.0)) return {0.0, 0.0};
   const double gap = moment / area;
-  return gap * std::clamp((fabs(gap) - AT_FACE) / (OFF_FACE - AT_FACE), 0.0, 1.0);
+  return {gap * std::clamp((fabs(gap) - AT_FACE) / (OFF_FACE - AT_FACE), 0.0, 1.0),
+          std::min(1.0, area)};
 }
 
 /* ---------------------------------------------------------------------- */
@@ -331,16 +331,15 @@ void MPMPoreSurface::find_places()
         if (!(touch > 0.0)) continue;
         g[axis] *= 1.0 - touch;
         if (conditions[face].kind == MPMPoreCondition::CLOSED) continue;
-        double share;
-        const double off = end_off_face(index, face, wall, share);
-        const double below = depth - off;
+        const End end = end_at_face(index, face, wall);
+        const double below = depth - end.gap;
         if (fabs(below) >= 1.0) continue;
         double at[3] = {x[0], x[1], x[2]}, normal[3] = {0.0, 0.0, 0.0};
-        at[axis] = wall - sign * off * h;
+        at[axis] = wall - sign * end.gap * h;
         normal[axis] = sign;
-        // what a flux brings is its area; with pressures the resistance of the soil decides, and what a node has of that goes by its own part
+        // a flux brings as much as its area is, that of the line; with pressures the resistance of the soil decides, of which a node has its own part
         const bool is_flux = conditions[face].kind == MPMPoreCondition::FLUX;
-        const double part = is_flux ? share : std::min(1.0, out / function(below));
+        const double part = is_flux ? end.share : std::min(1.0, out / function(below));
         add_place(stencil, face, touch * part * (1.0 - fabs(below)) * side, touch, at, normal);
       }
       if (conditions[FREE].kind == MPMPoreCondition::CLOSED) continue;

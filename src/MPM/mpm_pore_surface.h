@@ -135,7 +135,12 @@ class MPMPoreSurface : protected Pointers {
   void map_volume();
   double function(double depth) const;
   double open_part(const double *x) const;
-  double end_off_face(const int *index, int face, double wall, double &share) const;
+  /** Where the soil ends next to a face of the box. */
+  struct End {
+    double gap;      ///< before the face, in node spacings, negative: beyond it
+    double share;    ///< of the area of the line that is soil
+  };
+  End end_at_face(const int *index, int face, double wall) const;
   double pressure_outside(const MPMPoreCondition &, const double *x) const;
   int add_nodes(class MPMStencil &, const double *x);
   void add_place(class MPMStencil &, int part, double area, double touch, const double *at,

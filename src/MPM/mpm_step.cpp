@@ -139,6 +139,7 @@ void solve(MPMPlan &plan)
     fmpm(plan);
   };
   plan.together("FMPM", refine, with<&Options::has_fmpm>);
+  plan.place(MPMPlan::AFTER_ACTIONS);
   const auto account = [](MPMField &field) {
     field.ledger.account_for_nodes();
   };

@@ -273,9 +273,9 @@ void MPMTimeLimit::warn_of_small() const
     if (dt < (force->pair ? 0.1 : 1.0) * SMALL * limit)
       error->warning(
           FLERR,
-          "Fix mpm: the time step {:.3g} is the default of units {}, next to nothing for "
-          "the limit {:.3g} of these points: use fix mpm/dt 0.5, or timestep (after "
-          "read_restart, which does not keep it)",
+          "Fix mpm: the time step {:.3g}, which no command has set since units {} or read_restart, "
+          "is next to nothing for the limit {:.3g} of these points: use fix mpm/dt 0.5, or "
+          "timestep",
           dt, update->unit_style, limit);
     return;
   }

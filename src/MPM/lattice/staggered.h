@@ -9,9 +9,17 @@
 #ifndef MPM_LATTICE_STAGGERED_H
 #define MPM_LATTICE_STAGGERED_H
 
+#include <algorithm>
 #include <cmath>
 
 namespace MPM_NS {
+
+/** Largest integer that is not above t, which must be one that an int can be. */
+inline int cell_below(double t)
+{
+  const int cell = (int) t;
+  return cell - (t < cell);
+}
 
 /** Velocities and pressures on a staggered (marker-and-cell) lattice, as functions of the place.
  *
@@ -35,9 +43,8 @@ struct StaggeredWeights {
   template <int dim> void find(const double *t)
   {
     for (int d = 0; d < dim; d++) {
-      const double cell = std::floor(t[d] - 0.5);
-      base[d] = (int) cell;
-      const double x = f[d] = t[d] - 0.5 - cell;
+      base[d] = cell_below(t[d] - 0.5);
+      const double x = f[d] = t[d] - 0.5 - base[d];
       hat[d][0] = 1.0 - x;
       hat[d][1] = x;
       hat[d][2] = 0.0;
@@ -76,20 +83,20 @@ struct FillingWeights {
   /** t: as above; width: of the point, in spacings, at most 1. */
   template <int dim> void find(const double *t, double width)
   {
+    const double inverse = 1.0 / width;
     for (int d = 0; d < dim; d++) {
-      const double cell = std::floor(t[d] - 0.5 - 0.5 * width);
-      first[d] = (int) cell;
+      first[d] = cell_below(t[d] - 0.5 - 0.5 * width);
       for (int k = 0; k < 3; k++) {
-        const double x = t[d] - 0.5 - cell - k;
-        share[d][k] = (below(x + 0.5 * width) - below(x - 0.5 * width)) / width;
+        const double x = t[d] - 0.5 - first[d] - k;
+        share[d][k] = (below(x + 0.5 * width) - below(x - 0.5 * width)) * inverse;
       }
     }
   }
   /** Share of a hat that is below a place. */
   static double below(double x)
   {
-    if (x < 0.0) return x < -1.0 ? 0.0 : 0.5 * (1.0 + x) * (1.0 + x);
-    return x > 1.0 ? 1.0 : 0.5 + x * (1.0 - 0.5 * x);
+    x = std::max(-1.0, std::min(x, 1.0));
+    return 0.5 + x * (1.0 - 0.5 * std::fabs(x));
   }
 };
 

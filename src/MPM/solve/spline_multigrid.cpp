@@ -156,6 +156,29 @@ void add_blocks(int number, F gradient_of, const double *C, double *element)
   }
 }
 
+/** The same with G_J [ngrad][width][width], of projected functions, which turn a value into others. */
+template <int W, int G>
+void add_held_blocks(int number, const double *gradients, const double *C, double *element)
+{
+  constexpr int M = W * G;
+  for (int J = 0; J < number; J++) {
+    const double *const gJ = gradients + (std::size_t) J * M * W;
+    double T[M * W] = {};
+    for (int i = 0; i < M; i++)
+      for (int j = 0; j < M; j++)
+        for (int b = 0; b < W; b++) T[i * W + b] += C[i * M + j] * gJ[j * W + b];
+    for (int I = J; I < number; I++) {
+      const double *const gI = gradients + (std::size_t) I * M * W;
+      double *const K = element + ((std::size_t) I * number + J) * W * W;
+      double sum[W * W] = {};
+      for (int j = 0; j < M; j++)
+        for (int a = 0; a < W; a++)
+          for (int b = 0; b < W; b++) sum[a * W + b] += gI[j * W + a] * T[j * W + b];
+      for (int ab = 0; ab < W * W; ab++) K[ab] += sum[ab];
+    }
+  }
+}
+
 /** Means around nodes of which several ranks may have a part: sums that make their stiffness, and values of nodes, one mean after the other. */
 struct Means {
   struct Head {
@@ -308,7 +331,7 @@ struct SplineMultigrid::Levels {
   std::vector<int64_t> nodes;
   std::vector<int> local,
       place;    // coarse nodes of these, and the place of a coarse node in that list
-  std::vector<double> element, G, T;
+  std::vector<double> element, G, KP;
   bool held = false;
   Blocks blocks;
   Means means, rim_means;    // of nodes of this rank's part of the first level, and of the rim
@@ -455,6 +478,9 @@ struct SplineMultigrid::Levels {
   void smoother_of(Level &, const LatticeNodes &, const int *cells);
   void find_parents();
   void start(int n, const int64_t *nodes);
+  template <int W>
+  void hold(const std::vector<int64_t> &of, const HeldParts &, std::vector<int> &number,
+            std::vector<double> &K);
   void flush();
   void add_rim(int row, int column, const double *K);
   void add_masses(const double *mass);
@@ -635,11 +661,14 @@ void SplineMultigrid::Levels::start(int n, const int64_t *of)
   for (const int64_t node : nodes) {
     held = held || !plain[node];
     const auto add = [&](int at) {
-      if (place[at] >= 0) return;
+      const bool known = place[at] >= 0;
+      // of a whole, nodes as they are: images of one in a narrow periodic box become one when they are projected
+      if (whole) held = held || known;
+      if (known && !whole) return;
       place[at] = local.size();
       local.push_back(at);
     };
-    if (plain[node])
+    if (plain[node] || whole)
       for (const auto &part : to_mine.of(node)) add(part.node);
     else
       for (auto part = held_to_mine.begin(node); part != held_to_mine.end(node); ++part)
@@ -662,9 +691,68 @@ void SplineMultigrid::Levels::add_rim(int row, int column, const double *K)
     for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
 }
 
+/** From the stiffness K [n][n] of nodes, one triangle, to that of the nodes x of u = P x. number: of each node, and then of each x. */
+template <int W>
+void SplineMultigrid::Levels::hold(const std::vector<int64_t> &of, const HeldParts &parts,
+                                   std::vector<int> &number, std::vector<double> &K)
+{
+  constexpr int WW = W * W;
+  const std::size_t n = of.size();
+  constexpr auto identity = [] {
+    HeldPart same{0, {}};
+    for (int a = 0; a < W; a++) same.W[a * W + a] = 1.0;
+    return same;
+  }();
+  const auto each_part = [&](std::size_t i, const auto &f) {
+    if (plain[of[i]]) return f(number[i], identity.W);
+    for (auto part = parts.begin(of[i]); part != parts.end(of[i]); ++part) f(part->node, part->W);
+  };
+  std::vector<int> to;
+  for (std::size_t i = 0; i < n; i++)
+    each_part(i, [&](int at, const double *) {
+      to.push_back(at);
+    });
+  std::sort(to.begin(), to.end());
+  to.erase(std::unique(to.begin(), to.end()), to.end());
+  const auto place_of = [&](int at) {
+    return std::lower_bound(to.begin(), to.end(), at) - to.begin();
+  };
+  const std::size_t nto = to.size();
+  KP.assign(nto * n * WW, 0.0);
+  for (std::size_t j = 0; j < n; j++)
+    each_part(j, [&](int at, const double *P) {
+      double *const column = KP.data() + place_of(at) * n * WW;
+      for (std::size_t i = 0; i < n; i++) {
+        const double *const block = K.data() + (i >= j ? i * n + j : j * n + i) * WW;
+        for (int a = 0; a < W; a++)
+          for (int k = 0; k < W; k++) {
+            const double value = i >= j ? block[a * W + k] : block[k * W + a];
+            for (int b = 0; b < W; b++) column[i * WW + a * W + b] += value * P[k * W + b];
+          }
+      }
+    });
+  K.assign(nto * nto * WW, 0.0);
+  for (std::size_t i = 0; i < n; i++)
+    each_part(i, [&](int at, const double *P) {
+      const std::size_t I = place_of(at);
+      for (std::size_t J = 0; J <= I; J++) {
+        const double *const block = KP.data() + (J * n + i) * WW;
+        double *const sum = K.data() + (I * nto + J) * WW;
+        for (int k = 0; k < W; k++)
+          for (int a = 0; a < W; a++)
+            for (int b = 0; b < W; b++) sum[a * W + b] += P[k * W + a] * block[k * W + b];
+      }
+    });
+  number = std::move(to);
+}
+
 void SplineMultigrid::Levels::flush()
 {
-  const int n = local.size(), w = width;
+  const int w = width;
+  const auto project = w == 1 ? &Levels::hold<1> : w == 2 ? &Levels::hold<2> : &Levels::hold<3>;
+  for (const int node : local) place[node] = -1;
+  if (whole && held) (this->*project)(nodes, held_to_mine, local, element);
+  const int n = local.size();
   for (int I = 0; I < n; I++)
     for (int J = 0; J <= I; J++) {
       const double *const K = element.data() + (I * n + J) * w * w;
@@ -675,35 +763,20 @@ void SplineMultigrid::Levels::flush()
         for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
     }
   // of the rim, projected, between nodes of the same chunk
-  const int m = rim_local.size();
+  std::vector<int64_t> of_rim;
+  std::vector<int> in_rim;
+  bool free = true;
+  for (const int i : rim_local) {
+    of_rim.push_back(nodes[i]);
+    in_rim.push_back(rim_number[nodes[i]]);
+    free = free && plain[nodes[i]];
+  }
+  if (!free) (this->*project)(of_rim, held_to_rim, in_rim, rim_element);
+  const int m = in_rim.size();
   for (int I = 0; I < m; I++)
-    for (int J = 0; J <= I; J++) {
-      const int64_t i = nodes[rim_local[I]], j = nodes[rim_local[J]];
-      const int row = rim_number[i], column = rim_number[j];
-      const double *const K = rim_element.data() + (I * m + J) * w * w;
-      if (plain[i] && plain[j]) {
-        if (rim_factors.together(row, column)) add_rim(row, column, K);
-        continue;
-      }
-      const HeldPart of_i{row, {1.0}}, of_j{column, {1.0}};
-      const auto begin = [&](int64_t node, const HeldPart &own) {
-        return plain[node] ? &own : held_to_rim.begin(node);
-      };
-      const auto end = [&](int64_t node, const HeldPart &own) {
-        return plain[node] ? &own + 1 : held_to_rim.end(node);
-      };
-      for (auto p = begin(i, of_i); p != end(i, of_i); ++p)
-        for (auto q = begin(j, of_j); q != end(j, of_j); ++q) {
-          // a node and itself: both orders of two of its parts are the same block
-          if ((I == J && p < q) || !rim_factors.together(p->node, q->node)) continue;
-          Matrix block = Eigen::Map<const Matrix>(K, w, w);
-          if (!plain[i]) block = (Eigen::Map<const Matrix>(p->W, w, w).transpose() * block).eval();
-          if (!plain[j]) block = (block * Eigen::Map<const Matrix>(q->W, w, w)).eval();
-          if (I != J && p->node == q->node) block += block.transpose().eval();
-          add_rim(p->node, q->node, block.data());
-        }
-    }
-  for (const int node : local) place[node] = -1;
+    for (int J = 0; J <= I; J++)
+      if (rim_factors.together(in_rim[I], in_rim[J]))
+        add_rim(in_rim[I], in_rim[J], rim_element.data() + (I * m + J) * w * w);
   local.clear();
   nodes.clear();
   rim_local.clear();
@@ -720,10 +793,6 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
   for (int i = 0; i < m; i++)
     for (int j = 0; j < m; j++)
       symmetric[i * m + j] = 0.5 * (stiffness[i * m + j] + stiffness[j * m + i]);
-  const auto C = [&](int i, int j) {
-    return symmetric[i * m + j];
-  };
-  o.T.assign(m * w, 0.0);
   const auto add = [&](int number, const auto &gradient_of, std::vector<double> &element) {
     using Gradient = decltype(gradient_of);
     // [width][ngrad]: scalars, and displacements in the plane and in space
@@ -740,6 +809,15 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
         return gradient + o.rim_local[J] * ngrad;
       },
       o.rim_element);
+  if (o.whole) {
+    add(
+        n,
+        [&](int J) {
+          return gradient + J * ngrad;
+        },
+        o.element);
+    return;
+  }
   if (!o.held) {
     // G_J: [ngrad] gradient of a coarse function
 
@@ -758,8 +836,6 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
     return;
   }
 
-  // G_J: [ngrad][width][width], of projected functions, which turn a value into others
-
   o.G.assign((std::size_t) nc * m * w, 0.0);
   for (int i = 0; i < n; i++) {
     const auto g_of = [&](int coarse) {
@@ -777,20 +853,11 @@ void SplineMultigrid::add_point(int n, const int64_t *nodes, int ngrad, const do
         for (int ab = 0; ab < w * w; ab++)
           g_of(part->node)[l * w * w + ab] += gradient[i * ngrad + l] * part->W[ab];
   }
-  for (int J = 0; J < nc; J++) {
-    const double *const gJ = o.G.data() + (std::size_t) J * m * w;
-    std::fill(o.T.begin(), o.T.end(), 0.0);
-    for (int i = 0; i < m; i++)
-      for (int j = 0; j < m; j++)
-        for (int b = 0; b < w; b++) o.T[i * w + b] += C(i, j) * gJ[j * w + b];
-    for (int I = J; I < nc; I++) {
-      const double *const gI = o.G.data() + (std::size_t) I * m * w;
-      double *const K = o.element.data() + (I * nc + J) * w * w;
-      for (int j = 0; j < m; j++)
-        for (int a = 0; a < w; a++)
-          for (int b = 0; b < w; b++) K[a * w + b] += gI[j * w + a] * o.T[j * w + b];
-    }
-  }
+  static constexpr void (*held_table[3][3])(int, const double *, const double *, double *) = {
+      {add_held_blocks<1, 1>, add_held_blocks<1, 2>, add_held_blocks<1, 3>},
+      {add_held_blocks<2, 1>, add_held_blocks<2, 2>, add_held_blocks<2, 3>},
+      {add_held_blocks<3, 1>, add_held_blocks<3, 2>, add_held_blocks<3, 3>}};
+  held_table[w - 1][ngrad - 1](nc, o.G.data(), symmetric, o.element.data());
 }
 
 void SplineMultigrid::add_mean(int64_t around, int kind, const double sums[3], int n,
@@ -1440,7 +1507,7 @@ double SplineMultigrid::memory_usage() const
     bytes += list->capacity() * sizeof(int);
   for (const auto *list :
        {&o.projection, &o.inverse, &o.work[0], &o.work[1], &o.work[2], &o.rest, &o.rim_element,
-        &o.rim_x, &o.rim_b, &o.partial, &o.of_all, &o.element, &o.G, &o.T})
+        &o.rim_x, &o.rim_b, &o.partial, &o.of_all, &o.element, &o.G, &o.KP})
     bytes += list->capacity() * sizeof(double);
   bytes += o.last.nonZeros() * (sizeof(double) + sizeof(int)) + o.last.rows() * sizeof(int);
   for (const auto &level : o.coarse) {

@@ -1,0 +1,119 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_STENCIL_H
+#define LMP_MPM_FLOW_STENCIL_H
+
+#include "lattice/grid.h"
+
+#include <climits>
+#include <cstdint>
+#include <type_traits>
+
+namespace LAMMPS_NS {
+
+/** The faces and cells that a place between the middles of cells reaches, see lattice/staggered.h. They depend on its base alone. */
+template <int dim> struct MPMFlowStencil {
+  static constexpr int ROWS = 2 * (dim - 1);    ///< of three faces normal to an axis c along c
+  static constexpr int CELLS = 1 << dim;
+
+  const int *slots;
+  int block[3][4],
+      inside[3][4];    // parts of neighbor and of number in it, of indices base - 1 to base + 2
+
+  /** base: of a place in reach of this block of the grid. */
+  MPMFlowStencil(const MPM_NS::Grid &grid, const MPM_NS::Grid::Block &of, const int base[3])
+  {
+    slots = of.slot;
+    int stride = 9, step = 1;
+    for (int d = 1; d < dim; d++) step *= grid.side;
+    for (int d = 0; d < dim; d++) {
+      for (int k = 0; k < 4; k++) {
+        const int index = base[d] - 1 + k;
+        block[d][k] = stride * ((index >> grid.shift_bits) - of.b[d] + 1);
+        inside[d][k] = step * (index & (grid.side - 1));
+      }
+      stride /= 3;
+      step >>= grid.shift_bits;
+    }
+  }
+  /** Number of the cell, and its lower faces, with indices base + k; k: -1 to 2. */
+  int64_t number(int kx, int ky, int kz) const
+  {
+    int to = block[0][kx + 1] + block[1][ky + 1], n = inside[0][kx + 1] + inside[1][ky + 1];
+    if constexpr (dim == 3) {
+      to += block[2][kz + 1];
+      n += inside[2][kz + 1];
+    } else {
+      to += 1;
+    }
+    return (int64_t) slots[to] * MPM_NS::NODES_PER_BLOCK + n;
+  }
+  /** Face k of a row of faces normal to c, along c; row: k_d + 2 k_e with the axes d and e after c. */
+  template <int c> int64_t face(int row, int k) const
+  {
+    const int kd = row % 2, ke = row / 2;
+    if constexpr (dim == 2) return c == 0 ? number(k, kd, 0) : number(kd, k, 0);
+    return c == 0 ? number(k, kd, ke) : c == 1 ? number(ke, k, kd) : number(kd, ke, k);
+  }
+  /** Cells with k of 0 and 1, n: [(2 k_x + k_y) 2 + k_z], in 2d [2 k_x + k_y]. */
+  int64_t cell(int n) const
+  {
+    if constexpr (dim == 2) return number(n >> 1, n & 1, 0);
+    return number(n >> 2, n >> 1 & 1, n & 1);
+  }
+};
+
+/** Calls f(c) for each axis, c: as a constant. */
+template <int dim, class F> inline void for_each_axis(const F &f)
+{
+  f(std::integral_constant<int, 0>());
+  f(std::integral_constant<int, 1>());
+  if constexpr (dim == 3) f(std::integral_constant<int, 2>());
+}
+
+/** Something that places with the same base have in common, made when the first of them comes. Points that are neighbors in memory have bases that
+ *  differ by one at the most, or hardly more: there is one T for each parity of the indices. */
+template <int dim, class T> class MPMFlowNear {
+ public:
+  MPMFlowNear()
+  {
+    for (auto &one : entries) one.base[0] = INT_MIN;
+  }
+
+  /** The T of a base. Where it takes the place of another one, leave(T &) is called for that, and make(T &) for the new one. */
+  template <class Leave, class Make> T &at(const int base[3], const Leave &leave, const Make &make)
+  {
+    int k = 0;
+    for (int d = 0; d < dim; d++) k = 2 * k + (base[d] & 1);
+    auto &one = entries[k];
+    bool same = true;
+    for (int d = 0; d < dim; d++) same = same && one.base[d] == base[d];
+    if (same) return one.of;
+    if (one.base[0] != INT_MIN) leave(one.of);
+    for (int d = 0; d < dim; d++) one.base[d] = base[d];
+    make(one.of);
+    return one.of;
+  }
+  /** For all that are there. */
+  template <class F> void for_all(const F &f)
+  {
+    for (auto &one : entries)
+      if (one.base[0] != INT_MIN) f(one.of);
+  }
+
+ private:
+  struct Entry {
+    int base[3];
+    T of;
+  };
+  Entry entries[1 << dim];
+};
+
+}    // namespace LAMMPS_NS
+#endif
