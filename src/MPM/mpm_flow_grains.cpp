@@ -9,7 +9,7 @@
 #include "mpm_flow_grains.h"
 
 #include "fix_mpm_immersed.h"
-#include "mpm_flow_reach.h"
+#include "mpm_flow_stencil.h"
 
 #include "atom.h"
 #include "force.h"
@@ -84,8 +84,7 @@ template <int dim> bool MPMFlowGrains::find(Grain &g, const std::vector<double> 
   g.w.find<dim>(t);
   g.slot = cells.find_block(atom->x[g.i], base);
   if (g.slot < 0) return false;
-  MPMFlowReach<dim> reach;
-  reach.find(cells.grid, cells.grid.blocks[g.slot], g.w.base);
+  const MPMFlowStencil<dim> reach(cells.grid, cells.grid.blocks[g.slot], g.w.base);
   double around = 0.0;
   std::fill_n(g.of_weights, 3, 0.0);
   visit<dim>(reach, [&](int64_t number, const int k[3]) {
@@ -99,8 +98,7 @@ template <int dim> bool MPMFlowGrains::find(Grain &g, const std::vector<double> 
 template <int dim>
 void MPMFlowGrains::interpolate(const Grain &g, const double *values, double *v) const
 {
-  MPMFlowReach<dim> reach;
-  reach.find(cells.grid, cells.grid.blocks[g.slot], g.w.base);
+  const MPMFlowStencil<dim> reach(cells.grid, cells.grid.blocks[g.slot], g.w.base);
   std::fill_n(v, 3, 0.0);
   visit<dim>(reach, [&](int64_t number, const int k[3]) {
     for (int c = 0; c < dim; c++)
@@ -114,7 +112,7 @@ namespace {
 template <int dim> struct Splines {
   int first[3];
   double share[3][3], r[3];    // r: from the middle of the first cell, in spacings
-  MPMFlowReach<dim> reach;
+  MPMFlowStencil<dim> reach;
 
   Splines(const MPMFlowLattice &cells, const StaggeredWeights &w, int slot)
   {
@@ -127,7 +125,7 @@ template <int dim> struct Splines {
       share[d][1] = 0.75 - x * x;
       share[d][2] = 0.5 * (0.5 + x) * (0.5 + x);
     }
-    reach.find(cells.grid, cells.grid.blocks[slot], first);
+    reach = {cells.grid, cells.grid.blocks[slot], first};
   }
   template <class F> void visit(const F &f) const
   {
@@ -205,8 +203,7 @@ template <int dim> void MPMFlowGrains::find_force(Grain &g)
 
   const double without = fix.displaces() ? g.displaced : 0.0;
   const int width = 3 * dim + 1;
-  MPMFlowReach<dim> reach;
-  reach.find(cells.grid, cells.grid.blocks[g.slot], g.w.base);
+  const MPMFlowStencil<dim> reach(cells.grid, cells.grid.blocks[g.slot], g.w.base);
   visit<dim>(reach, [&](int64_t number, const int k[3]) {
     double *const to = sums.data() + number * width;
     for (int c = 0; c < dim; c++) {

@@ -16,7 +16,7 @@
 #include "material/material.h"
 #include "math/matrix.h"
 #include "modify.h"
-#include "mpm_flow_reach.h"
+#include "mpm_flow_stencil.h"
 #include "mpm_physics.h"
 #include "mpm_points.h"
 #include "mpm_time_limit.h"
@@ -91,10 +91,9 @@ template <int dim> struct Boxes {
   void visit_boxes(const Grid &grid, const Grid::Block &block, const Place *places,
                    const F &f) const
   {
-    MPMFlowReach<dim> reach;
     int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
     for (int d = 0; d < dim; d++) base[d] = first[places[d]][d];
-    reach.find(grid, block, base);
+    const MPMFlowStencil<dim> reach(grid, block, base);
     for (k[0] = 0; k[0] < 2; k[0]++)
       for (k[1] = 0; k[1] < 2; k[1]++)
         for (k[2] = 0; k[2] < (dim == 3 ? 2 : 1); k[2]++) {
@@ -116,13 +115,12 @@ template <int dim> struct Boxes {
   {
     Place places[3];
     places_of(c, d, places);
-    MPMFlowReach<dim> reach;
     int base[3] = {0, 0, 0}, n[3] = {1, 1, 1}, k[3] = {0, 0, 0};
     for (int e = 0; e < dim; e++) {
       base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
       n[e] = e == d ? 3 : 2;
     }
-    reach.find(grid, block, base);
+    const MPMFlowStencil<dim> reach(grid, block, base);
     const double *const along = share[places[d]][d];
     const double slope[3] = {-along[0], along[0] - along[1], along[1]};
     for (k[0] = 0; k[0] < n[0]; k[0]++)
@@ -141,10 +139,9 @@ template <int dim> struct Boxes {
   {
     Place places[3];
     places_of(c, d, places);
-    MPMFlowReach<dim> reach;
     int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
     for (int e = 0; e < dim; e++) base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
-    reach.find(grid, block, base);
+    const MPMFlowStencil<dim> reach(grid, block, base);
     int64_t low[8], high[8];
     double weights[8], sum = 0.0;
     int n = 0;
@@ -203,9 +200,8 @@ void interpolate(const MPMFlowLattice &cells, const Grid::Block &block, const do
                  const double *velocity, double *u)
 {
   StaggeredWeights w;
-  MPMFlowReach<dim> reach;
   w.find<dim>(t);
-  reach.find(cells.grid, block, w.base);
+  const MPMFlowStencil<dim> reach(cells.grid, block, w.base);
   std::fill_n(u, dim, 0.0);
   visit<dim>(reach, [&](int64_t number, const int k[3]) {
     for (int c = 0; c < dim; c++) u[c] += w.face<dim>(c, k) * velocity[number * dim + c];
@@ -493,7 +489,6 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
 
   // the normal, by splines of cells, which reach all of these boxes: next to no fluid gives a direction, too
 
-  MPMFlowReach<dim> reach;
   int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
   double spline[3][3], slope[3][3];
   for (int d = 0; d < dim; d++) {
@@ -506,7 +501,7 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
     slope[d][1] = -2.0 * x;
     slope[d][2] = x + 0.5;
   }
-  reach.find(cells.grid, block, base);
+  const MPMFlowStencil<dim> reach(cells.grid, block, base);
   for (k[0] = 0; k[0] < 3; k[0]++)
     for (k[1] = 0; k[1] < 3; k[1]++)
       for (k[2] = 0; k[2] < (dim == 3 ? 3 : 1); k[2]++) {

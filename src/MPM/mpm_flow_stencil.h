@@ -26,6 +26,7 @@ template <int dim> struct MPMFlowStencil {
   int block[3][4],
       inside[3][4];    // parts of neighbor and of number in it, of indices base - 1 to base + 2
 
+  MPMFlowStencil() = default;
   /** base: of a place in reach of this block of the grid. */
   MPMFlowStencil(const MPM_NS::Grid &grid, const MPM_NS::Grid::Block &of, const int base[3])
   {
@@ -54,6 +55,7 @@ template <int dim> struct MPMFlowStencil {
     }
     return (int64_t) slots[to] * MPM_NS::NODES_PER_BLOCK + n;
   }
+  int64_t number(const int k[3]) const { return number(k[0], k[1], dim == 3 ? k[2] : 0); }
   /** Face k of a row of faces normal to c, along c; row: k_d + 2 k_e with the axes d and e after c. */
   template <int c> int64_t face(int row, int k) const
   {
@@ -68,6 +70,17 @@ template <int dim> struct MPMFlowStencil {
     return number(n >> 2, n >> 1 & 1, n & 1);
   }
 };
+
+/** Calls f(number, k) for all cells, with indices base + k, whose middle or lower faces a place with this base reaches: none has the last index along two axes. */
+template <int dim, class F> inline void visit(const MPMFlowStencil<dim> &stencil, const F &f)
+{
+  int k[3] = {0, 0, 0};
+  for (k[0] = 0; k[0] < 3; k[0]++)
+    for (k[1] = 0; k[1] < (k[0] == 2 ? 2 : 3); k[1]++) {
+      const int n = dim == 2 ? 1 : (k[0] == 2 || k[1] == 2 ? 2 : 3);
+      for (k[2] = 0; k[2] < n; k[2]++) f(stencil.number(k), k);
+    }
+}
 
 /** Calls f(c) for each axis, c: as a constant. */
 template <int dim, class F> inline void for_each_axis(const F &f)

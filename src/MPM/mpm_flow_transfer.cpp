@@ -9,7 +9,6 @@
 #include "mpm_flow_transfer.h"
 
 #include "mpm_flow_inflow.h"
-#include "mpm_flow_reach.h"
 #include "mpm_flow_regions.h"
 #include "mpm_flow_solids.h"
 #include "mpm_flow_stencil.h"
@@ -193,12 +192,11 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
 {
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
-  MPMFlowReach<dim> reach;
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
     for (int i = run.first; i < run.last; i++) {
       places.find(points.x[i], w);
-      reach.find(cells.grid, block, w.base);
+      const MPMFlowStencil<dim> reach(cells.grid, block, w.base);
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
         double *const to = sums.data() + number * 2 * dim + dim;
         for (int c = 0; c < dim; c++) to[c] += points.volume[i] * w.face<dim>(c, k);
