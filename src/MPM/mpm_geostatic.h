@@ -55,8 +55,8 @@ class MPMGeostatic : protected Pointers {
   };
   static constexpr int BAND = 4;
 
-  /** Functions of the planes of nodes at point i of this field, or of another field on the same lattice,
-   *  counted from the lowest plane that reaches the ground. Returns their number. */
+  /** Shape functions of the planes of nodes at point i of this field, or of another field on the same lattice.
+   *  Planes are numbered from the lowest one that reaches the ground. Returns the number of planes. */
   int planes(const MPMField &, int i, Part list[BAND]) const;
   /** The function of the height that describes the velocity of a plane of nodes, and its value there. */
   int function_of(int plane, double &value) const;
