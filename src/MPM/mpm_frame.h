@@ -43,6 +43,7 @@ class MPMFrame : protected Pointers {
   virtual bool is_total() const { return false; }
   /** Positions of points on the lattice, [n][3]. */
   virtual MPMRows places() const { return {atom->x[0], 3}; }
+  /** Kernels of a transfer in this frame. split: keep force and old velocity apart (FLIP, energy ledger). */
   MPM_NS::TransferKernels kernels(MPM_NS::Transfer, bool split) const;
 
   // Transfer from points to nodes: rows for the forces of a batch, used if changes_forces()

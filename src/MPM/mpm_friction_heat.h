@@ -28,6 +28,7 @@ struct MPMFrictionHeatOptions {
   bool said = false;     ///< is the keyword given?
   double share = 1.0;    ///< with SHARE: share of the first body, or of the material at a wall
 
+  /** Does the energy become heat? */
   bool heats() const { return kind != NO; }
   /** Declares the keyword. yes, first: what these words do, for the manual. */
   void declare(MPM_NS::Options &, const char *yes, const char *first);

@@ -29,6 +29,7 @@ class MPMGuard : protected Pointers {
   /** Set-up of a run: checks that each point has one material, one integrator, positive volume and mass, and a
    *  finite state, and that pair styles know its radius. */
   void check_points() const;
+  /** Stops with an error if another fix integrates points of the field, too. */
   void check_integrators() const;
   /** Warns if there are material points that no field moves. */
   void check_other_points();
@@ -38,6 +39,8 @@ class MPMGuard : protected Pointers {
   void check_locking();
   /** Warns about settings of LAMMPS that make neighbor lists of points and grains slow; for all fields. */
   void check_neighbors() const;
+  /** Stops with an error if points that meet grains have no radius or one that is too large, or are rings
+   *  around an axis of symmetry. */
   void check_radii() const;
   /** Warns if neighbor lists consist mostly of skin; call it once lists exist. For all fields. */
   void check_lists() const;
@@ -49,6 +52,7 @@ class MPMGuard : protected Pointers {
     double skin;
     int every, delay, check, once;
   };
+  /** The present settings. */
   Lists lists() const;
   /** Settings of the restart file that the next set-up of a run continues from. */
   std::optional<Lists> lists_of_file;
@@ -78,10 +82,12 @@ class MPMGuard : protected Pointers {
    *  neighbor lists are made, which may be rare. */
   void wrap_far_points();
 
+  /** May points of the field be deleted? */
   bool may_delete() const
   {
     return field.options.bad == MPMFieldOptions::DELETE || field.options.delete_failed;
   }
+  /** Number of bad points so far. */
   bigint nbad() const { return nbad_total; }
 
   /** Points that fixes added to the field minus points that they removed, on this rank. A fix that counts

@@ -53,10 +53,12 @@ class MPMHeatBody : protected Pointers {
 
   /** Activates the blocks around this one: ranks need the nodes around those that their points reach. */
   void activate_around(const int *block) { activate_blocks_around(field, block); }
+  /** The blocks of the field are new. */
   void topology_changed() { listed = false; }
 
   /** [slot] blocks in which the surface is wanted. want_all() marks all blocks. */
   std::vector<char> near;
+  /** Start of a step: no block is wanted yet. */
   void begin_step();
   void want_all() { near.assign(near.size(), 1); }
   /** Finds the surface by sums over points in these blocks. Collective. */
@@ -87,6 +89,7 @@ class MPMHeatBody : protected Pointers {
   double conducting(int64_t node) const;
   /** Share of the heat that passes a gap (in node spacings). */
   double touches(double gap) const;
+  /** Temperature of the surface at a line. */
   double temperature(const Line &) const;
   /** Rate of this temperature due to all other heat. */
   double drift(const Line &) const;
@@ -141,9 +144,13 @@ class MPMHeatBody : protected Pointers {
  *  Keys are node * dim + axis of the body. Collective. */
 class MPMHeatShares {
  public:
+  /** Resets the counts. */
   void begin(const MPMHeatBody &body);
+  /** This rank knows the line. */
   void count(int64_t key) { counts[key] = 1.0; }
+  /** Sums the counts over ranks. Collective. */
   void sum(const MPMHeatBody &body);
+  /** Share of this rank in the work on a line. */
   double of(int64_t key) const { return 1.0 / counts[key]; }
 
  private:

@@ -36,7 +36,9 @@ class MPMHeatContact : protected Pointers {
    *  meet. */
   MPMHeatContact(class LAMMPS *, MPMHeatBody &a, MPMHeatBody &b, const MPMHeatPair &);
 
+  /** Activates the blocks around those of a field, if it is one of the two. */
   void extend_topology(const MPMField &);
+  /** The blocks of a field are new. */
   void topology_changed() { listed = false; }
   /** Marks blocks in which the bodies may meet. */
   void mark_near();
@@ -46,6 +48,7 @@ class MPMHeatContact : protected Pointers {
   /** Updates the exchange for the capacities of nodes. Returns the largest rate of exchange on this rank
    *  [1/time]. */
   double begin_step();
+  /** Notes the lines of this contact for edges of both bodies. */
   void note_edges() const;
   /** Limits the rate at which the difference of temperatures decays: to cap, the rate of the fastest other
    *  change. At edges, the limit is the rate of conduction. */

@@ -65,6 +65,7 @@ class MPMHeatFaces : protected Pointers {
   int axes_that_follow() const;
   /** Activates blocks so that a rank that has one node of a line has all of them. */
   void extend_topology();
+  /** The blocks of the field are new: lists the lines again. */
   void topology_changed();
 
   /** Marks the blocks [slot] that contain nodes of lines. */

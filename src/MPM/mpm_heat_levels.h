@@ -32,6 +32,7 @@ class MPMHeatLevels : protected Pointers {
 
   MPMHeatLevels(class LAMMPS *, const std::vector<Pair> &);
 
+  /** Is this one of the lattices? */
   bool has(const MPMConduction &) const;
   /** Finds the temperatures of the nodes of all lattices. Collective. Returns the bound of the rates on this
    *  rank, as MPMConduction::points_to_nodes() does for one lattice. */

@@ -44,6 +44,7 @@ class MPMHeatSurfaces : protected Pointers {
 
   /** Activates further blocks: ranks need the nodes around those that their points reach. */
   void extend_topology();
+  /** The blocks of the field are new. */
   void topology_changed();
   /** Marks blocks with surfaces. */
   void mark_near();
@@ -53,6 +54,7 @@ class MPMHeatSurfaces : protected Pointers {
   /** Updates the exchange for the capacities and temperatures of nodes. Returns the largest rate on this rank
    *  at which temperatures follow the outside temperature [1/time]. */
   double begin_step();
+  /** Notes the lines of these surfaces for edges of the body. */
   void note_edges() const;
   /** Limits the rate at which temperatures follow to cap, and at edges to the rate of conduction. */
   void limit(double cap, double conduction);

@@ -56,6 +56,7 @@ struct MPMImplicitOptions {
   static constexpr double ENOUGH_TO_STABILIZE = 1.0;
   bool report = false;    ///< print residuals of each step to the log
 
+  /** Declares the arguments and keywords of fix mpm/implicit. */
   MPM_NS::Options declare();
   /** Does the method keep accelerations from step to step, in balance with a mean of the forces of both ends of
    *  a step? */

@@ -40,6 +40,7 @@ struct MPMImplicitMemory {
   int64_t steps = 0, iterations = 0,
           last = 0;    // with these factors; last: iterations of the last step
 
+  /** Forgets the factors and the corrections that belong to them. */
   void drop_factors()
   {
     factorized = false;

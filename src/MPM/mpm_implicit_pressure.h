@@ -24,6 +24,7 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
  public:
   Joint(MPMImplicit &motion, MPMNodePressure &water);
 
+  /** Start and end of a step. */
   void begin_step();
   void end_step();
 

@@ -85,6 +85,7 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   /** Kinetic energies of the nodes that this rank owns, with the velocities before the momentum equation and
    *  with the present ones. */
   void nodal_kinetic_energies(double &old, double &now) const;
+  /** Kinetic energy of this rank's points [energy]. */
   double point_kinetic_energy() const;
 
  private:

@@ -61,6 +61,7 @@ class MPMMeshForces : protected Pointers {
   void init(const std::string &user);
   /** Evaluates the values of this step, on all ranks. */
   void evaluate();
+  /** Number of conditions. */
   bool empty() const { return list.empty(); }
   std::size_t size() const { return list.size(); }
 

@@ -27,6 +27,7 @@ class MPMMeshMeans {
 
   /** Resets the sums, for this number of groups and of values. */
   void clear(int ngroup, int nvalue);
+  /** Adds the values of a point of a group with this weight. */
   void add(int group, const MPM_NS::BackgroundMesh::Place &, double weight, const double *values);
   /** Sums over ranks. Collective. */
   void sum();

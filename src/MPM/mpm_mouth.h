@@ -50,6 +50,7 @@ class MPMMouth : protected Pointers {
   bool holds(const double *x, double reach) const;
   /** Is a place, given relative to middle(), less than this distance away from the sphere around the mouth? */
   bool is_near(const double *from_middle, double distance) const;
+  /** Center of the mouth. */
   const double *middle() const { return center; }
 
  private:

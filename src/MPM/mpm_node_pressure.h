@@ -31,6 +31,7 @@ class MPMNodePressure {
   /** Begins an implicit step, with the positions of points and the values p_start of its start. inertial: the
    *  motion has inertia. Collective. */
   virtual void begin_solve(double dt, bool inertial) = 0;
+  /** [node] p_start. */
   virtual const std::vector<double> &values_at_start() const = 0;
   /** [node] C; nodes with C = 0 have no pressure. */
   virtual const std::vector<double> &capacities() const = 0;

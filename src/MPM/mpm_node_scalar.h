@@ -26,10 +26,10 @@ class MPMField;
  *      C_i = sum_p C_p N_ip,  u_i = sum_p C_p N_ip [u_p + g_p . (x_i - x_p)]/C_i,
  *      C_i du_i/dt = sum_p q_p . grad N_ip + sum_p s_p N_ip,
  *
- *  where q_p = -V_p (flow per area) is the flux times the volume, and s_p is the rate of sources in points.
- *  Both may depend on the scalar and its gradient at the point. As the weights N_ip of a point have the sum
- *  one, and the sum of N_ip (x_i - x_p) is zero, sum_i C_i u_i is the amount that the points have, and fluxes
- *  do not change it.
+ *  where q_p = V_p (flow per area) is the flux times the volume, and s_p is the rate of sources in points. Both
+ *  may depend on the scalar and its gradient at the point. As the weights N_ip of a point have the sum one, and
+ *  the sum of N_ip (x_i - x_p) is zero, sum_i C_i u_i is the amount that the points have, and fluxes do not
+ *  change it.
  *
  *  Functions of the user are called with batches of points of a run. */
 class MPMNodeScalar {
@@ -76,6 +76,8 @@ class MPMNodeScalar {
   void init(bool slopes, bool volumes);
   /** Finds capacities, volumes, and values of nodes. keeps: also sets before = value. */
   void points_to_nodes(const Fill &, bool keeps);
+  /** Sums values, capacities, and volumes over ranks, and divides values by capacities; called by the user with
+   *  is_level. */
   void sum_nodes();
   void keep() { before = value; }
   /** Gives capacities C_p, or other values, of the points of a run that takes part in points_to_nodes(). */
@@ -91,6 +93,7 @@ class MPMNodeScalar {
   void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
   /** The same for fluxes along gradients only, with less work. */
   void find_rates_along(const Factors &);
+  /** Sums the rates over ranks and divides them by capacities; called by the user with is_level. */
   void sum_rates();
   /** Bound of the eigenvalues of the negative rates on this rank, from the rows of their matrix [1/time]; not
    *  with domains. bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. add_rows()

@@ -21,6 +21,7 @@
 
 namespace LAMMPS_NS {
 
+/** Makes a range of base nodes in a tile empty: lower bounds in box[0..2], upper bounds in box[3..5]. */
 inline void reset_box(int box[6])
 {
   std::fill_n(box, 3, 127);
