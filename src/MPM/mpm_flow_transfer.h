@@ -39,8 +39,8 @@ struct MPMFlowPoints {
 
 /** How points get their velocity from the cells. */
 struct MPMFlowUpdate {
-  double
-      flip;    ///< share that points keep of the part of their velocities that cells do not resolve
+  /** Share that points keep of the part of their velocities that cells do not resolve. */
+  double flip;
   const double *old;     ///< [cell][dim] velocities before forces and pressure; null: no flip
   double reflect;        ///< share of the change by forces and pressure that is added a second time
   const double *more;    ///< [cell][dim] the change that is added; null: no reflection
@@ -58,10 +58,10 @@ struct MPMFlowUpdate {
   /** Two sums over the points of this rank are added to it, both due to the shift: the change of the kinetic
    *  energy, and the work of forces along the shift. */
   double *of_shift = nullptr;
-  const double *paths =
-      nullptr;    ///< [cell][dim] velocities that points move with; null: their new velocities
-  double viscosity =
-      0.0;    ///< viscosity of the stress that fluid points have in addition to the pressure
+  /** [cell][dim] velocities that points move with; null: their new velocities. */
+  const double *paths = nullptr;
+  /** Viscosity of the stress that fluid points have in addition to the pressure. */
+  double viscosity = 0.0;
 };
 
 /** Transfer from points to cells. sums: [cell][3 dim + 1] with momentum, mass, and force at faces, and the

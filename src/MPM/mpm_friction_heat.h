@@ -84,8 +84,8 @@ class MPMFrictionHeat : protected Pointers {
     bool mixed;                   // effusivities differ from point to point
     bool orthotropic;             // and with the direction
     double effusivity;            // unless mixed
-    std::vector<double>
-        at_node;    // one number, or the components of a symmetric tensor, see map_tensor()
+    // one number, or the components of a symmetric tensor, see map_tensor()
+    std::vector<double> at_node;
   };
   const MPMFrictionHeatOptions &options;
   FixMPMHeat *heat = nullptr;

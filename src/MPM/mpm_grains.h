@@ -26,8 +26,8 @@ class MPMGrains : protected Pointers {
   struct Law {
     double k = 0.0;
     bool hertz = false;
-    double damping =
-        0.0;    ///< force over the product of the velocity of approach and the quantity of damping_is
+    /** Force over the product of the velocity of approach and the quantity of damping_is. */
+    double damping = 0.0;
     enum { BY_MASS, PLAIN, BY_MASS_AND_RADIUS, BY_STIFFNESS } damping_is = BY_MASS;
   };
   struct Collision {

@@ -125,8 +125,8 @@ class MPMHeatBody : protected Pointers {
  private:
   bool listed = false;
   std::vector<std::array<int, 2>> images;    // a block with images, and a block with their nodes
-  std::vector<double>
-      held;    // volume of nodes if spreads(): share is then that of other functions
+  // volume of nodes if spreads(): share is then that of other functions
+  std::vector<double> held;
   std::vector<double> heat;
   std::vector<double> noted;    // [nnodes][NOTED] sums for edges
   enum { NORMAL, PARTS = 3, OF_SURFACES, NOTED };

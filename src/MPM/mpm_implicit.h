@@ -46,13 +46,13 @@ struct MPMImplicitOptions {
   double least_accuracy = 1.0e-3;    ///< largest relative residual of linear solutions
   enum Preconditioner { BLOCKS, MULTIGRID };
   Preconditioner preconditioner = BLOCKS;
-  double slip =
-      0.0;    ///< slip in a step above which friction is that of Coulomb [distance]; 0: a share of the node spacing
-  double stabilize =
-      0.0;    ///< stiffness of nodes that points barely reach, relative to the modulus
+  /** Slip in a step above which friction is that of Coulomb [distance]; 0: a share of the node spacing. */
+  double slip = 0.0;
+  /** Stiffness of nodes that points barely reach, relative to the modulus. */
+  double stabilize = 0.0;
   bool stabilize_is_given = false;
-  bool stabilize_if_stuck =
-      false;    ///< stabilize from the first step on that finds no balance otherwise
+  /** Stabilize from the first step on that finds no balance otherwise. */
+  bool stabilize_if_stuck = false;
   static constexpr double ENOUGH_TO_STABILIZE = 1.0;
   bool report = false;    ///< print residuals of each step to the log
 
@@ -107,10 +107,10 @@ class MPMImplicit : private MPMNodeSystem {
     int made = 0;          ///< number of times that levels, or factors, of a tangent were made
     int indefinite = 0;    ///< iterations in which the energy had no minimum along some direction
     int parts = 0;         ///< parts of the step that converged
-    bool stuck =
-        false;    ///< there was no balance without the stiffness of nodes that points barely reach
-    double stabilizing =
-        0.0;    ///< energy of the stiffness of nodes that points barely reach [mass velocity^2]
+    /** There was no balance without the stiffness of nodes that points barely reach. */
+    bool stuck = false;
+    /** Energy of the stiffness of nodes that points barely reach [mass velocity^2]. */
+    double stabilizing = 0.0;
     double reached = 0.0;             ///< share of the step that was reached
     double unbalanced = 0.0;          ///< sum of the unbalanced forces [mass acceleration]
     double ratio = 0.0;               ///< ratio of these to all forces
@@ -232,16 +232,16 @@ class MPMImplicit : private MPMNodeSystem {
   std::vector<double> friction;
   int repeats = 1;             // repetitions of node actions until they are a projection
   std::vector<double> mass;    // [node]
-  std::vector<int64_t>
-      heavy;    // nodes with a mass, owned ones first; vectors are zero at all others
+  // nodes with a mass, owned ones first; vectors are zero at all others
+  std::vector<int64_t> heavy;
   std::size_t heavy_owned = 0;
   std::vector<double *> heavy_records;    // records of these nodes
   bool by_reach = false;                  // are forces of nodes weighted by reach?
   std::vector<double> reach;              // [node] number of points there, at most 1
   std::vector<double> before, explicit_velocity, outer, inner, from, wall, held;
   std::vector<double> start, acceleration;    // at the start, with walls, for dynamics
-  std::vector<double>
-      early;    // with late < 1: excess of the forces of the start over outer, times their share
+  // with late < 1: excess of the forces of the start over outer, times their share
+  std::vector<double> early;
   std::vector<double> next;                   // acceleration at the end, for methods that keep it
   std::vector<double> velocity;               // velocity that points move with
   std::vector<double> partial;                // s u
@@ -256,8 +256,8 @@ class MPMImplicit : private MPMNodeSystem {
 
   bool impacts = false;      // walls separate, or have friction
   double rub_share = 1.0;    // share of the friction by contact forces in the balance
-  std::vector<double>
-      offset;    // addition to motions after which they slip as at the end of the step
+  // addition to motions after which they slip as at the end of the step
+  std::vector<double> offset;
   std::vector<double> slide;    // u with this addition
   std::vector<double> mean;     // excess of the accelerations that points bring over those of nodes
   std::vector<double> ending, stopped;    // velocities at the end, before and after walls
@@ -279,10 +279,10 @@ class MPMImplicit : private MPMNodeSystem {
   bool large = false;                   // too many unknowns for factors: multigrid levels are used
   std::vector<double> of_ranks, of_owned, of_system, of_everyone, rotations;
   std::vector<double> left, moved, solved, corrected;    // vectors of shared nodes
-  double taken =
-      0.0;    // share of the last correction that was made; 0: none that the factors have not learned from yet
-  std::vector<double>
-      turns;    // [heavy][dim][dim] rotation of the body since the factors were made; empty: none
+  // share of the last correction that was made; 0: none that the factors have not learned from yet
+  double taken = 0.0;
+  // [heavy][dim][dim] rotation of the body since the factors were made; empty: none
+  std::vector<double> turns;
   bool can_keep() const;
   void recall();
   bool walls_are_same(const std::vector<double> &walls) const;

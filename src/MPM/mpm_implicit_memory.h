@@ -24,8 +24,8 @@ namespace LAMMPS_NS {
  *  all ranks in the order of SharedNodes, because nodes may move to other ranks. */
 struct MPMImplicitMemory {
   bool known = false;    // is anything stored?
-  std::vector<uint64_t>
-      nodes;    // blocks, the nodes of each that this rank owns, and those with a mass
+  // blocks, the nodes of each that this rank owns, and those with a mass
+  std::vector<uint64_t> nodes;
   std::vector<double> walls;    // what walls leave of a generic motion
   double dt = 0.0;
   std::deque<std::vector<double>> motions;    // the last one first

@@ -64,8 +64,8 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   MPM_NS::FlexibleGMRES solver{60};
   MPM_NS::SplineMultigrid levels;
   bool prepared = false;    // are the levels up to date in this step?
-  bool stress_alone =
-      false;    // does the motion in the preconditioner ignore the pressure in this step?
+  // does the motion in the preconditioner ignore the pressure in this step?
+  bool stress_alone = false;
   const std::vector<double> *at = nullptr;    // motion at which the system is linearized
   double response = 0.0, volume = 0.0;    // response to a unit of pressure; volume of all points
   double round_off = 0.0;                 // volumes below which pressures are not resolved
@@ -77,8 +77,8 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   std::vector<double> of_points, dp, dV;    // [n]
   std::vector<double> softness;             // [n] softness of the soil, for the levels
   std::vector<double> of_ranks;
-  std::vector<std::vector<double>>
-      free_axes;    // [node][dim] motions of the whole body that nothing resists
+  // [node][dim] motions of the whole body that nothing resists
+  std::vector<std::vector<double>> free_axes;
 
   int64_t size() const override { return motion.nreals() + (int64_t) motion.mass.size(); }
   void apply(const double *x, double *y) override;

@@ -22,8 +22,8 @@ class MPMField;
 
 /** Energies spent or gained by a field since the first step with a ledger, share of this rank [energy]. */
 struct MPMEnergies {
-  double
-      external;    ///< work of atom->f (gravity, contact by pair styles, walls, ...) and of loads given as a stress
+  /** Work of atom->f (gravity, contact by pair styles, walls, ...) and of loads given as a stress. */
+  double external;
   double boundary;    ///< work of node actions of kind boundary
   double contact;     ///< work of node actions between fields
   double internal;    ///< work of stress at the mean of old and new velocity, taken from the motion
@@ -40,8 +40,8 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   /** Work that moving walls, rigid bodies, grains, and atoms have done on the nodes, share of this rank
    *  [energy]. Counted in any run, without losses by friction at walls and between bodies. */
   double driven = 0.0;
-  std::vector<double>
-      start;    ///< initial values of compute mpm/energy, until the end of the next run
+  /** Initial values of compute mpm/energy, until the end of the next run. */
+  std::vector<double> start;
 
   MPMLedger(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), MPMEnergies(), field(field) {}
 
@@ -91,8 +91,8 @@ class MPMLedger : protected Pointers, public MPMEnergies {
  private:
   MPMField &field;
   double kinetic_points = 0.0;    // at the end of the last step
-  std::vector<double>
-      impulses;    // [node][3] of node actions on owned nodes in this step; empty: none
+  // [node][3] of node actions on owned nodes in this step; empty: none
+  std::vector<double> impulses;
 
   double *impulse(const double *record);
   static bool change_by(double *record, const double *impulse, double change[3]);

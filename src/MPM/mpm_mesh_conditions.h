@@ -109,8 +109,8 @@ class MPMMeshForces : protected Pointers {
   int npressure = 0;
   std::vector<double> normals;    // [node][pressure][3]
   std::vector<int> place;         // [node] index in of_nodes, -1: none
-  std::vector<std::vector<OfNode>>
-      of_nodes;    // conditions of a node: first SLIP, then others, in the order of the input
+  // conditions of a node: first SLIP, then others, in the order of the input
+  std::vector<std::vector<OfNode>> of_nodes;
   bool varies = false;
 
   OfNode &add(int node, int condition);

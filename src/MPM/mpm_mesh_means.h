@@ -39,8 +39,8 @@ class MPMMeshMeans {
   const MPM_NS::BackgroundMesh &mesh;
   MPMMeshRanks &ranks;
   int width = 1, groups = 0;
-  std::vector<double>
-      sums;    // [group][node][width]: sum of weights, then sums of weight times value
+  // [group][node][width]: sum of weights, then sums of weight times value
+  std::vector<double> sums;
 
   std::size_t row(int group, int node) const { return width * (group * mesh.nodes.size() + node); }
 };
