@@ -221,13 +221,12 @@ class MPMImplicit : private MPMNodeSystem {
   bool touching = false;                      // do bodies touch?
   std::vector<double> of_walls;               // w of walls alone
   double speed_of_walls = 0.0;
-  std::unique_ptr<MPMTies> ties;    // solves the contact equations between bodies
-  bool has_friction = false;        // does one of the contacts have friction?
-  bool rubs = false;                // is there friction that projections do not include?
-  double slip = 0.0;                // slip above which friction is that of Coulomb
-  double of_pushes = 1.0;           // scale of the last projection
-  double reached_by_walls = 0.0,
-         aim = 1.0;               // statics: shares of the motion of walls in this step
+  std::unique_ptr<MPMTies> ties;               // solves the contact equations between bodies
+  bool has_friction = false;                   // does one of the contacts have friction?
+  bool rubs = false;                           // is there friction that projections do not include?
+  double slip = 0.0;                           // slip above which friction is that of Coulomb
+  double of_pushes = 1.0;                      // scale of the last projection
+  double reached_by_walls = 0.0, aim = 1.0;    // statics: shares of wall motion in this step
   std::vector<double> closing;    // displacements by which walls close gaps; empty: none
   std::vector<double> friction;
   int repeats = 1;             // repetitions of node actions until they are a projection

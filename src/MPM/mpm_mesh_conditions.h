@@ -61,7 +61,7 @@ class MPMMeshForces : protected Pointers {
   void init(const std::string &user);
   /** Evaluates the values of this step, on all ranks. */
   void evaluate();
-  /** Number of conditions. */
+  /** Are there no conditions, and how many are there? */
   bool empty() const { return list.empty(); }
   std::size_t size() const { return list.size(); }
 
