@@ -15,9 +15,10 @@
 
 namespace LAMMPS_NS {
 
-/** Stress of a viscous fluid, 2 mu times the rate of strain, on a staggered lattice: normal stresses are in the middle of
- *  cells, shear stresses at edges. There is none in dry cells, and at edges with two or more of them around: a free surface has no
- *  traction. What it acts on reaches up to the surface, as for the pressure. */
+/** Stress of a viscous fluid on a staggered lattice, 2 mu times the rate of strain. Normal stresses are at the
+ *  middle of cells, shear stresses at edges. The stress is zero in dry cells, and at edges that touch two or
+ *  more of them, because a free surface has no traction. The volume that the stress acts on reaches up to the
+ *  surface, as for the pressure. */
 class MPMFlowViscosity {
  public:
   MPMFlowViscosity(const MPMFlowLattice &cells, const MPMFlowPressure &water) :
@@ -25,10 +26,11 @@ class MPMFlowViscosity {
   {
   }
 
-  /** One half of the largest stable step for the kinematic viscosity nu. */
+  /** Half of the largest stable time step for the kinematic viscosity nu. */
   static double stable_dt(double nu, double h, int dim) { return h * h / (4.0 * dim * nu); }
 
-  /** sum += factor div(2 D) in owned cells, factor: time times kinematic viscosity. Velocities [cell][dim] are complete. */
+  /** sum += factor div(2 D) in owned cells. factor: time step times kinematic viscosity. velocity: [cell][dim],
+   *  complete. */
   void add(double factor, const std::vector<double> &velocity, std::vector<double> &sum) const;
 
  private:

@@ -16,39 +16,42 @@
 namespace LAMMPS_NS {
 class MPMFlowRegions;
 
-/** Values in the middle of cells, such as smooth shares of a fluid, go on into walls such that their contours meet these at a
- *  contact angle: what is at the depth d behind a wall with the normal m (into the flow) is what is
- *  at the height d above it, at a place that is farther along the wall, to where there is more fluid, by 2 d cot(angle). This maps planes
- *  that meet the wall at the angle to themselves, and curved surfaces to such ones with the same curvature, as an image at a mirror
- *  does for 90 degrees. The direction along the wall is that of the slope of the values at the wall.
+/** Continues values at the middle of cells, such as smoothed shares of a fluid, into walls so that their
+ *  contours meet the walls at a contact angle. The value at the depth d behind a wall with the normal m (into
+ *  the flow) is the value at the height d above it, at a place shifted along the wall by 2 d cot(angle) towards
+ *  more fluid. This maps planes that meet the wall at the angle to themselves, and curved surfaces to surfaces
+ *  with the same curvature, as a mirror image does for 90 degrees. The direction along the wall is that of the
+ *  slope of the values at the wall.
  *
- *  Behind walls of the box there is one layer of cells. In regions these are all cells next to the flow whose middle is inside. */
+ *  There is one layer of cells behind walls of the box. In regions, values are set in all cells next to the
+ *  flow whose middle is inside. */
 class MPMFlowWetting {
  public:
-  /** Layers of cells around its own ones that a rank needs. */
+  /** Number of layers of cells that a rank needs around its own cells. */
   static int overlap(bool with_regions) { return with_regions ? 5 : 2; }
 
-  /** cotangent: of the contact angle, in the fluid; regions: null, none. */
+  /** cotangent: of the contact angle, measured in the fluid. regions: null if there are none. */
   MPMFlowWetting(const MPMFlowLattice &cells, const MPMFlowRegions *regions, double cotangent) :
       cells(cells), regions(regions), cotangent(cotangent)
   {
   }
 
-  /** Where walls are now. */
+  /** Updates the list of cells at walls and in regions to the present positions of these. */
   void find_walls();
-  /** Values [cell] of owners to all ranks, and behind walls. find: directions along walls are those of these values, otherwise those found
-   *  before; those of others than zero alone count, if skip_zero. */
+  /** Copies values [cell] from their owners to all ranks and continues them behind walls. find: take the
+   *  directions along walls from these values; otherwise use the directions found before. skip_zero: ignore
+   *  values that are zero. */
   void complete(std::vector<double> &values, bool find, bool skip_zero = false);
-  /** Is the middle of a cell in a region? */
+  /** Is the middle of this cell inside a region? */
   bool is_behind(int64_t cell) const { return regions && behind[cell]; }
 
   double memory_usage() const;
 
  private:
   struct Hidden {            // owned cell whose middle is in a region
-    int cell;                // in the list of cells
-    double out[3], depth;    // direction out of it, and distance to its surface [spacings]
-    double along[3];         // direction along the wall to where there is less fluid, or zero
+    int cell;                // index in the list of cells
+    double out[3], depth;    // direction out of the region, and distance to its surface [spacings]
+    double along[3];         // direction along the wall towards less fluid, or zero
   };
   struct AtWall {    // owned cell at a wall of the box
     int cell, axis, side;

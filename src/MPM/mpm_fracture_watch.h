@@ -14,8 +14,8 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Tells when a body comes apart numerically (keyword apart of fix mpm): a material that resists tension
- *  is stretched so far that neighboring points no longer share enough nodes. */
+/** Warns if a body comes apart numerically (keyword apart of fix mpm): a material that resists tension is
+ *  stretched so far that neighboring points no longer share enough nodes. */
 class MPMFractureWatch : protected Pointers {
  public:
   MPMFractureWatch(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
@@ -26,9 +26,9 @@ class MPMFractureWatch : protected Pointers {
     steps = 0;
     told = false;
   }
-  /** End of a step of the cycle; looks at the points every few hundred steps. */
+  /** End of a step of the cycle; checks the points every few hundred steps. */
   void step();
-  /** End of a run. */
+  /** End of a run: checks the points a last time. */
   void finish() { look(); }
 
  private:

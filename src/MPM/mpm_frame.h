@@ -18,9 +18,9 @@
 
 namespace LAMMPS_NS {
 
-/** The configuration that the nodes belong to, and how points strain in it. This class is the updated
- *  Lagrangian frame: nodes are places in space. Others derive from it; an axis of symmetry is a frame
- *  around one of these, see mpm_frame_axisymmetric.cpp.
+/** The configuration that the nodes belong to, and the strain of points in it. This class is the updated
+ *  Lagrangian frame, in which nodes are places in space. Other frames derive from it; the frame of an axis of
+ *  symmetry wraps another frame, see mpm_frame_axisymmetric.cpp.
  *
  *  Functions with a range of points are called once for each batch. */
 class MPMFrame : protected Pointers {
@@ -30,59 +30,60 @@ class MPMFrame : protected Pointers {
   /** The frame that the options of a field ask for. */
   static std::unique_ptr<MPMFrame> create(class LAMMPS *, MPMField &, MPMPointState &);
 
-  /** Stop where the box or other fixes do not suit the frame; start of a run. */
+  /** Start of a run: stops with an error if the box or other fixes do not suit the frame. */
   virtual void check() const {}
   /** Start of a run, before points are sorted. */
   virtual void setup() {}
-  /** Points were just exchanged between ranks; true when all places are new. */
+  /** Called after points were exchanged between ranks. Returns true if all places are new. */
   virtual bool renew_places() { return false; }
   /** End of a step. */
   virtual void end_of_step() {}
 
-  /** Nodes are places of a reference configuration, which points do not leave. */
+  /** Are nodes places of a reference configuration, in which points do not move? */
   virtual bool is_total() const { return false; }
-  /** Where points are on the lattice, [n][3]. */
+  /** Positions of points on the lattice, [n][3]. */
   virtual MPMRows places() const { return {atom->x[0], 3}; }
+  /** Kernels of a transfer in this frame. split: keep force and old velocity apart (FLIP, energy ledger). */
   MPM_NS::TransferKernels kernels(MPM_NS::Transfer, bool split) const;
 
-  // points to nodes: does a batch need rows of its own for its forces, with room for them
+  // Transfer from points to nodes: rows for the forces of a batch, used if changes_forces()
 
   struct ForceRows {
     double P[9 * MPM_NS::BATCH + 8], f[3 * MPM_NS::BATCH + 8];
   };
   virtual bool changes_forces() const { return false; }
-  /** rows: of the n points from first on, as if they were all. */
+  /** Sets the forces of n points from first on. The row pointers are shifted to the first of these points. */
   virtual void forces(MPM_NS::PointRows &, int /*first*/, int /*n*/, ForceRows &) const {}
 
-  // strain in a step; L: velocity gradients of the points with respect to the places of the lattice,
+  // strain in a step. L: velocity gradients of the points with respect to the places of the lattice,
   // [n][dim*dim], column-major
 
-  /** Room for all points, before the first of them. */
+  /** Allocates room for all points, before the first of them is strained. */
   virtual void begin_strain();
-  /** Before and after points [first,last) move. */
+  /** Called before and after points [first,last) move. */
   virtual void before_motion(int /*first*/, int /*last*/) {}
   virtual void after_motion(const MPM_NS::PointRows &, int /*first*/, int /*last*/) {}
-  /** Strain that has to be interpolated from the nodes, where points do not move. base: of the tile. */
+  /** Strain that is interpolated from the nodes before points move. base: base node of the tile. */
   virtual void strain_of_nodes(const MPM_NS::PointRows &, int /*first*/, int /*last*/,
                                const int * /*base*/, double /*dt*/, double /*shift*/)
   {
   }
-  /** Gradients at the start of a step from those of another time in it, see mpm_frame.cpp. */
+  /** Converts gradients of another time within the step to those at its start, see mpm_frame.cpp. */
   virtual void shift_gradients(int n, double shift, double *L) const;
-  /** [9], row-major: rate of a deformation gradient that all points have besides what they get of the nodes; null: there is none.
-   *  Set by the init_physics() of who gives it (fix mpm/deform), of a total frame alone. */
+  /** [9], row-major: rate of a deformation gradient that all points have in addition to what the nodes give;
+   *  null: none. Set in init_physics() of the fix that prescribes it (fix mpm/deform); only in a total frame. */
   const double *mean_rate = nullptr;
-  /** Does it strain them in this step? */
+  /** Is this mean rate nonzero in this step? */
   bool strains_on_average() const
   {
     return mean_rate && std::any_of(mean_rate, mean_rate + 9, [](double r) {
              return r != 0.0;
            });
   }
-  /** L is not yet what the laws need: gradients must go through refer_gradients(). */
+  /** Must L go through refer_gradients() before material laws can use it? */
   virtual bool refers() const { return false; }
   virtual void refer_gradients(int /*first*/, int /*n*/, double * /*L*/) const {}
-  /** Kinematics of n points from first on; F, tau: rows of the first. */
+  /** Loads the kinematics of n points from first on into a batch. F, tau: rows of the first of these points. */
   void load(MPM_NS::Batch &, int first, int n, double dt, const double *L, const double *F,
             const double *tau, const double *vol0) const;
 
@@ -101,10 +102,9 @@ class MPMFrame : protected Pointers {
   }
   /** Relative change of the volume of a point in a step. */
   virtual double volume_change(int i, const double *L, double dt) const;
-  /** Stretch the motion of a point in the step by the factor 1 + more, in all directions that are not
-   *  held. */
+  /** Multiplies the stretch of a point in the step by the factor 1 + more, in all directions that are not held. */
   virtual void stretch(int i, double more, double dt, double *L);
-  /** Is the third direction held, in plane strain? */
+  /** Is the third direction held (plane strain)? */
   bool is_plane() const { return field.lattice.dim == 2 && !field.options.changes_thickness(); }
 
   /** Deformation gradient with respect to the places of the lattice. */
@@ -112,20 +112,21 @@ class MPMFrame : protected Pointers {
   /** Ratio of the volume at the places of the lattice to the initial volume. */
   virtual double lattice_jacobian(int i) const;
 
-  /** Speed that must not cross a cell in a step, of a point with the wave speed c, which may rise. Where it is not above
-   *  a known one, it may be too high, but not above that. */
+  /** Speed that a point with the wave speed c has with respect to the stability limit (it must not cross a cell
+   *  in a step). c may be raised. If the speed does not exceed a known one, the result may be too high, but not
+   *  above the known one. */
   virtual double speed(int i, double &c, double known) const;
 
-  /** Distance of a point from the axis of symmetry; x: its first coordinate at the start of the step. */
+  /** Distance of a point from the axis of symmetry. x: its first coordinate at the start of the step. */
   virtual double radius(int /*i*/, double x) const { return x; }
-  /** Length of the circle with radius r around the axis of symmetry; 1 without one. */
+  /** Length of the circle with radius r around the axis of symmetry; 1 without an axis. */
   virtual double circle(double /*r*/) const { return 1.0; }
-  /** The same of a node: at the axis and beyond that of a quarter of a cell from it. */
+  /** The same for a node. At the axis and beyond it, the length at a quarter of a cell from the axis. */
   virtual double node_circle(int /*slot*/, int /*node*/) const { return 1.0; }
-  /** Volume of a point before deformation for each unit of length around the axis. */
+  /** Initial volume of a point per unit of length around the axis. */
   virtual double section(int i) const { return atom->vfrac[i]; }
 
-  /** Start of a run, and what there is to tell about it at its end: lines, or nothing. */
+  /** Counters start at the start of a run; report() returns lines for the log at its end, or nothing. */
   virtual void start_counting() {}
   virtual std::string report() const { return ""; }
   virtual double memory_usage() const { return across.capacity() * sizeof(double); }
@@ -134,15 +135,15 @@ class MPMFrame : protected Pointers {
  protected:
   MPMField &field;
 
-  /** Strain A_zz of this step in 2d, of the points from first on; null: there is none. Around an axis
-   *  of symmetry, or else what stretch() makes of plane strain. */
+  /** Strain A_zz of this step in 2d, of the points from first on; null: none. It is the hoop strain around an
+   *  axis of symmetry, or else what stretch() makes of plane strain. */
   virtual const double *hoop_strain(int first) const
   {
     return across.empty() ? nullptr : &across[first];
   }
 
  private:
-  std::vector<double> across;    // [n] A_zz of stretch()
+  std::vector<double> across;    // [n] A_zz from stretch()
 };
 
 }    // namespace LAMMPS_NS

@@ -13,11 +13,11 @@
 
 namespace LAMMPS_NS {
 
-/** Total Lagrangian frame: nodes are places of a reference configuration, which may be made anew. */
+/** Total Lagrangian frame: nodes are places of a reference configuration, which may be updated. */
 class MPMFrameTotal : public MPMFrame {
  public:
   MPMRows X;    ///< [n][3] reference position, NAN before it is known
-  /** [n][9] F at the last update of the reference, row-major; null: there is none. */
+  /** [n][9] F at the last update of the reference, row-major; null: no updates. */
   MPMRows R;
 
   MPMFrameTotal(class LAMMPS *, MPMField &, MPMPointState &);
@@ -41,7 +41,7 @@ class MPMFrameTotal : public MPMFrame {
   std::string report() const override;
 
  private:
-  bigint nupdate = 0;         // of the reference in this run
+  bigint nupdate = 0;         // updates of the reference in this run
   bool refer_anew = false;    // the present configuration is to become the reference
 
   void stretches(int i, double &smallest, double &largest) const;

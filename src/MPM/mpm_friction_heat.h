@@ -20,25 +20,26 @@ class FixMPMHeat;
 class MPMConduction;
 class MPMField;
 
-/** What becomes of the energy that friction takes: keyword heat of contact, walls, and rigid bodies. */
+/** Use of the energy that friction dissipates: keyword heat of contact, walls, and rigid bodies. */
 struct MPMFrictionHeatOptions {
   enum Kind { NO, YES, SHARE };
 
   Kind kind = NO;
   bool said = false;     ///< is the keyword given?
-  double share = 1.0;    ///< with SHARE: of the first body, or of the material at a wall
+  double share = 1.0;    ///< with SHARE: share of the first body, or of the material at a wall
 
+  /** Does the energy become heat? */
   bool heats() const { return kind != NO; }
-  /** Declares the keyword; yes, first: what these words do, for the manual. */
+  /** Declares the keyword. yes, first: what these words do, for the manual. */
   void declare(MPM_NS::Options &, const char *yes, const char *first);
 };
 
-/** A fix with friction, for fix mpm/heat. */
+/** Interface of a fix with friction, for fix mpm/heat. */
 class MPMRubbing {
  public:
-  /** Does it take energy by friction, without a word in the input on what becomes of it? */
+  /** Does it dissipate energy by friction although its input does not say what happens with the energy? */
   virtual bool loses_heat() const = 0;
-  /** Does it give this energy to nodes, as heat? */
+  /** Does it give this energy to nodes as heat? */
   virtual bool gives_heat() const = 0;
 
  protected:
@@ -47,30 +48,30 @@ class MPMRubbing {
 
 /** Heat of friction at nodes, which fix mpm/heat conducts into the material.
  *
- *  Fields are told apart by their place in the list of begin_run(). Energies are those of all bodies at a
- *  node. Every rank that has a node gives it the same; only owned nodes are counted. */
+ *  Fields are identified by their index in the list of begin_run(). Energies are totals over all bodies at a
+ *  node. Every rank that has a node adds the same heat to it; only owned nodes are counted. */
 class MPMFrictionHeat : protected Pointers {
  public:
   MPMFrictionHeat(class LAMMPS *, const MPMFrictionHeatOptions &);
 
-  /** Start of a run, in init_action(): stops with an error when nothing can take up the heat. Fields keep
-   *  the old velocities of their nodes from now on. */
+  /** Start of a run, in init_action(). Stops with an error if nothing can take up the heat. From now on, fields
+   *  keep the old velocities of their nodes. */
   void begin_run(const Fix &user, const std::vector<MPMField *> &);
   /** Collective, in each step before heat is given, with the nodes of this step. */
   void begin_step();
 
-  /** Heat [energy] at a node of two bodies, with its record in the field of each and the unit normal of their surface. By
-   *  default bodies whose surfaces have the same temperature share it as q_a : q_b = e_a : e_b with the effusivities
-   *  e = sqrt(k rho c) (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids (1959), 2.15), where k is the
-   *  conductivity along the normal. */
+  /** Adds heat [energy] at a node of two bodies. ra, rb: records of the node in both fields; normal: unit
+   *  normal of their surface. By default, the bodies share the heat as if their surfaces had the same
+   *  temperature, q_a : q_b = e_a : e_b with the effusivities e = sqrt(k rho c) (H.S. Carslaw, J.C. Jaeger,
+   *  Conduction of Heat in Solids (1959), 2.15), where k is the conductivity along the normal. */
   void between(int a, const double *ra, int b, const double *rb, const double *normal, double heat,
                bool owned);
-  /** Heat [energy] at a node of a wall, which takes what the share leaves. What comes to material that does
-   *  not conduct is lost. */
+  /** Adds heat [energy] at a node of a wall. The wall takes what the share leaves. Heat that goes to material
+   *  without conduction is lost. */
   void at_wall(int field, const double *record, double heat, bool owned);
 
-  /** Heat [energy] of a sliding impulse J [mass velocity] on a body of velocity v relative to the other,
-   *  old before the step and now after it: what the kinetic energy of nodes loses in this step by it.
+  /** Heat [energy] of a sliding impulse J [mass velocity] on a body whose velocity relative to the other is old
+   *  before the step and now after it. This is the kinetic energy that the nodes lose by J in this step.
    *  Negative in a step in which sliding reverses. */
   double made(const double *J, const double *old, const double *now, int dim) const;
 
@@ -79,11 +80,12 @@ class MPMFrictionHeat : protected Pointers {
  private:
   struct Body {
     MPMField *field;
-    MPMConduction *conduction;      // null: its materials do not conduct
-    bool mixed;                     // effusivities differ from point to point
-    bool orthotropic;               // and with the direction
-    double effusivity;              // unless mixed
-    std::vector<double> at_node;    // one number, or those of a symmetric tensor, see map_tensor()
+    MPMConduction *conduction;    // null: none of its materials conducts
+    bool mixed;                   // effusivities differ from point to point
+    bool orthotropic;             // and with the direction
+    double effusivity;            // unless mixed
+    // one number, or the components of a symmetric tensor, see map_tensor()
+    std::vector<double> at_node;
   };
   const MPMFrictionHeatOptions &options;
   FixMPMHeat *heat = nullptr;

@@ -16,18 +16,18 @@
 namespace LAMMPS_NS {
 class FixMPMMixture;
 
-/** Water at rest in level ground and above it, as a field of its own (fix mpm/mixture). See
+/** Water at rest in level ground and above it, where the water is a separate field (fix mpm/mixture). See
  *  mpm_geostatic_water.cpp. */
 class MPMGeostaticWater : protected Pointers {
  public:
-  /** ground: the soil of the mixture. */
+  /** ground: the soil of the mixture. who: first words of error messages. */
   MPMGeostaticWater(class LAMMPS *, const MPMGeostatic &ground, const FixMPMMixture &,
                     const std::string &who);
 
-  /** Gives all points of the water their pressure, by the change of their volume; returns what it carries of the
-   *  weight of the soil, for each function of the height (MPMGeostatic::set_stress()). Collective. */
+  /** Sets the pressure of all points of the water by changing their volume. Returns the weight of the soil that
+   *  the water carries, for each function of the height (MPMGeostatic::set_stress()). Collective. */
   std::vector<double> set_pressure();
-  double top() const { return surface; }    ///< height of the surface of the water [distance]
+  double top() const { return surface; }    ///< height of the water surface [distance]
 
  private:
   const MPMGeostatic &ground;

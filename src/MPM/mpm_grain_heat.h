@@ -19,26 +19,26 @@ class FixMPMMaterial;
 class MPMConduction;
 class MPMField;
 
-/** Heat between grains and material points, by atom->temperature and atom->heatflow, as pair_style granular and
- *  fix heat/flow know them. Grains have their heat at the end of the step in which they touch; points get
- *  theirs from the nodes of the next step, and until then it waits. */
+/** Heat exchange between grains and material points through atom->temperature and atom->heatflow, which
+ *  pair_style granular and fix heat/flow use. Grains receive their heat at the end of the step in which they
+ *  touch. Points receive theirs from the nodes in the next step; until then the heat waits. */
 class MPMGrainHeat : protected Pointers {
  public:
-  /** waiting: [n][1] heat of points that nodes do not have yet [energy], part of the state of points. */
+  /** waiting: [n][1] heat of points that the nodes have not received yet [energy], part of the state of points. */
   MPMGrainHeat(class LAMMPS *lmp, const MPMRows &waiting) : Pointers(lmp), waiting(waiting) {}
 
-  /** Start of a run: stops with an error when something is missing, or something else moves the temperatures
-   *  of points. */
+  /** Start of a run: stops with an error if something is missing, or if another fix changes the temperatures of
+   *  points. */
   void init();
-  /** Puts the temperatures of this rank's points into atom->temperature. */
+  /** Copies the temperatures of this rank's points to atom->temperature. */
   void show();
-  /** Forces are known: time step that the heat flow belongs to. */
+  /** Called when forces are known: notes the time step that the heat flow belongs to. */
   void note_step();
-  /** End of a step: heat that has come to points of this rank, which waits from now on. Returns the sum. */
+  /** End of a step: adds the heat that points of this rank received to the waiting heat. Returns the sum. */
   double take();
-  /** What waits goes to the nodes of a field; collective. */
+  /** Gives the waiting heat to the nodes of a field. Collective. */
   void give(MPMConduction &);
-  /** Sum over this rank's points. */
+  /** Sum of the waiting heat over this rank's points. */
   double sum_waiting() const;
 
   double memory_usage() const { return energy.capacity() * sizeof(double); }
@@ -47,7 +47,7 @@ class MPMGrainHeat : protected Pointers {
   const MPMRows &waiting;
   std::vector<MPMField *> fields;
   double dt = 0.0;
-  std::vector<double> energy;    // of points, for a field
+  std::vector<double> energy;    // of points, for one field
 
   const FixMPMMaterial *material_of(int i) const;
 };

@@ -17,41 +17,45 @@
 
 namespace LAMMPS_NS {
 
-/** How long the collisions of grains last, with each other, with points, and with walls, from the
- *  stiffness that pair styles and walls of LAMMPS's package GRANULAR have. */
+/** Durations of the collisions of grains with each other, with points, and with walls, from the stiffness of
+ *  pair styles and walls of the package GRANULAR of LAMMPS. */
 class MPMGrains : protected Pointers {
  public:
-  /** The force of a contact as it depends on the overlap: k delta, or k sqrt(R) delta^1.5, in units of mass times
-   *  acceleration. */
+  /** Contact force as a function of the overlap delta: k delta, or k sqrt(R) delta^1.5 (hertz), in units of
+   *  mass times acceleration. */
   struct Law {
     double k = 0.0;
     bool hertz = false;
-    double damping = 0.0;    ///< force over the velocity of approach, and over what it goes by
+    /** Force over the product of the velocity of approach and the quantity of damping_is. */
+    double damping = 0.0;
     enum { BY_MASS, PLAIN, BY_MASS_AND_RADIUS, BY_STIFFNESS } damping_is = BY_MASS;
   };
   struct Collision {
-    /** Infinite: none. With a point it is divided by the number of steps of the run in one of the points. */
+    /** Infinite: no collision. For a collision with a point, divided by the number of steps of the run per step
+     *  of the points. */
     double duration;
-    tagint i, j;    ///< j = 0: with a wall
+    tagint i, j;    ///< j = 0: collision with a wall
   };
 
-  /** An error if there is no pair style that tells its stiffness; who: the command in it. */
+  /** Stops with an error if no pair style provides its stiffness. who: the command in the message. */
   MPMGrains(class LAMMPS *, const std::string &who);
 
-  /** Of the pairs of this rank that touch, or that would within this time at their present speeds, and of each grain in
-   *  the group of a wall with this wall, wherever it is, at its overlap and with all of its velocity; not of frozen ones.
-   *  Points take one step in EVERY of the run; above 1, ghosts must have their volume, which tells that they are points.
-   *  Collective: brings other values of ghosts up to date. */
+  /** Shortest collision on this rank. It considers pairs that touch, or that would touch within the time ahead
+   *  at their present speeds, and each grain in the group of a wall with this wall, wherever the grain is, at
+   *  its overlap and with its full velocity. Frozen grains are left out. Points take one step in EVERY of the
+   *  run; above 1, ghosts must have their volume, by which they are recognized as points. Collective: updates
+   *  other values of ghosts. */
   Collision shortest(double ahead, int every) const;
 
-  /** Of two bodies with the reduced mass m, radius R, and the velocity v at an overlap. */
+  /** Duration of the collision of two bodies with the reduced mass m, the reduced radius R, and the velocity v
+   *  at an overlap. */
   static double duration(const Law &, double m, double R, double overlap, double v);
 
  private:
   struct Style {
     class Pair *pair;
     Law law;
-    bool granular;    // each pair of types has a law of its own
+    bool granular;    // each pair of types has its own law
   };
   std::vector<Style> styles;
   std::string who;

@@ -16,11 +16,11 @@ namespace LAMMPS_NS {
 class Fix;
 class LAMMPS;
 
-/** The weight that all fix gravity together give. */
+/** Sum of the gravity of all fix gravity commands. */
 class MPMGravity {
  public:
   MPMGravity() = default;
-  /** user: for the error when a fix gravity has another group than all. */
+  /** user: named in the error if a fix gravity has a group other than all. */
   MPMGravity(LAMMPS *, const std::string &user);
   bool empty() const { return fixes.empty(); }
   /** The present force per mass [force/mass]. */

@@ -17,31 +17,32 @@
 
 namespace LAMMPS_NS {
 
-/** Sums the records of nodes that several ranks have.
+/** Sums the records of nodes that several ranks share.
  *
- *  A rank has the nodes in reach of its points (Grid::Block::reached), or whole blocks. Sharers are found by block
- *  key through a rendezvous, so that any rank may share with any other. Each sharer sends its partial
- *  sums once to each other sharer, and all add them in the order of ranks: all sharers hold bitwise
- *  the same sums and no second message is needed.
- */
+ *  A rank has the nodes in reach of its points (Grid::Block::reached), or whole blocks. Sharers are found by
+ *  block key through a rendezvous, so that any rank may share with any other. Each sharer sends its partial
+ *  sums once to every other sharer, and all add them in the order of ranks. So all sharers hold bitwise the
+ *  same sums, and no second message is needed. */
 class MPMHalo : protected Pointers {
  public:
   explicit MPMHalo(class LAMMPS *lmp) : Pointers(lmp) {}
 
-  /** Find the sharers of the canonical nodes of the grid, and who owns a node: the lowest rank whose
-   *  points reach it, if there is one. Blocks that are wanted whole get what others have at nodes out of reach of
-   *  this rank's points, too. */
+  /** Finds the sharers of the canonical nodes of the grid, and the owner of each node: the lowest rank whose
+   *  points reach it, if there is one. A rank gets values of other ranks also at nodes out of reach of its own
+   *  points in blocks for which whole() is true. */
   void setup(MPM_NS::Grid &, const std::function<bool(const MPM_NS::Grid::Block &)> &whole);
 
-  /** The same for any nodes [slot] of blocks that this rank wants to have, those that its points reach among them. A node
-   *  that several ranks reach belongs to the rank that prefers() tells for its number [slot*64+n], where it is one of these. */
+  /** The same for the nodes that this rank wants, wanted [slot] as bits of each block; these must include the
+   *  nodes that its points reach. A node that several ranks reach belongs to the rank that prefers() returns
+   *  for its number [slot*64+n], if this rank is one of them. */
   void setup(MPM_NS::Grid &, const std::vector<uint64_t> &wanted,
              const std::function<int(int)> &prefers = nullptr);
 
   /** Sum reals [lane, lane+nlane) of all records of shared nodes. */
   void sum(double *nodes, int nreal, int lane, int nlane);
 
-  /** Other ranks that have nodes of this one, ascending, and which ones [slot*64+n]: both list them in the same order. */
+  /** Other ranks that share nodes with this one, in ascending order, and the shared nodes [slot*64+n]. Both
+   *  ranks list the nodes in the same order. */
   int sharers() const { return (int) peers.size(); }
   int rank_of(int sharer) const { return peers[sharer].rank; }
   const std::vector<int> &shared_with(int sharer) const { return peers[sharer].nodes; }
@@ -52,19 +53,19 @@ class MPMHalo : protected Pointers {
  private:
   struct Contribution {
     int from;     // index into peers, -1: this rank
-    int place;    // of the node in the buffer of that rank
+    int place;    // index of the node in the buffer of that rank
   };
   struct Peer {    // another sharer
     int rank;
     std::vector<int> nodes;     // slot*64+n of the nodes shared with it, in order of key and n
-    std::vector<int> places;    // in nodes, of those that no third rank shares
+    std::vector<int> places;    // indices in nodes of those that no third rank shares
     std::vector<double> send, recv;
   };
 
   std::vector<Peer> peers;                    // ascending by rank
   std::vector<int> several;                   // nodes that more than two ranks share
   std::vector<int> first;                     // [several+1] range in contributions
-  std::vector<Contribution> contributions;    // ascending by rank for each of these nodes
+  std::vector<Contribution> contributions;    // for each of these nodes, ascending by rank
   std::vector<MPI_Request> requests;
 };
 

@@ -21,26 +21,27 @@ namespace LAMMPS_NS {
 class MPMConduction;
 class MPMField;
 
-/** Activates the blocks around this one. */
+/** Activates the blocks of a field around this one. */
 void activate_blocks_around(MPMField &, const int *block);
 
-/** Where the surface of a field is at its nodes, and heat that comes in through it there. */
+/** Surface of a field as seen from its nodes, and the heat that comes in through it. */
 class MPMHeatBody : protected Pointers {
  public:
   static constexpr int MOST = 4;
 
-  /** Nodes along an axis around a place where the surface is. */
+  /** Nodes along an axis around a place on the surface. */
   struct Line {
     int axis, n;
     int64_t node[MOST];
-    double weight[MOST];    ///< of sum one
-    double area;            ///< of the surface that belongs to the line, as seen along the axis
-    double place;           ///< of that surface on the line, in node spacings
-    double response;        ///< of the temperature there to heat: sum of weight^2/capacity
-    double conducting;      ///< share of it where there is material that conducts
-    double part;            ///< of the line that the body fills
+    double weight[MOST];    ///< weights of the nodes, with the sum one
+    double area;        ///< area of the surface that belongs to the line, projected along the axis
+    double place;       ///< position of the surface on the line, in node spacings
+    double response;    ///< response of the temperature there to heat: sum of weight^2/capacity
+    double conducting;    ///< share of the line with material that conducts
+    double part;          ///< part of the line that the body fills
 
-    /** What an exchange with this stiffness is for a solver; none without stiffness. */
+    /** Passes the term of an exchange with this stiffness to a solver; nothing if the stiffness is not
+     *  positive. */
     void add_term(double stiffness, const MPMDiffusion::Term &) const;
   };
 
@@ -50,77 +51,84 @@ class MPMHeatBody : protected Pointers {
 
   MPMHeatBody(class LAMMPS *, MPMField &, MPMConduction *);
 
-  /** Ranks need the nodes around those that their points reach: activates the blocks around this one. */
+  /** Activates the blocks around this one: ranks need the nodes around those that their points reach. */
   void activate_around(const int *block) { activate_blocks_around(field, block); }
+  /** The blocks of the field are new. */
   void topology_changed() { listed = false; }
 
-  /** Blocks in which the surface is wanted: [slot], and all of them. */
+  /** [slot] blocks in which the surface is wanted. want_all() marks all blocks. */
   std::vector<char> near;
+  /** Start of a step: no block is wanted yet. */
   void begin_step();
   void want_all() { near.assign(near.size(), 1); }
-  /** Sums over points in these blocks. Collective. */
+  /** Finds the surface by sums over points in these blocks. Collective. */
   void find_surface();
-  /** Of nodes: volume in cells, and sum of V grad N, which points out of the body; around an axis of symmetry for each unit of
-   *  length around it. Total frame: of the reference configuration. */
+  /** Of nodes: volume in units of cells, and the sum of V grad N, which points out of the body. Around an axis
+   *  of symmetry, both are per unit of length around it. Total frame: in the reference configuration. */
   std::vector<double> share, gradient;
 
-  /** The line along an axis through a place on it (in node spacings), base: a node of it; into: the unit normal
-   *  into the body. False if there is no surface, or this rank does not have all nodes. */
+  /** Finds the line of nodes along an axis through the place at (in node spacings). base: a node of the line;
+   *  into: the unit normal into the body. Returns false if there is no surface, or if this rank does not have
+   *  all nodes. */
   bool make_line(int axis, const int *base, double at, const double *into, Line &) const;
-  /** Bernstein polynomials have two kinds of nodes: where a surface is, how large, and its normal are known of lines of quadratic
-   *  B-splines on the same nodes, and spread() gives what belongs to such a line to those of the field around it. */
+  /** Bernstein polynomials have two kinds of nodes. The place, area, and normal of a surface are then known
+   *  from lines of quadratic B-splines on the same nodes, and spread() distributes the share of such a line
+   *  over the lines of the field around it. */
   bool spreads() const;
   struct Part {
     Line line;
-    double area, share;    ///< of those of the whole line
+    double area, share;    ///< area and share, relative to those of the whole line
   };
   bool spread(const int *base, double at, const double *into, const Line &whole,
               std::vector<Part> &) const;
-  /** Its response, and weights without nodes that do not conduct, when capacities are known. False if none conducts. */
+  /** Finds the response of a line and sets the weights of nodes that do not conduct to zero, once capacities
+   *  are known. Returns false if no node conducts. */
   bool find_response(Line &) const;
-  /** What the weight of a node counts, as material there conducts: 1 down to half of its volume, and in proportion below, so
-   *  that no node gets heat that it has no capacity for. */
+  /** Factor of the weight of a node according to the conducting material there: 1 down to half of the volume of
+   *  the node, and in proportion below, so that no node gets heat that it has no capacity for. */
   double conducting(int64_t node) const;
-  /** Share of the heat that goes through a gap (in node spacings). */
+  /** Share of the heat that passes a gap (in node spacings). */
   double touches(double gap) const;
+  /** Temperature of the surface at a line. */
   double temperature(const Line &) const;
-  /** Rate of this temperature by all other heat. */
+  /** Rate of this temperature due to all other heat. */
   double drift(const Line &) const;
 
-  /** Edges: where lines of surfaces with different normals have nodes in common. All lines are noted, with the share of the surface that they
-   *  stand for, those of faces of the box apart; then ranks are summed (collective). */
+  /** Finds edges, where lines of surfaces with different normals have nodes in common. All lines are noted,
+   *  each with the share of the surface that it represents; lines of faces of the box are noted separately.
+   *  end_edges() sums over ranks (collective). */
   void begin_edges();
   void note(const Line &, const double *into, double part);
   void note_face(int64_t node, int axis, double sign);
   void end_edges();
-  /** Has a node lines of surfaces, and is it at an edge? */
+  /** Does the node belong to lines of surfaces, and is it at an edge? */
   bool is_edge(int64_t node) const;
   bool is_edge(const Line &) const;
 
-  /** A stage: heat that was given to lines goes to the rates of nodes. */
+  /** One stage: give() collects heat at lines, and end_stage() adds it to the rates of nodes. */
   void begin_stage();
   void give(const Line &, double power);
   void end_stage();
 
-  /** Length around an axis of symmetry of the surface at a place on the line of nodes along an axis through a node (in node
-   *  spacings); 1 without one. */
+  /** Length of the circle around the axis of symmetry on which the surface lies. The place at (in node
+   *  spacings) is on the line of nodes along an axis through the node index. 1 without an axis of symmetry. */
   double circle(int axis, const int *index, double at) const;
 
-  /** Share of the function of a node along an axis that is inside of fixed faces of the box. */
+  /** Share of the function of a node along an axis that lies inside of fixed faces of the box. */
   double room(int axis, int index) const;
 
-  /** Has a node without a block no points on any rank? */
+  /** Does a missing block mean that no rank has points there? True on a single rank. */
   bool knows_all() const;
 
   double memory_usage() const;
 
  private:
   bool listed = false;
-  std::vector<std::array<int, 2>>
-      images;                  // a block with images, and one with nodes of which they are
-  std::vector<double> held;    // volume of nodes where share is that of other functions, spreads()
+  std::vector<std::array<int, 2>> images;    // a block with images, and a block with their nodes
+  // volume of nodes if spreads(): share is then that of other functions
+  std::vector<double> held;
   std::vector<double> heat;
-  std::vector<double> noted;    // [nnodes][NOTED] of edges
+  std::vector<double> noted;    // [nnodes][NOTED] sums for edges
   enum { NORMAL, PARTS = 3, OF_SURFACES, NOTED };
 
   void list_images();
@@ -132,21 +140,25 @@ class MPMHeatBody : protected Pointers {
 
 /* ---------------------------------------------------------------------- */
 
-/** Lines that several ranks know: each does an equal part of the work, so that together they do it once. Keys are
- *  node * dim + axis of the body. Collective. */
+/** Divides the work on lines that several ranks know into equal parts, so that together the ranks do it once.
+ *  Keys are node * dim + axis of the body. Collective. */
 class MPMHeatShares {
  public:
+  /** Resets the counts. */
   void begin(const MPMHeatBody &body);
+  /** This rank knows the line. */
   void count(int64_t key) { counts[key] = 1.0; }
+  /** Sums the counts over ranks. Collective. */
   void sum(const MPMHeatBody &body);
+  /** Share of this rank in the work on a line. */
   double of(int64_t key) const { return 1.0 / counts[key]; }
 
  private:
   std::vector<double> counts;
 };
 
-/** Of what goes through a surface with this normal, the part of the lines along an axis: these parts have the sum one, and
- *  lines that graze the surface have none. */
+/** Share of the flow through a surface with this normal that the lines along an axis carry. The sum of the
+ *  shares is one; lines that graze the surface have none. */
 double heat_share_of_axis(const double *normal, int dim, int axis);
 
 }    // namespace LAMMPS_NS

@@ -24,34 +24,42 @@ class MPMHeatThin;
 
 /** Two bodies that exchange heat where they touch. */
 struct MPMHeatPair {
-  std::string field[2];                    ///< IDs of their fix mpm
+  std::string field[2];                    ///< IDs of the fix mpm of both bodies
   MPM_NS::NumberOrVariable conductance;    ///< heat per area, time, and difference of temperature
-  double now = 0.0;                        ///< in this step
+  double now = 0.0;                        ///< conductance in this step
 };
 
-/** Heat between two fields on one lattice where they touch: q = h_c (T_a - T_b) per area. */
+/** Heat exchange between two fields on one lattice where they touch: q = h_c (T_a - T_b) per area. */
 class MPMHeatContact : protected Pointers {
  public:
-  /** The fields must have a fix mpm/contact, which gives all ranks the nodes of both where they may meet. */
+  /** The fields must have a fix mpm/contact, which gives all ranks the nodes of both fields where they may
+   *  meet. */
   MPMHeatContact(class LAMMPS *, MPMHeatBody &a, MPMHeatBody &b, const MPMHeatPair &);
 
+  /** Activates the blocks around those of a field, if it is one of the two. */
   void extend_topology(const MPMField &);
+  /** The blocks of a field are new. */
   void topology_changed() { listed = false; }
   /** Marks blocks in which the bodies may meet. */
   void mark_near();
-  /** Where the bodies touch, when their surfaces are known. thin: null, or gets all places of this entry. Collective. */
+  /** Finds the places where the bodies touch, once their surfaces are known. thin: null, or receives all places
+   *  of this entry. Collective. */
   void find_contacts(MPMHeatThin *thin, int entry);
-  /** What the capacities of nodes make of it. Returns the largest rate of exchange of this rank [1/time]. */
+  /** Updates the exchange for the capacities of nodes. Returns the largest rate of exchange on this rank
+   *  [1/time]. */
   double begin_step();
+  /** Notes the lines of this contact for edges of both bodies. */
   void note_edges() const;
-  /** The difference of temperatures decays with this rate at the most: that of the fastest change otherwise; at edges with that
-   *  of conduction. */
+  /** Limits the rate at which the difference of temperatures decays: to cap, the rate of the fastest other
+   *  change. At edges, the limit is the rate of conduction. */
   void limit(double cap);
-  /** Gives heat to both bodies, whose rates have all other heat already; adds the power from a to b of this rank. */
+  /** Gives heat to both bodies, whose rates must include all other heat already. Adds the power from a to b on
+   *  this rank. */
   void exchange(double &power) const;
-  /** Is it symmetric on this rank? */
+  /** Is the exchange symmetric on this rank? */
   bool is_symmetric() const;
-  /** What this rank adds to the matrix of conduction of a body, as if the other one had its temperature. */
+  /** Passes on the terms that this rank adds to the matrix of conduction of a body, as if the other body had
+   *  the same temperature. */
   void each_term(const MPMHeatBody &, const MPMDiffusion::Term &) const;
 
   double memory_usage() const;
@@ -64,16 +72,16 @@ class MPMHeatContact : protected Pointers {
   struct Place {
     int64_t key;
     MPMHeatBody::Line line[2];
-    double area, share;    // of this axis, and of this rank
+    double area, share;    // area and share that belong to this axis and this rank
     double response;
-    double rate;         // at which the difference of temperatures decays
-    double normal[3];    // from the first body to the second one
+    double rate;         // rate at which the difference of temperatures decays
+    double normal[3];    // unit normal from the first body to the second one
   };
 
   const std::array<MPMHeatBody *, 2> body;
   const MPMHeatPair &pair;
   bool listed = false;
-  double fastest = 0.0;    // limit of the rate
+  double fastest = 0.0;    // upper limit of the rate
   std::vector<Common> common;
   std::vector<Place> places;
   MPMHeatShares shares;

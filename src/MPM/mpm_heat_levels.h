@@ -18,32 +18,35 @@ namespace LAMMPS_NS {
 class MPMHeatBody;
 class MPMTwoScale;
 
-/** Temperatures of a body whose points are on several lattices (fix mpm/refine). They are functions of the free nodes of all
- *  lattices, as velocities are (MPMTwoScale): a tied node has the temperature of its parents, and its capacity and heat are theirs. */
+/** Temperatures of a body whose points are on several lattices (fix mpm/refine). Temperatures are functions of
+ *  the free nodes of all lattices, as velocities are (MPMTwoScale): a tied node has the temperature of its
+ *  parents, and passes its capacity and heat on to them. */
 class MPMHeatLevels : protected Pointers {
  public:
-  /** Two lattices, from the coarsest pair on. */
+  /** Two adjacent lattices; the list of pairs starts with the coarsest one. */
   struct Pair {
     MPMTwoScale *nodes;
     MPMConduction *coarse, *fine;
-    MPMHeatBody *coarse_surface, *fine_surface;    ///< null: surfaces are not wanted
+    MPMHeatBody *coarse_surface, *fine_surface;    ///< null: surfaces are not needed
   };
 
   MPMHeatLevels(class LAMMPS *, const std::vector<Pair> &);
 
+  /** Is this one of the lattices? */
   bool has(const MPMConduction &) const;
-  /** Temperatures of the nodes of all lattices. Collective. Returns the bound of the rates of this rank, as
-   *  MPMConduction::points_to_nodes() does for one. */
+  /** Finds the temperatures of the nodes of all lattices. Collective. Returns the bound of the rates on this
+   *  rank, as MPMConduction::points_to_nodes() does for one lattice. */
   double points_to_nodes(const MPMRows &gradients, bool starts);
-  /** Rates of the nodes of all lattices from what points gave, but for tied nodes. Collective. */
+  /** Finds the rates of the nodes of all lattices, except tied nodes, from the contributions of points.
+   *  Collective. */
   void sum_rates();
-  /** Of tied nodes. */
+  /** Set the temperatures and rates of tied nodes. */
   void temperatures_from_parents();
   void rates_from_parents();
-  /** MPMHeatBody::share and gradient for the faces of the box. Collective. */
+  /** Finds MPMHeatBody::share and gradient for the faces of the box. Collective. */
   void find_surface();
-  /** A lattice that ends within reach of a face with a condition: a node there is tied, and another one of the same line is not.
-   *  Tells once. Collective. */
+  /** Warns once if a lattice ends within reach of a face with a condition, so that a node there is tied and
+   *  another node of the same line is not. Collective. */
   void look_for_thin_skins();
 
  private:

@@ -23,8 +23,8 @@ namespace LAMMPS_NS {
 class MPMHeatThin;
 class Region;
 
-/** What the surface of a region does to the heat of what touches it, or, without a region, the
- *  surface of bodies that touches nothing. */
+/** Heat condition at the surface of a region or, without a region, at the free surface of bodies, which touches
+ *  nothing. */
 struct MPMHeatSurfaceCondition {
   std::string region;    ///< ID, empty: free surfaces
   MPMHeatCondition condition;
@@ -34,35 +34,38 @@ struct MPMHeatSurfaceCondition {
 class MPMHeatSurfaces : protected Pointers {
  public:
   MPMHeatBody &body;
-  /** Bodies that hide free surfaces of this one: their fields have a fix mpm/contact with it, by which all ranks know the
-   *  nodes of both where they may meet. */
+  /** Bodies that hide free surfaces of this one. Their fields have a fix mpm/contact with it, by which all
+   *  ranks know the nodes of both fields where they may meet. */
   std::vector<const MPMHeatBody *> neighbors;
 
   using Conditions = std::vector<MPMHeatSurfaceCondition>;
-  /** sigma: the constant of Stefan and Boltzmann. */
+  /** sigma: the Stefan-Boltzmann constant. */
   MPMHeatSurfaces(class LAMMPS *, MPMHeatBody &, const Conditions &, double sigma);
 
-  /** Ranks need the nodes around those that their points reach. */
+  /** Activates further blocks: ranks need the nodes around those that their points reach. */
   void extend_topology();
+  /** The blocks of the field are new. */
   void topology_changed();
   /** Marks blocks with surfaces. */
   void mark_near();
-  /** Where surfaces are in this step, when those of this body and its neighbors are known. thin: null, or gets all places,
-   *  with the condition as entry. Collective. */
+  /** Finds the surfaces in this step, once those of this body and its neighbors are known. thin: null, or
+   *  receives all places, with the condition as entry. Collective. */
   void find_lines(MPMHeatThin *thin);
-  /** What the capacities and temperatures of nodes make of them. Returns the largest rate of this rank at which temperatures
-   *  follow those outside [1/time]. */
+  /** Updates the exchange for the capacities and temperatures of nodes. Returns the largest rate on this rank
+   *  at which temperatures follow the outside temperature [1/time]. */
   double begin_step();
+  /** Notes the lines of these surfaces for edges of the body. */
   void note_edges() const;
-  /** They follow with this rate at the most, and at edges with that of conduction. */
+  /** Limits the rate at which temperatures follow to cap, and at edges to the rate of conduction. */
   void limit(double cap, double conduction);
-  /** Gives heat to the body, whose rates have all other heat already; adds the power of this rank, one value for each
-   *  condition. */
+  /** Gives heat to the body, whose rates must include all other heat already. power: the power on this rank is
+   *  added, one value for each condition. */
   void exchange(double *power) const;
-  /** From here on exchange_changes() is for small changes of the present temperatures. Is all of it symmetric on this rank? */
+  /** Linearizes the conditions around the present temperatures for exchange_changes(). Returns true if the
+   *  result is symmetric on this rank. */
   bool linearize();
   void exchange_changes() const;
-  /** What this rank adds to the matrix of conduction. */
+  /** Passes on the terms that this rank adds to the matrix of conduction. */
   void each_term(const MPMDiffusion::Term &) const;
 
   double memory_usage() const;
@@ -72,15 +75,15 @@ class MPMHeatSurfaces : protected Pointers {
     int condition;
     int64_t key;
     MPMHeatBody::Line line;
-    double share, area;    // of this axis, and of this rank
-    double rate;           // at which the temperature follows that outside
-    double slope;          // fall of the heat per area with the temperature, of exchange_changes()
+    double share, area;    // share and area that belong to this axis and this rank
+    double rate;           // rate at which the temperature follows the outside temperature
+    double slope;          // decrease of the flux per unit of temperature, for exchange_changes()
     double into[3];        // unit normal into the body
   };
   struct Wall {
     Region *region;    // null: free surface
     MPMRegionSurface surface;
-    std::vector<double> distance;    // of nodes, in node spacings
+    std::vector<double> distance;    // distance of nodes, in node spacings
 
     bool moves() const;
   };
@@ -89,9 +92,10 @@ class MPMHeatSurfaces : protected Pointers {
   const double sigma;
   double fastest = 0.0;
   std::vector<Wall> walls;
-  std::vector<int> wall_of;    // of each condition, -1: free surface
+  std::vector<int> wall_of;    // index of the wall of each condition, -1: free surface
   bool has_free = false;
-  /** Share of the room of a node that the body fills, and that its neighbors fill, this at nodes that the body reaches. */
+  /** Shares of the room of a node that the body fills, and that its neighbors fill; the latter at nodes that
+   *  the body reaches. */
   std::vector<double> filled, covered;
   std::vector<Place> places;
   std::vector<MPMHeatBody::Part> parts;    // of one place

@@ -17,9 +17,9 @@
 namespace LAMMPS_NS {
 class MPMHeatBody;
 
-/** Looks out for bodies so thin that nodes see both of their surfaces, of which heat through one is lost then.
+/** Detects bodies so thin that nodes see both of their surfaces; the heat through one of these is then lost.
  *
- *  Entries are conditions and contacts, in any order. The same calls with the same entries on all ranks. */
+ *  Entries are conditions and contacts, in any order. All ranks must make the same calls with the same entries. */
 class MPMHeatThin {
  public:
   struct Found {
@@ -27,19 +27,19 @@ class MPMHeatThin {
     double x[3];    ///< the first place in space
   };
 
-  /** Begins a step. Is it one in which to look? */
+  /** Begins a step. Returns true if bodies are checked in this step. */
   bool looks(int nentries);
-  /** A place with this area of surface, in node spacings from the origin of the lattice; into: the unit normal into the body. */
+  /** Adds a place with this area of surface. at: position in node spacings from the origin of the lattice;
+   *  into: unit normal into the body. */
   void take(int entry, const MPMHeatBody &, const double *at, const double *into, double area);
-  /** Collective, after a look: true once, when much of the area of an entry belongs to thin bodies. */
+  /** Called after a check: returns true once, if thin bodies make up much of the area of an entry. Collective. */
   bool tell(MPI_Comm, Found &);
 
  private:
   int steps = 0;
   bool is_told = false;
-  std::vector<std::array<double, 2>> areas;    // of an entry: of thin bodies, and of all
-  std::vector<MPMFirstNote<4>>
-      notes;    // of an entry: a number that is always the same, and the place
+  std::vector<std::array<double, 2>> areas;    // [entry] area of thin bodies, and of all bodies
+  std::vector<MPMFirstNote<4>> notes;          // [entry] a constant number, and the place
 };
 
 }    // namespace LAMMPS_NS

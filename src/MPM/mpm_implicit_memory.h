@@ -17,27 +17,30 @@
 
 namespace LAMMPS_NS {
 
-/** What implicit steps with inertia keep for the next ones, as long as the nodes stay the same and walls hold the same of them: the
- *  motions of the last steps, from which the next one is foreseen, and whether factors of a tangent are there, with what corrections
- *  have told of how tangents changed since. None of it changes what a step converges to, only the way. Vectors have the nodes of all
- *  ranks in the order of SharedNodes: nodes may come to other ranks. */
+/** What implicit steps with inertia keep for the next steps, as long as the nodes stay the same and walls hold
+ *  the same motions: the motions of the last steps, from which the next one is predicted; whether factors of a
+ *  tangent exist; and what corrections have revealed about changes of the tangent since these were made. This
+ *  affects only the path of the iterations, not the result that a step converges to. Vectors have the nodes of
+ *  all ranks in the order of SharedNodes, because nodes may move to other ranks. */
 struct MPMImplicitMemory {
-  bool known = false;    // is there anything?
-  std::vector<uint64_t>
-      nodes;                    // blocks, those which this rank owns of each, and those with a mass
-  std::vector<double> walls;    // what these leave of a motion that is no special one
+  bool known = false;    // is anything stored?
+  // blocks, the nodes of each that this rank owns, and those with a mass
+  std::vector<uint64_t> nodes;
+  std::vector<double> walls;    // what walls leave of a generic motion
   double dt = 0.0;
   std::deque<std::vector<double>> motions;    // the last one first
-  bool structured = false;    // factors were there, whose structure is of use for those to come
+  bool structured = false;    // there were factors, whose structure is useful for the next ones
   bool factorized = false;
-  bool levels = false;            // there are some in their place
-  double stiffness = 0.0;         // that goes with the factors, see MPMTangent::linearize()
-  double asymmetry = 0.0;         // of the same
-  std::vector<int> in_factors;    // places of nodes in the system of the factors, -1: none
-  std::vector<double> turned;     // rotations of the body around nodes, at the factors
+  bool levels = false;            // multigrid levels are used in place of factors
+  double stiffness = 0.0;         // stiffness of the factors, see MPMTangent::linearize()
+  double asymmetry = 0.0;         // asymmetry of the same tangent
+  std::vector<int> in_factors;    // indices of nodes in the system of the factors, -1: none
+  std::vector<double> turned;     // rotations of the body around nodes when the factors were made
   MPM_NS::QuasiNewton pairs;
-  int64_t steps = 0, iterations = 0, last = 0;    // with these factors; those of the last step
+  int64_t steps = 0, iterations = 0,
+          last = 0;    // with these factors; last: iterations of the last step
 
+  /** Forgets the factors and the corrections that belong to them. */
   void drop_factors()
   {
     factorized = false;

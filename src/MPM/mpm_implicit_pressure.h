@@ -17,32 +17,37 @@
 namespace LAMMPS_NS {
 class MPMNodePressure;
 
-/** The part of a pressure of nodes in the implicit steps of their motion: its values p, what is left of its equations, and the linear
- *  system of both, whose vectors are [node][dim] displacements and, behind these, [node] pressures. */
+/** The part of implicit steps that belongs to a pressure of nodes: its values p, the residual of its equations,
+ *  and the joint linear system with the motion. Vectors of that system are [node][dim] displacements, followed
+ *  by [node] pressures. */
 class MPMImplicit::Joint : public MPM_NS::LinearSystem {
  public:
   Joint(MPMImplicit &motion, MPMNodePressure &water);
 
+  /** Start and end of a step. */
   void begin_step();
   void end_step();
 
-  /** Points have the present pressure in their forces. */
+  /** Gives points the present pressure in their forces. */
   void set_pressure();
-  /** What is left of the equations at p and the motion u, with the sum of forces by stress (MPMTangent::forces()); returns its ratio to all volumes in them. */
+  /** Finds the residual of the equations at p and the motion u. forces: sum of forces by stress
+   *  (MPMTangent::forces()). Returns the ratio of the residual to all volumes in the equations. */
   double find_residual(const std::vector<double> &u, double forces);
-  /** What is left of forces and volumes, in parts of what may be left, the larger one. */
+  /** excess(): the larger of the residuals of forces and of volumes, each relative to the residual allowed.
+   *  enough(): the residual of volumes that is allowed. */
   double excess() const;
   double enough() const;
-  /** Sum of forces that may be left however small all forces are. */
+  /** Sum of unbalanced forces that is allowed however small all forces are. */
   double negligible_forces() const;
-  /** Nodes that walls hold move first: the change of forces, and volumes that this takes. */
+  /** Moves the nodes that walls hold first, and finds the change of forces and volumes that this causes. */
   void move_walls(const std::vector<double> &u, double *forces);
-  /** Corrections of both from the motion u on, that of the motion in motion.change. */
+  /** Solves for the corrections of both at the motion u; the correction of the motion is stored in
+   *  motion.change. */
   MPM_NS::SolveReport solve(const std::vector<double> &u, const MPM_NS::SolveGoal &);
   /** p <- p + s times its correction. */
   void move(double s);
 
-  // parts of a step, see MPMImplicit::approach(): values of where the next one begins, and what is left at first
+  // parts of a step, see MPMImplicit::approach(): values at the start of the next part, and the initial residual
 
   void keep() { kept = p; }
   void go_back() { p = kept; }
@@ -52,26 +57,28 @@ class MPMImplicit::Joint : public MPM_NS::LinearSystem {
   double memory_usage() const;
 
  private:
-  class Flow;    // the pressure alone, for its levels
+  class Flow;    // the pressure alone, for its multigrid levels
 
   MPMImplicit &motion;
   MPMNodePressure &water;
   MPM_NS::FlexibleGMRES solver{60};
   MPM_NS::SplineMultigrid levels;
-  bool prepared = false;        // the levels, in this step
-  bool stress_alone = false;    // motion in the preconditioner: in this step without the pressure
-  const std::vector<double> *at = nullptr;    // where it is linearized
-  double response = 0.0, volume = 0.0;        // of a unit of pressure; of all points
-  double round_off = 0.0;                     // volumes that pressures are not known better than
-  double part_left = 0.0;                     // of what is left at first
-  double sum = 0.0, carried = 0.0;            // of what is left, and of all volumes
-  double weight = 1.0;                        // of volumes in products of vectors
+  bool prepared = false;    // are the levels up to date in this step?
+  // does the motion in the preconditioner ignore the pressure in this step?
+  bool stress_alone = false;
+  const std::vector<double> *at = nullptr;    // motion at which the system is linearized
+  double response = 0.0, volume = 0.0;    // response to a unit of pressure; volume of all points
+  double round_off = 0.0;                 // volumes below which pressures are not resolved
+  double part_left = 0.0;                 // remaining share of the initial residual
+  double sum = 0.0, carried = 0.0;        // sum of the residual, and of all volumes
+  double weight = 1.0;                    // weight of volumes in products of vectors
   std::vector<double> p, kept, left, first, correction;    // [node]
   std::vector<double> rhs, solution, room, none;
   std::vector<double> of_points, dp, dV;    // [n]
-  std::vector<double> softness;             // [n] of the soil, for the levels
+  std::vector<double> softness;             // [n] softness of the soil, for the levels
   std::vector<double> of_ranks;
-  std::vector<std::vector<double>> free_axes;    // [node][dim] motions of all that nothing resists
+  // [node][dim] motions of the whole body that nothing resists
+  std::vector<std::vector<double>> free_axes;
 
   int64_t size() const override { return motion.nreals() + (int64_t) motion.mass.size(); }
   void apply(const double *x, double *y) override;

@@ -20,26 +20,29 @@ struct BatchKernels;
 namespace LAMMPS_NS {
 class MPMField;
 
-/** J = det F of the points of a field, for physics that needs no more of F in a step: to read all of F again, which is not
- *  in the cache any more, takes as long as a transfer. Where stress is updated, F is in the cache, and J is kept.
+/** J = det F of the points of a field, for physics that needs nothing else of F in a step. Reading all of F
+ *  again, which is no longer in the cache, takes as long as a transfer; so J is stored when stress is updated
+ *  and F is in the cache.
  *
- *  J is found from F, by the same function, whenever it is not known: it need not migrate, nor be in restart files. */
+ *  If J is not known, it is computed from F by the same function. So it need not migrate with points, nor be in
+ *  restart files. */
 class MPMJacobians {
  public:
-  /** Start of a run: nobody has asked yet, and nothing is known. */
+  /** Start of a run: J is not requested yet, and not known. */
   void init() { wanted = known = false; }
-  /** They are wanted in this run, by who has points in this field. */
+  /** Requests J in this run; called by physics with points in this field. */
   void ask() { wanted = true; }
 
-  /** Points from first on have the F of the batch now, and all others of the field are next. nmax: room for atoms. */
+  /** Stores J of the points from first on, whose F is in the batch; the other points of the field follow. nmax:
+   *  room for atoms. */
   void note(const MPM_NS::BatchKernels &kernels, const MPM_NS::Batch &batch, int first, int nmax)
   {
     if (wanted) keep(kernels, batch, first, nmax);
   }
-  /** Points are in another order, or have another F. */
+  /** Discards J: called if points have another order or another F. */
   void forget() { known = false; }
 
-  /** [n] of n <= BATCH points from first on; room: [n]. */
+  /** Returns J [n] of n <= BATCH points from first on. room: [n], used if J is not stored. */
   const double *get(const MPMField &field, int first, int n, double *room) const
   {
     if (known) return J.data() + first;

@@ -15,7 +15,7 @@
 namespace LAMMPS_NS {
 class MPMHalo;
 
-/** The ranks of LAMMPS for solves on a lattice: sums at nodes by way of a halo that is set up for the grid. */
+/** Ranks of LAMMPS for solves on a lattice. Sums at nodes use a halo that is set up for the grid. */
 class MPMLatticeRanks : public MPM_NS::LatticeRanks {
  public:
   MPMLatticeRanks(class LAMMPS *lmp, const MPM_NS::Grid &grid, MPMHalo &halo) :
@@ -26,7 +26,7 @@ class MPMLatticeRanks : public MPM_NS::LatticeRanks {
   int number() const override;
   int me() const override;
   void sum(double *values, int width) override;
-  /** Stops with an error where it is more than an int can count. */
+  /** Stops with an error if the total size exceeds the range of an int. */
   const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) override;
   const std::vector<char> &gather_sizes(const void *mine, const std::vector<int> &sizes) override;
 

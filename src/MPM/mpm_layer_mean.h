@@ -17,38 +17,42 @@
 
 namespace LAMMPS_NS {
 
-/** Conductivities of points next to interfaces of materials that conduct heat, or water in their pores, differently: the
- *  harmonic mean across an interface and, if this is wanted, the arithmetic one along it, over about a node spacing. */
+/** Conductivities of points next to interfaces between materials that conduct heat, or water in their pores,
+ *  differently: the harmonic mean across an interface and, if requested, the arithmetic mean along it, over
+ *  about a node spacing. */
 class MPMLayerMean {
  public:
-  /** Conductivities [n] > 0 and volumes [n] of points; false: this run does not conduct. */
+  /** Fills in conductivities k [n] > 0 and volumes [n] of points. Returns false if this run does not conduct. */
   using Fill =
       std::function<bool(const MPMPointMap::Run &, int first, int n, double *k, double *volume)>;
 
-  /** A mean across an interface is not above so many times the conductivity of the point itself. */
+  /** Upper limit of a mean across an interface, relative to the conductivity of the point itself. */
   static constexpr double MOST = 4.0;
-  /** Smaller conductivities count as this; its inverse has a square. */
+  /** Smaller conductivities are replaced by this value; the square of its inverse must be representable. */
   static constexpr double LEAST = 1.0e-100;
 
-  /** along: means along interfaces, too, which may be much above the conductivity of the point. */
+  /** along: use means along interfaces, too, which may be much above the conductivity of the point. */
   MPMLayerMean(MPMField &field, bool along) : field(field), nodes(field), means_along(along) {}
 
   /** Start of a run. */
   void init() { nodes.init(false, means_along); }
-  /** The means of this rank's points in this step. Collective. */
+  /** Finds the means at this rank's points in this step. Collective. */
   void find(const Fill &);
-  /** Means of other values over about a node spacing, [n]; fill as in find(), with a value of any kind. Collective. */
+  /** Finds means of other values over about a node spacing, [n]. fill: as in find(), with a value of any kind.
+   *  Collective. */
   void find_means(const Fill &, std::vector<double> &values);
-  /** Is point i next to an interface? If so: the unit normal of this, and the conductivities along and across it. */
+  /** Is point i next to an interface? If so, the following functions return its unit normal, and the
+   *  conductivities along and across it. */
   bool at_interface(int i) const { return means[i].less != 0.0; }
   const double *normal(int i) const { return means[i].normal; }
   double along(int i) const { return means[i].along; }
   double across(int i) const { return means[i].along - means[i].less; }
   /** The greatest conductivity of a point. */
   double most(int i) const { return means[i].along + std::max(0.0, -means[i].less); }
-  /** Bound of this over the conductivity of the point itself, from that of the greatest of all points. */
+  /** Upper bound of most() relative to the conductivity of the point itself. ratio: the same for the greatest
+   *  conductivity of all points. */
   double most_over_own(double ratio) const { return means_along ? ratio : std::min(ratio, MOST); }
-  /** Conductivity of a point times the vector q, in place. */
+  /** Multiplies the vector q by the conductivity of a point, in place. */
   void multiply(int i, double *q) const
   {
     const Mean &m = means[i];
@@ -60,7 +64,7 @@ class MPMLayerMean {
 
  private:
   struct Mean {
-    double along, less;    // along an interface, and by how much less across it
+    double along, less;    // conductivity along an interface, and by how much it is less across it
     double normal[3];
   };
   MPMField &field;

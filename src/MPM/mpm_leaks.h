@@ -17,14 +17,14 @@ namespace LAMMPS_NS {
 class MPMField;
 class FixMPMMaterial;
 
-/** Nodes inside of material that lets nothing through, at which points of other materials meet from two sides: what these exchange at
- *  nodes leaks through it. */
+/** Nodes inside of impermeable material at which points of other materials meet from both sides: what these
+ *  exchange at the nodes leaks through the material. */
 struct MPMLeaks {
   int64_t nodes = 0;
   double first[3];    ///< place of one of them, if there are any
 };
 
-/** conducts(material): does it let through? The map of points is known. Collective. */
+/** conducts(material): is the material permeable? The map of points must be known. Collective. */
 MPMLeaks find_leaks(MPMField &, MPI_Comm world,
                     const std::function<bool(const FixMPMMaterial *)> &conducts);
 

@@ -20,27 +20,28 @@ struct PointRows;
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Energy spent or gained by a field since the first step with a ledger, this rank's share [energy]. */
+/** Energies spent or gained by a field since the first step with a ledger, share of this rank [energy]. */
 struct MPMEnergies {
-  double
-      external;    ///< work of atom->f (gravity, contact by pair styles, walls, ...) and of loads that are a stress
+  /** Work of atom->f (gravity, contact by pair styles, walls, ...) and of loads given as a stress. */
+  double external;
   double boundary;    ///< work of node actions of kind boundary
   double contact;     ///< work of node actions between fields
-  double internal;    ///< work of stress at the mean of old and new velocity: taken from the motion
+  double internal;    ///< work of stress at the mean of old and new velocity, taken from the motion
   double transfer;    ///< kinetic energy gained (mostly lost: negative) by transfers and collisions
   double deleted_kinetic, deleted_stored;    ///< energy of points that were deleted
 };
 
-/** The energy accounts of a field. Each of them is a sum of its own: works are forces or impulses times
- *  velocities, and transfers have kinetic energies before and after. None is what the others leave, so that
- *  their balance is a check, see "The ledger" in the developer guide. */
+/** Energy accounts of a field. Each account is a sum of its own: works are forces or impulses times velocities,
+ *  and transfers are differences of kinetic energies before and after. No account is found as the remainder of
+ *  the others, so their balance is a check; see "The ledger" in the developer guide. */
 class MPMLedger : protected Pointers, public MPMEnergies {
  public:
   bool on = false;    ///< a compute mpm/energy exists; set in init()
-  /** Work that moving walls, rigid bodies, grains, and atoms have done on the nodes, this rank's share [energy];
-   *  counted in any run, without what is lost by friction at walls and between bodies. */
+  /** Work that moving walls, rigid bodies, grains, and atoms have done on the nodes, share of this rank
+   *  [energy]. Counted in any run, without losses by friction at walls and between bodies. */
   double driven = 0.0;
-  std::vector<double> start;    ///< of compute mpm/energy, until the end of the next run
+  /** Initial values of compute mpm/energy, until the end of the next run. */
+  std::vector<double> start;
 
   MPMLedger(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), MPMEnergies(), field(field) {}
 
@@ -49,13 +50,13 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   {
     if (on) kinetic_points = point_kinetic_energy();
   }
-  /** After the momentum equation, before node actions. */
+  /** Called after the momentum equation, before node actions. */
   void nodes_solved() { impulses.clear(); }
-  /** Work of forces and kinetic energies, before points get what was done to the nodes. */
+  /** Accounts for the work of forces and kinetic energies, before points receive the changes at the nodes. */
   void account_for_nodes();
-  /** End of a step: what the way from nodes to points has changed. */
+  /** End of a step: accounts for the change by the transfer from nodes to points. */
   void account_for_points();
-  /** Points are about to be deleted. */
+  /** Accounts for points that are about to be deleted. */
   void remove(double kinetic, double stored)
   {
     deleted_kinetic -= kinetic;
@@ -63,32 +64,35 @@ class MPMLedger : protected Pointers, public MPMEnergies {
     kinetic_points -= kinetic;
   }
 
-  /** Points have lost kinetic energy that is in the account of other physics. */
+  /** Accounts for kinetic energy that points lost to the account of other physics. */
   void take(double kinetic) { kinetic_points -= kinetic; }
 
-  /** Change the velocity of a node by an impulse, which counts as contact where the node is owned. */
+  /** Changes the velocity of a node by an impulse; the work counts as contact if the node is owned. */
   void push_node(double *record, bool owned, const double *impulse);
-  /** The same for an impulse that has the whole step to act: its work is that at the mean of old and new velocity,
-   *  and nothing is lost as in a collision. */
+  /** The same for an impulse that acts over the whole step: its work is that at the mean of old and new
+   *  velocity, without the loss of a collision. */
   void drag_node(double *record, bool owned, const double *impulse);
-  /** An owned node had its velocity changed by contact: its record has the new one. */
+  /** Counts a change of the velocity of an owned node by contact. record: already with the new velocity. */
   void count_push(const double *record, const double *change);
-  /** An owned node had its velocity changed by whatever action, after which others may come: its mass times
-   *  the difference of the changes is the impulse. change_old: of the old velocity, null: none. */
+  /** Notes a change of the velocity of an owned node by any action, after which others may follow. The impulse
+   *  is the mass of the node times the difference of change and change_old. change_old: of the old velocity;
+   *  null: none. */
   void note_push(const double *record, const double *change, const double *change_old = nullptr);
-  /** All nodes have had these velocities [node][3] before, which have become those of the records by more
-   *  terms of a series. */
+  /** Counts the change of all nodes from these velocities [node][3] to those of the records, which are due to
+   *  further terms of a series. */
   void count_series(const std::vector<double> &velocities);
 
-  /** Of the nodes that this rank owns, with the velocities before the momentum equation and the present ones. */
+  /** Kinetic energies of the nodes that this rank owns, with the velocities before the momentum equation and
+   *  with the present ones. */
   void nodal_kinetic_energies(double &old, double &now) const;
+  /** Kinetic energy of this rank's points [energy]. */
   double point_kinetic_energy() const;
 
  private:
   MPMField &field;
   double kinetic_points = 0.0;    // at the end of the last step
-  std::vector<double>
-      impulses;    // [node][3] of node actions on owned nodes in this step; empty: none
+  // [node][3] of node actions on owned nodes in this step; empty: none
+  std::vector<double> impulses;
 
   double *impulse(const double *record);
   static bool change_by(double *record, const double *impulse, double change[3]);

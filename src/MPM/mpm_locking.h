@@ -18,13 +18,13 @@ class MPMLocking : protected Pointers {
  public:
   MPMLocking(class LAMMPS *, MPMField &, class MPMPointState &);
 
-  /** [n][dim*dim] for velocity gradients of all points. */
+  /** Room [n][dim*dim] for velocity gradients of all points. */
   double *room_for_gradients();
-  /** F-bar: strain and stress of all points with velocity gradients L whose change of volume is
-   *  replaced by that of averages. */
+  /** F-bar method: updates strain and stress of all points from velocity gradients L in which the change of
+   *  volume is replaced by its average. */
   void strain(const double *L, double dt);
 
-  /** Make the stress of internal forces, with averaged pressure. */
+  /** Finds the stress for internal forces, with averaged pressure. */
   void average_pressure();
   /** Kirchhoff stress with averaged pressure, [n][6]. */
   double *stress() { return tau.data(); }
@@ -33,7 +33,7 @@ class MPMLocking : protected Pointers {
 
  private:
   MPMField &field;
-  double *J = nullptr;    // [n] ratio of volumes by the motion of the point alone, 0: not yet known
+  double *J = nullptr;    // [n] volume ratio by the motion of the point alone, 0: not yet known
   std::vector<double> gradients, tau;
 
   template <class Value> void average_around_points(const Value &);

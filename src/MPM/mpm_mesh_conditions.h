@@ -24,19 +24,20 @@ using MeshVector = std::array<double, 3>;
 
 namespace LAMMPS_NS {
 
-/** What a physical group of a mesh does to its nodes. */
+/** Condition of a physical group of a mesh. */
 struct MPMMeshCondition {
   enum Kind {
-    VELOCITY,    ///< velocity along axes, NULL: free
-    SLIP,        ///< no velocity along the normals of its sides
-    PRESSURE,    ///< on its sides, which can follow the body
-    TRACTION     ///< force per area on its sides, as they are in the file
+    VELOCITY,    ///< prescribed velocity along axes, NULL: free
+    SLIP,        ///< no velocity along the normals of the sides
+    PRESSURE,    ///< pressure on the sides, which can follow the body
+    TRACTION     ///< force per area on the sides as they are in the file
   } kind = VELOCITY;
   std::string group;
   MPM_NS::NumberOrVariable value[3];
 };
 
-/** The group for which conditions of this kind are given twice, with one of the first n values in both; else empty. */
+/** Returns the group for which conditions of this kind are given twice with one of the first n values in both,
+ *  or an empty string. */
 template <class Condition>
 std::string group_given_twice(const std::vector<Condition> &all, int kind, int n = 1)
 {
@@ -56,35 +57,37 @@ class MPMMeshForces : protected Pointers {
   MPMMeshForces(class LAMMPS *, const MPM_NS::BackgroundMesh &,
                 const std::vector<MPMMeshCondition> &);
 
-  /** Start of a run: variables. */
+  /** Start of a run: finds the variables. */
   void init(const std::string &user);
-  /** Values of this step, on all ranks. */
+  /** Evaluates the values of this step, on all ranks. */
   void evaluate();
+  /** Are there no conditions, and how many are there? */
   bool empty() const { return list.empty(); }
   std::size_t size() const { return list.size(); }
 
-  /** Is there a pressure? */
+  /** Is there any pressure? */
   bool has_pressure() const { return npressure > 0; }
-  /** Or a pressure or a traction? */
+  /** Is there any pressure or traction? */
   bool has_loads() const;
-  /** Pressure acts on sides whose nodes have gone to these positions; cells: those whose sides this rank looks at. Collective. */
+  /** Lets pressure act on sides whose nodes have moved to these positions. cells: those whose sides this rank
+   *  handles. Collective. */
   void follow(const std::vector<char> &cells, const std::vector<MPM_NS::MeshVector> &positions,
               class MPMMeshRanks &ranks);
 
-  /** Start of a run: tell of loads on sides whose nodes have no mass. Collective.
-   *  carries: does this rank count the node, and has it a mass? */
+  /** Start of a run: warns of loads on sides whose nodes have no mass. carries: does this rank count the node,
+   *  and does the node have mass? Collective. */
   void warn_of_lost_loads(const std::string &user, const std::function<bool(int)> &carries) const;
 
-  /** A share of the force of all loads on a node [force]. Counts it for the output. */
+  /** Adds a share of the force of all loads on a node [force]. count: include it in the output. */
   void add_load(int node, double share, bool count, double *force);
 
-  /** Velocity v of a node as its conditions want it. The force on the body, with this mass per time, counts for the output;
-   *  0: it does not. */
+  /** Applies the conditions of a node to its velocity v. mass_per_time: converts the change to the force on the
+   *  body for the output; 0: it is not counted. */
   void constrain(int node, double mass_per_time, double *v);
 
-  /** Sums for the output begin anew. */
+  /** Resets the sums for the output. */
   void clear_sums();
-  /** Force on the body of condition k, along axis d, of nodes that this rank counted. */
+  /** Force of condition k on the body along axis d, over the nodes that this rank counted. */
   double sum(int k, int d) const { return list[k].sum[d]; }
 
  private:
@@ -92,22 +95,22 @@ class MPMMeshForces : protected Pointers {
     MPMMeshCondition given;
     double value[3];
     MPM_NS::MeshVector sum;
-    int number;    // of those with a pressure
+    int number;    // index among the conditions with a pressure
     std::vector<MPM_NS::BackgroundMesh::Face> sides;
   };
   struct OfNode {
     int condition;
-    std::vector<MPM_NS::MeshVector> normals;    // of SLIP: unit vectors at right angles
-    MPM_NS::MeshVector normal;    // of sides with loads: outward, with the size of the area
+    std::vector<MPM_NS::MeshVector> normals;    // for SLIP: unit vectors at right angles
+    MPM_NS::MeshVector normal;    // for sides with loads: outward normal with the size of the area
     double area;
   };
   const MPM_NS::BackgroundMesh &mesh;
   std::vector<Active> list;
   int npressure = 0;
   std::vector<double> normals;    // [node][pressure][3]
-  std::vector<int> place;         // [node] in of_nodes, -1: none
-  std::vector<std::vector<OfNode>>
-      of_nodes;    // first SLIP, then others, in the order of the input
+  std::vector<int> place;         // [node] index in of_nodes, -1: none
+  // conditions of a node: first SLIP, then others, in the order of the input
+  std::vector<std::vector<OfNode>> of_nodes;
   bool varies = false;
 
   OfNode &add(int node, int condition);

@@ -23,43 +23,44 @@ struct Mesh;
 
 namespace LAMMPS_NS {
 
-/** The fields of points that create_points makes from the nodes or elements of a mesh. */
+/** Properties of the points that create_points makes from the nodes or elements of a mesh. */
 class MPMMeshFields : protected Pointers {
  public:
-  /** Numbers of a file, what they are for points, and a factor on them. */
+  /** Name of data in a file, the quantity of points that they set, and a factor. */
   struct Data {
     std::string name, quantity;
     double factor = 1.0;
   };
 
-  /** at_nodes: points are nodes, else elements. type: of all points, or, by_type, the tag of their physical group, which is the place of their set
-   *  in the file where sets have no tags. by_group: points join groups with the names of their sets, which are made
-   *  if there are none. data: what points get of the file, as columns of a table do. Stops with an error for what the file or the
-   *  simulation does not have, and for nodes that would have two types. */
+  /** at_nodes: points are nodes, else elements. type: type of all points; with by_type, the type is instead the
+   *  tag of the physical group, or the index of the set in the file if sets have no tags. by_group: points join
+   *  groups with the names of their sets; missing groups are created. data: what points get from the file, as
+   *  from the columns of a table. Stops with an error if the file or the simulation lacks something, or if
+   *  nodes would have two types. */
   MPMMeshFields(LAMMPS *, const MPM_NS::Mesh &, bool at_nodes, int type, bool by_type,
                 bool by_group, const std::vector<Data> &);
 
-  /** The next point that this process makes is that of node or element k. */
+  /** Tells that the next point that this process makes is that of node or element k. */
   void add(int k) { mine.push_back(k); }
 
-  /** Gives the points from this one on what they have. */
+  /** Sets the properties of the points from this index on. */
   void set(int first);
 
-  /** Volume of node or element k over its initial one. */
+  /** Volume of node or element k relative to its initial volume. */
   double jacobian(int k) const;
 
-  /** What the points get; none of the columns is a place or a volume. */
+  /** Columns that the points get; none of them is a position or a volume. */
   const MPMPointColumns &given() const { return columns; }
 
-  /** For the log. */
+  /** Description of the types for the log. */
   std::string types() const;
 
  private:
   bool at_nodes;
   std::vector<int> mine, type,
-      bits;    // by node or element; no types: all have that of the command
+      bits;    // by node or element; type is empty if all have the type of the command
   MPMPointColumns columns;
-  std::vector<double> rows;    // of all nodes or elements
+  std::vector<double> rows;    // values of all nodes or elements
   int only_type;
 
   void find_types(const MPM_NS::Mesh &);

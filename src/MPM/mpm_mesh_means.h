@@ -16,20 +16,22 @@
 namespace LAMMPS_NS {
 class MPMMeshRanks;
 
-/** Means over the points around each point of a mesh, <q>_p = sum_i N_ip (sum_q N_iq w_q q_q)/(sum_q N_iq w_q), in groups of points
- *  that know nothing of each other. */
+/** Means over the points around each point of a mesh,
+ *      <q>_p = sum_i N_ip (sum_q N_iq w_q q_q)/(sum_q N_iq w_q)
+ *  separately for groups of points that do not influence each other. */
 class MPMMeshMeans {
  public:
   MPMMeshMeans(const MPM_NS::BackgroundMesh &mesh, MPMMeshRanks &ranks) : mesh(mesh), ranks(ranks)
   {
   }
 
-  /** Sums begin anew: for so many groups, of so many values. */
+  /** Resets the sums, for this number of groups and of values. */
   void clear(int ngroup, int nvalue);
+  /** Adds the values of a point of a group with this weight. */
   void add(int group, const MPM_NS::BackgroundMesh::Place &, double weight, const double *values);
-  /** Over ranks. Collective. */
+  /** Sums over ranks. Collective. */
   void sum();
-  /** Value k at a point. */
+  /** Mean of value k at a point. */
   double mean(int group, const MPM_NS::BackgroundMesh::Place &, int k) const;
   double memory_usage() const { return (double) (sums.capacity() * sizeof(double)); }
 
@@ -37,7 +39,8 @@ class MPMMeshMeans {
   const MPM_NS::BackgroundMesh &mesh;
   MPMMeshRanks &ranks;
   int width = 1, groups = 0;
-  std::vector<double> sums;    // [group][node][width]: weight, then those of weight times value
+  // [group][node][width]: sum of weights, then sums of weight times value
+  std::vector<double> sums;
 
   std::size_t row(int group, int node) const { return width * (group * mesh.nodes.size() + node); }
 };

@@ -15,29 +15,30 @@
 
 namespace LAMMPS_NS {
 
-/** Which nodes of a mesh, known to all ranks, are those of which ranks, and sums over these. */
+/** Distribution of the nodes of a mesh, which all ranks know, over ranks, and sums over ranks at shared nodes. */
 class MPMMeshRanks : protected Pointers {
  public:
-  std::vector<int> nodes;     ///< of this rank, in ascending order
+  std::vector<int> nodes;     ///< nodes of this rank, in ascending order
   std::vector<char> first;    ///< [node] is this the first rank that has it?
 
   explicit MPMMeshRanks(class LAMMPS *lmp) : Pointers(lmp) {}
 
-  /** mine: [node] does this rank need it? Collective. */
+  /** Finds the nodes and sharers. mine: [node] does this rank need the node? Collective. */
   void find(const std::vector<char> &mine);
 
-  /** Sum rows of values, [node][width], over ranks; all ranks get the same bits. Nodes of other ranks are left alone.
-   *  row: [node] the row of this node in values, -1: none, the same nodes on all ranks that have them; null: all nodes. */
+  /** Sums rows of values, [node][width], over ranks; all ranks get the same bits. Nodes that no other rank
+   *  shares are left alone. row: [node] index of the row of this node in values, -1: none; all ranks that have
+   *  a node must agree on whether it has a row. null: all nodes. */
   void sum(double *values, int width, const int *row = nullptr);
 
-  /** Rows of parts of this width: each part is that of the rank whose is the greatest, by its first value, of those that are equal
-   *  by the next. */
+  /** Replaces each part of a row (parts of this width) by the largest among ranks: the one with the greatest
+   *  first value and, where first values are equal, the greatest next one. */
   void largest(double *values, int width, int parts, const int *row);
 
   double memory_usage() const;
 
  private:
-  /** Another rank, and the nodes that both have. */
+  /** Another rank, and the nodes that both ranks have. */
   struct Neighbor {
     int rank;
     std::vector<int> nodes;

@@ -14,17 +14,18 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** What statics have of bodies that have turned, where forces have moving least squares in the updated frame (mpm_mls_turn.cpp): rotation of
- *  the points of a field [rad], their mean by equivalent stress; 0 with other forces. Collective. */
+/** Measure of an error of statics for bodies that have turned while forces use moving least squares in the
+ *  updated frame (mpm_mls_turn.cpp): the rotation of the points of a field [rad], averaged with the equivalent
+ *  stress as weight; 0 with other forces. Collective. */
 double turn_with_mls(const MPMField &);
 
-/** Is this rotation one to tell of? */
+/** Is this rotation large enough for a warning? */
 inline bool is_turned(double turn)
 {
   return turn > 0.02;
 }
 
-/** What a warning says of it, without its beginning: field: ID of the fix mpm. */
+/** Text of the warning about it, without its beginning. field: ID of the fix mpm. */
 std::string about_turn_with_mls(double turn, const std::string &field);
 
 }    // namespace LAMMPS_NS

@@ -19,41 +19,40 @@
 
 namespace LAMMPS_NS {
 
-/** A moment M on the points of a surface, with weights w (areas), by forces that are linear in their places r relative to the center:
-
-      f = w omega x r,   T omega = M,   T = sum w (r.r 1 - r r),   sum w r = 0
-
- *  Their sum is zero, and their moment is M, wherever the points have gone; on the end of a beam they are the stress of bending, and follow it. Forces in units of
- *  force. */
+/** Moment M on the points of a surface with weights w (areas), applied by forces that are linear in the
+ *  positions r relative to the center:
+ *      f = w omega x r,   T omega = M,   T = sum w (r.r 1 - r r),   sum w r = 0
+ *  The sum of the forces is zero and their moment is M, wherever the points have moved. On the end of a beam,
+ *  they are the stress of bending, and follow the beam. Forces are in units of force. */
 class MPMMoment : protected Pointers, public MPMTrialForces {
  public:
-  /** weight(i): of point i of this rank, 0: none; name: of who asks, for errors. */
+  /** weight(i): weight of point i of this rank, 0: none. name: of the caller, for errors. */
   MPMMoment(class LAMMPS *lmp, std::string name, std::function<double(int)> weight);
 
-  /** Of the points where they are now. Collective. */
+  /** Sets the moment, on the points at their present positions. Collective. */
   void set(const double *moment);
-  /** Force on point i for each unit of weight, where it was when the moment was set. */
+  /** Force on point i per unit of weight, at its position when the moment was set. */
   void load(int i, double *force) const { present.load(place(i, nullptr).data(), force); }
 
   bool forces_after(const double *u, double *force, double &carried) override;
   double differentiate(const double *u) override;
   void add_change(const double *du, double *dforce) override;
-  /** Nothing: one point has next to no part in it. */
+  /** Adds nothing: the share of a single point is negligible. */
   void add_blocks(double *) override {}
   const double *forces() const override;
   double asymmetry() const override { return present.size > 0.0 ? 1.0 : 0.0; }
 
  private:
   struct Spin {
-    double center[3], omega[3], inverse[3][3];    // of T
-    double size = 0.0;                            // of omega
+    double center[3], omega[3], inverse[3][3];    // omega, and the inverse of T
+    double size = 0.0;                            // magnitude of omega
     void load(const double *x, double *force) const;
   };
   std::string name;
   std::function<double(int)> weight;
   double moment[3] = {0.0, 0.0, 0.0};
   Spin present, trial;
-  std::vector<double> places;    // in trial
+  std::vector<double> places;    // positions in trial
   mutable std::vector<double> at_start;
 
   struct Place {

@@ -17,42 +17,47 @@
 namespace LAMMPS_NS {
 class Region;
 
-/** The mouth through which material flows in: a region that is a straight piece of a pipe along the flow, with any section.
+/** Mouth through which material flows in: a region that is a straight piece of a pipe along the flow, with any
+ *  cross section.
  *
- *  Points enter at its upstream end in layers across the flow, each of them the same columns of points. Columns share the area
- *  of the section, so that the flow rate is that of the section and not that of a lattice that happens to fit into it. In a
- *  rectangular section (2d: any) they are evenly spaced from edge to edge, in others they are those of a square lattice that are
- *  inside.
+ *  Points enter at its upstream end in layers across the flow, each with the same columns of points. Columns
+ *  share the area of the section, so that the flow rate is that of the section and not that of a lattice that
+ *  happens to fit into it. In a rectangular section (2d: any), columns are evenly spaced from edge to edge; in
+ *  other sections, they are the places of a square lattice that lie inside.
  *
- *  Coordinates are those of the region as it was defined; who moves the mouth shifts positions before asking. */
+ *  Coordinates are those of the region as it was defined. If the mouth moves, the caller shifts positions
+ *  before asking. */
 class MPMMouth : protected Pointers {
  public:
   struct Column {
-    double x[3];    ///< where it crosses the upstream end
+    double x[3];    ///< place where the column crosses the upstream end
     double area;    ///< its share of the section; around an axis of symmetry, in the half plane
   };
   std::vector<Column> columns;
   double normal[3];    ///< unit vector along the flow
-  double length;       ///< of the mouth along the flow
-  double area;         ///< of the section; around an axis of symmetry, in the half plane
+  double length;       ///< length of the mouth along the flow
+  double area;         ///< area of the section; around an axis of symmetry, in the half plane
 
-  /** Collective. user: who asks, for messages. direction: of the flow, of any length. spacing: wanted distance of columns.
-   *  known_area: of the section, of an annulus around an axis of symmetry; 0: to be found. axisymmetric: x is the distance from an axis. Ends with an error where the
-   *  region is no such piece. */
+  /** Finds the mouth of a region. user: the caller, for messages. direction: of the flow, of any length.
+   *  spacing: desired distance of columns. known_area: area of the section, if it is an annulus around an axis
+   *  of symmetry; 0: to be found. axisymmetric: x is the distance from an axis. Stops with an error if the
+   *  region is not a straight piece of a pipe. Collective. */
   MPMMouth(class LAMMPS *, const std::string &user, Region *, const double *direction,
            double spacing, double known_area, bool axisymmetric);
 
-  /** Is a place in the mouth, or less than reach away from it, but not downstream? Periodic images of the mouth count. */
+  /** Is a place in the mouth, or less than reach away from it but not downstream? Periodic images of the mouth
+   *  count. */
   bool holds(const double *x, double reach) const;
-  /** Is a place, given from middle(), less than this away from the sphere around the mouth? */
+  /** Is a place, given relative to middle(), less than this distance away from the sphere around the mouth? */
   bool is_near(const double *from_middle, double distance) const;
+  /** Center of the mouth. */
   const double *middle() const { return center; }
 
  private:
   Region *region;
-  double center[3];                // of the mouth
-  double across[2][3];             // unit vectors across the flow, in 2d the first one
-  double width[2] = {0.0, 0.0};    // of the section along these
+  double center[3];                // center of the mouth
+  double across[2][3];             // unit vectors across the flow, in 2d only the first one
+  double width[2] = {0.0, 0.0};    // widths of the section along these
 
   bool inside(const double *x) const;
   bool inside(double along, double a, double b) const;

@@ -14,30 +14,31 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** What a node sees of a body with a flat surface at a distance from it: the integral of its function over the
- *  body, and that over the surface. Exact for surfaces along axes; others differ a little, as the variance of the
- *  function is the same in all directions. Distances in node spacings. Of Bernstein polynomials, which have two kinds of
- *  nodes, it is that of the quadratic B-splines on these. */
+/** Integrals of the function of a node over a body with a flat surface, and over this surface, by the distance
+ *  of the node from the surface. Exact for surfaces normal to axes; other surfaces differ little, because the
+ *  variance of the function is the same in all directions. Distances are in node spacings. Bernstein
+ *  polynomials have two kinds of nodes; their profile is that of quadratic B-splines on the same nodes. */
 class MPMNodeProfile {
  public:
   explicit MPMNodeProfile(const MPMField &);
 
-  /** Volume of a node, as a share of that of a cell, at this depth in the body, negative outside of it. */
+  /** Volume of a node, as a share of the volume of a cell, at this depth in the body; the depth is negative
+   *  outside. */
   double volume(double depth) const;
-  /** The depth, from the volume over the area (of the body and its surface at the node, in cells). */
+  /** Depth from the ratio of volume to area (of the body and of its surface at the node, in cells). */
   double depth(double volume_by_area) const;
-  /** The same from the volume. */
+  /** Depth from the volume. */
   double depth_of_volume(double volume) const;
-  /** How deep below the surface the part of the body is, in the mean, that a node at this depth sees. */
+  /** Mean depth below the surface of the part of the body within the function of a node at this depth. */
   double mean_depth(double depth) const;
-  /** Nodes as far from the surface as this see nothing of it. */
+  /** Distance from the surface at which nodes no longer reach it. */
   double reach() const { return range; }
 
  private:
-  static constexpr int STEPS = 128;    // in a node spacing
+  static constexpr int STEPS = 128;    // steps per node spacing
   double range;
   std::vector<double> volumes, ratios;    // at depths -range + k/STEPS, growing
-  std::vector<double> means;              // depths of what is seen, at the same ones
+  std::vector<double> means;              // mean depths, at the same places
 
   static double at(const std::vector<double> &, double place);
   double inverse(const std::vector<double> &, double value) const;

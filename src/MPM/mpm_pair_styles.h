@@ -22,7 +22,7 @@ struct MPMPairStyle {
   Pair *pair;
   std::string name;
 
-  /** The pair style, or those that a hybrid has inside; none without one. */
+  /** The pair style, or all pair styles of a hybrid; empty without a pair style. */
   static std::vector<MPMPairStyle> all(const Force &force)
   {
     if (!force.pair) return {};
@@ -42,7 +42,8 @@ struct MPMPairStyle {
   };
 };
 
-/** A warning tells when a pair style of grains acts between material points of the group that touch now: after neighbor lists were made. */
+/** Warns if a pair style of grains acts between material points of the group that touch now. Called after
+ *  neighbor lists were made. */
 void warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::string &who);
 
 }    // namespace LAMMPS_NS

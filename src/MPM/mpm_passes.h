@@ -21,14 +21,15 @@
 
 namespace LAMMPS_NS {
 
+/** Makes a range of base nodes in a tile empty: lower bounds in box[0..2], upper bounds in box[3..5]. */
 inline void reset_box(int box[6])
 {
   std::fill_n(box, 3, 127);
   std::fill_n(box + 3, 3, -127);
 }
 
-/** nodes = what map(run, base, box) puts into the tile of each block with its kernel P2G, before copies
- *  are summed: a sum other than that of momentum. It may leave out runs. */
+/** Sets nodes to what map(run, base, box) adds to the tile of each block with its kernel P2G, before copies are
+ *  summed: for sums other than that of momentum. map may leave out runs. */
 template <class Map>
 void points_to(std::vector<double> &nodes, MPMField &field, const MPM_NS::TransferKernels &with,
                const Map &map)
@@ -45,7 +46,8 @@ void points_to(std::vector<double> &nodes, MPMField &field, const MPM_NS::Transf
   }
 }
 
-/** Calls gather(run, base) for all runs with these nodes in tile_load, where points_to() has been. */
+/** Calls gather(run, base) for all runs in blocks where points_to() has added something, with these nodes in
+ *  tile_load. */
 template <class Gather>
 void points_from(std::vector<double> &nodes, MPMField &field, const MPM_NS::TransferKernels &with,
                  const Gather &gather)
@@ -61,8 +63,8 @@ void points_from(std::vector<double> &nodes, MPMField &field, const MPM_NS::Tran
   }
 }
 
-/** Calls gather(run, first, n, base) for up to BATCH points of a run at a time, with the nodes of the
- *  step in tile_load; mean: long records, with the mean of old and new velocities. */
+/** Calls gather(run, first, n, base) for up to BATCH points of a run at a time, with the nodes of the step in
+ *  tile_load. mean: long records, with the mean of old and new velocities. */
 template <class Gather>
 void points_from_step(MPMField &field, const Gather &gather, bool mean = false)
 {
@@ -78,11 +80,11 @@ void points_from_step(MPMField &field, const Gather &gather, bool mean = false)
   }
 }
 
-/** Points of a run to the tile of their block. */
+/** Transfers the points of a run to the tile of their block. */
 void run_to_tile(MPMField &field, MPM_NS::P2G p2g, const MPM_NS::PointRows &,
                  const MPM_NS::TransferStep &, const MPMPointMap::Run &, const int base[3],
                  int box[6]);
-/** Rows of the points from first on, as if they were all. */
+/** Returns the rows shifted so that the point first becomes the first one. */
 MPM_NS::PointRows rows_from(const MPMField &, const MPM_NS::PointRows &, int first);
 
 }    // namespace LAMMPS_NS
