@@ -208,7 +208,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   std::vector<double> conductance;    // [n] mobility times volume
   std::vector<double> mean;           // [n] pressure interpolated from the nodes, at the start
   std::vector<double> grown,
-      warm;    // [n] volume by which water and grains expand in this step; new temperature
+      warm;    // [n] growth of volume by warmth in this step; new temperature
   double *const *warmth = nullptr;    // null: no soil warms
   std::vector<double>
       squeezed;    // [n] volume; after take_motion() rate at which deformation drives water out
@@ -217,8 +217,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   std::vector<double> linear_mean,
       quadratic_mean;             // [n] with layers: resistances across interfaces
   std::vector<double> of_flow;    // [node][8] at nodes next to the surface
-  std::vector<double>
-      unseen;    // [node] average over points of the part of their pressures that nodes do not see
+  std::vector<double> unseen;     // [node] mean of what nodes do not see of the pressures of points
 
   // of an implicit step
 
@@ -228,10 +227,9 @@ class MPMPore : public MPMNodePressure, protected Pointers {
     std::vector<double> start, capacity;    // [node], also of images
     std::vector<double> biot;               // [n]
     std::vector<double> gradient;           // [n][3] of the pressure at the start
-    std::vector<double>
-        smoothing;    // [n] volume times the coefficient that keeps pressures from alternating
-    std::vector<double> more;    // [n] pressure of the water that the solution leaves over
-    double carried;              // volume that flow moves, per time
+    std::vector<double> smoothing;    // [n] volume times what keeps pressures from alternating
+    std::vector<double> more;         // [n] pressure of the water that the solution leaves over
+    double carried;                   // volume that flow moves, per time
   };
   std::unique_ptr<Solve> solve;    // null: explicit steps
 
