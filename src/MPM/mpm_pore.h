@@ -207,8 +207,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   std::vector<double> capacity;       // [n] storage times volume
   std::vector<double> conductance;    // [n] mobility times volume
   std::vector<double> mean;           // [n] pressure interpolated from the nodes, at the start
-  std::vector<double> grown,
-      warm;    // [n] growth of volume by warmth in this step; new temperature
+  std::vector<double> grown, warm;    // [n] growth of volume by warmth in this step; temperature
   double *const *warmth = nullptr;    // null: no soil warms
   std::vector<double>
       squeezed;    // [n] volume; after take_motion() rate at which deformation drives water out
