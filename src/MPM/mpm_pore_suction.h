@@ -25,7 +25,7 @@ class MPMField;
 
 /** State of pores that hold the volume of water w per volume of pores, at the pressure p,
  *
- *  w = S(p) exp(p/K)   (p < 0),    w = S_s (1 + p/K)   (p >= 0),
+ *    w = S(p) exp(p/K)   (p < 0),    w = S_s (1 + p/K)   (p >= 0),
  *
  *  and w n per volume of soil. Full pores of water without pressure have w = 1. */
 struct MPMPoreMoisture {

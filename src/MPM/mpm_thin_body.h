@@ -13,7 +13,7 @@
 
 namespace LAMMPS_NS {
 
-/** Keywords of bodies that are surfaces or lines of a mesh: what these are as a volume. */
+/** Keywords for bodies that are surfaces or lines of a mesh. They define the volume of these bodies. */
 struct MPMThinBody {
   double thickness = 0.0;    ///< of surfaces, in 2d of lines; 0: not given
   double section = 0.0;      ///< area across lines in 3d; 0: not given
@@ -39,9 +39,9 @@ struct MPMThinBody {
   }
 
   explicit operator bool() const { return thickness > 0.0 || section > 0.0; }
-  /** Of the elements, in space of dim dimensions. */
+  /** Dimension of the elements, in space of dim dimensions. */
   int dimension(int dim) const { return section > 0.0 ? 1 : thickness > 0.0 ? dim - 1 : dim; }
-  /** Volume per area or length. */
+  /** Volume per area of a surface, or per length of a line. */
   double across() const { return section > 0.0 ? section : thickness; }
 
  private:
