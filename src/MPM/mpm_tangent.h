@@ -115,8 +115,9 @@ class MPMTangent : protected Pointers {
   using UseMean = std::function<void(int64_t around, int material, const double sums[3], int n,
                                      const int64_t *nodes, const double *changes)>;
   void each_mean(const UseMean &) const;
-  /** Largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry. For forces on points that change
-   *  with H, it is this change over a node spacing instead. The larger one is returned. Collective. */
+  /** Asymmetry of the system: largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry, that of
+   *  forces between points, or the largest derivative with respect to H of forces on points over the largest
+   *  V |dP/dH| / h. The largest of these is returned. Collective. */
   double asymmetry() const;
 
   double memory_usage() const;
@@ -138,7 +139,7 @@ class MPMTangent : protected Pointers {
   // respect to H, if there are any
   std::vector<double> load_forces, load_tangents;
 
-  // step of the differences of a gradient: with it, the error by the third derivatives of a law and the
+  // step of the central differences of a gradient: with it, the error by the third derivatives of a law and the
   // round-off of its stress are both some 1e-10 of its tangent
   static constexpr double DIFFERENCE = 6.0e-6;
 

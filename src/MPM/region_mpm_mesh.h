@@ -59,8 +59,8 @@ class RegMPMMesh : public Region {
 
   /** As distance() for places nearer to the surface than exact. Farther away, the distance is linear in cells
    *  of this size, so that a search is needed only once per cell, and not for each place. The value does not
-   *  depend on earlier calls. Returns false if the closest point is along z of x (in 2d,
-   *  the closest point of the section is needed instead). */
+   *  depend on earlier calls. Returns false if the closest point is along z of x (in 2d, the closest point of
+   *  the section is needed instead). */
   bool distance_by_cells(const double *x, double cutoff, double exact, double size,
                          double &distance);
 
@@ -71,8 +71,7 @@ class RegMPMMesh : public Region {
   using Cells = std::unordered_map<uint64_t, Linear>;    // keys: see distance_by_cells()
   std::unique_ptr<MPM_NS::SurfaceMesh> mesh;
   bool leaky = false;
-  bool placing =
-      false;    // inside() is called only to get its argument in the coordinates of the mesh
+  bool placing = false;    // inside() only stores its argument, in the coordinates of the mesh
   double place[3];
   int last_closest = -1;            // index of a triangle, see SurfaceMesh::distance_within()
   std::map<double, Cells> cells;    // by the size of the cells
