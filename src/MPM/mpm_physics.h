@@ -40,9 +40,9 @@ class MPMPhysics {
   virtual void setup_points() {}
 
   /** Called when the blocks in reach of the points of a field are known: activate any other blocks that are
-   *  needed. topology_changed() is called when all blocks are known: make lists of nodes there. Slots are
-   *  valid until the next call. */
+   *  needed. */
   virtual void extend_topology(MPMField &) {}
+  /** Called when all blocks are known: make lists of nodes. Slots are valid until the next call. */
   virtual void topology_changed(MPMField &) {}
   /** Does this physics read nodes that no point reaches, or their periodic images? If so, all ranks keep the
    *  values of these nodes. */

@@ -76,6 +76,7 @@ class MPMPlan : protected Pointers {
   bool keeps_all_images() const;
   /** Must nodes of this block be known although only points of other ranks can reach them? */
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const;
+  /** Let all node actions act at this stage, in their order. */
   void act_on_nodes(MPMNodeAction::Stage);
 
  private:

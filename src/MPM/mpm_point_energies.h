@@ -22,6 +22,7 @@ struct MPMPointEnergies {
 
   /** Energy that the points have taken up, in any form. */
   double taken() const { return stored + plastic + viscous + fracture + thermoelastic; }
+  /** Kinetic energy, and the energy that the points have taken up. */
   double total() const { return kinetic + taken(); }
 };
 

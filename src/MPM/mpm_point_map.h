@@ -66,7 +66,9 @@ class MPMPointMap : protected Pointers {
    *  TransferKernels::load_mean. */
   void load_tile(const ActiveBlock &, int base[3], bool mean);
 
+  /** Number of points in all runs. */
   bigint npoints() const;
+  /** Number of reals in a tile. */
   std::size_t tile_reals() const;
   double memory_usage() const;
 

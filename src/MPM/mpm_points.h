@@ -47,6 +47,7 @@ struct MPMPoints {
     for (int c = 0; c < 6; c++) tau[i][c] = 0.0;
   }
 
+  /** Determinant of a row of F. */
   static double det(const double *F) { return MPM_NS::determinant(F); }
 
   /** State of the points of this Atom object, or null if there is none; create = true creates it if it is

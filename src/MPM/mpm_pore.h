@@ -49,6 +49,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   void init(const std::vector<MPMPoreSoil> &, double *const &content, double *const &warmth);
   /** Marks a temperature that is not known yet. */
   static constexpr double UNKNOWN = -1.0e300;
+  /** Are there soils in this field? */
   bool has_water() const { return !soils.empty(); }
 
   /** Let water flow only in one of several steps, for the duration of all of them (mpm_pore_wait.cpp).
@@ -130,6 +131,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   /** Wave speed of a point whose water cannot flow. c: wave speed of the soil alone; p: pressure of its
    *  water. */
   double wave_speed(int i, double p, double c) const;
+  /** The soil of point i, or null if it has no water. */
   const MPMPoreSoil *soil_of(int i) const;
   /** The lowest tag of this rank's points whose pores were shut in the last begin_step(); MAXTAGINT if there
    *  are none. */

@@ -72,6 +72,7 @@ struct MPMPoreSoil {
   /** J at which grains fill the whole volume. */
   double shut() const { return 1.0 - porosity; }
 
+  /** Does Darcy's law hold, without a quadratic term? */
   bool is_linear() const { return quadratic == 0.0 && diameter == 0.0; }
 
   /** Part of the gradient of the pressure beyond Darcy's law, per square of the flow. density: of the water,
@@ -121,6 +122,7 @@ inline double secant_mobility(double mobility, double quadratic, double gradient
 struct MPMPoreResistance {
   double linear[2], quadratic[2];
 
+  /** Resistance in direction k to a flow of this magnitude. */
   double at(int k, double flow) const { return linear[k] + quadratic[k] * flow; }
   /** Magnitude of the flow for which |flow_k| = push_k/(free + at(k, flow)) in both directions k. */
   double flow(const double *push, double free) const

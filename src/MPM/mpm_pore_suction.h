@@ -34,6 +34,7 @@ struct MPMPoreMoisture {
   double relative;    ///< k_r, ratio of the permeability to that of full pores
   double bishop;      ///< share of the pressure in the effective stress
 
+  /** State at the ratio of volumes J and the pressure p. */
   static MPMPoreMoisture at(const MPMPoreSoil &, double J, double p, const MPMPoreWater &);
   /** The pressure at which pores have this filling w. before: the last pressure; guess: a value near the
    *  solution. Soil with less water than at the suction 100/alpha gets that suction, or the suction it had

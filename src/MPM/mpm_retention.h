@@ -34,6 +34,7 @@ struct MPMRetention {
   double power = 1.0;               ///< e
   bool bishop_effective = false;    ///< Bishop's coefficient is S_e, not S
 
+  /** Can pores lose water, so that they are not always full? */
   bool can_dry() const { return law != FULL; }
 
   /** State at a pressure p below that of the air. */

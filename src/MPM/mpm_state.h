@@ -38,12 +38,14 @@ class MPMPointState {
   /** The same for one real per atom. */
   void declare(double *&values, const char *name, Fresh fresh = nullptr);
 
+  /** Are there no arrays? */
   bool empty() const { return arrays.empty(); }
   /** Number of reals of a point in all arrays. */
   int size() const;
   /** Names and widths, for instance "C 9, X 3", to compare with those of a restart file. */
   std::string layout() const;
 
+  /** Memory for nmax atoms; copies of rows; rows of new atoms; rows to and from a buffer. */
   void grow(int nmax);
   void copy(int from, int to);
   void fresh(int i);

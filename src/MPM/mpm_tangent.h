@@ -53,6 +53,7 @@ class MPMTangent : protected Pointers {
     bigint point;
     double share;
   };
+  /** Sets these points for the present step. */
   void set_parts(std::vector<Part> list) { parts = std::move(list); }
   /** External forces on the rest of these points, from atom->f. Collective. */
   void forces_on_rest(double *force);

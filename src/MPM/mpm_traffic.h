@@ -22,6 +22,7 @@ struct MPMTraffic {
   double kinetic = 0.0, stored = 0.0;    ///< [energy]
 
   static constexpr int NREAL = 7;
+  /** The NREAL members in order. */
   double *reals() { return &points; }
   const double *reals() const { return &points; }
   void add(const MPMTraffic &);

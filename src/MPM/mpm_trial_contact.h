@@ -44,6 +44,7 @@ class MPMTrialContact {
   virtual bool close_gaps(bool yes) = 0;
   /** Call after points have moved: stops with an error if any has come into the wall. Collective. */
   virtual void check_arrival() = 0;
+  /** Does this contact have friction? */
   virtual bool has_friction() const = 0;
   /** Does friction have the form above, with a width eps? Otherwise projections hold what sticks, and
    *  decide() finds what slides. */

@@ -48,6 +48,7 @@ class MPMTwoScale : protected Pointers {
   /** Activates the blocks of the coarse grid that the nodes of a finer field need. This is the fine field of
    *  this pair, or of one of the next pairs. levels: how many levels it is finer than the coarse field. */
   void extend_coarse(const MPMField &finer, int levels) const;
+  /** Lists of nodes are not valid any more. */
   void topology_changed() { lists_valid = false; }
   /** Finds the tied nodes from the present positions of points. Collective. */
   void find_tied();
@@ -75,6 +76,7 @@ class MPMTwoScale : protected Pointers {
   /** Sets the values of tied nodes to the greatest value of their parents. */
   void greatest_from_parents(const std::vector<double> &of_coarse,
                              std::vector<double> &of_fine) const;
+  /** Is a node of the fine grid tied? */
   bool is_tied(int64_t fine_node) const { return tied_of[fine_node] >= 0; }
 
   /** Number of tied and of free nodes, of those that this rank counts. */

@@ -129,6 +129,7 @@ class VTKCollection {
  *  that. */
 class ErrorWords {
  public:
+  /** arg: the narg words of this command. */
   ErrorWords(LAMMPS_NS::LAMMPS *, int narg, char **arg);
   ~ErrorWords();
   ErrorWords(const ErrorWords &) = delete;

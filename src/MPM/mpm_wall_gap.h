@@ -45,6 +45,7 @@ class MPMWallGap {
     double distance = 0.0;    // of V N times the distance from the wall, in node spacings
     double size2 = 0.0;       // of V N times the square of the spacing of points, in node spacings
 
+    /** Adds other sums, times a weight. */
     void add(double weight, const Sums &);
     /** Does the material touch the wall, or is its distance from it at most near (node spacings)? */
     bool touches(const MPMWallContact &, double near = 0.0) const;
@@ -64,6 +65,7 @@ class MPMWallGap {
   /** Distances beyond this one are not needed. */
   static double farthest(const MPMField &, double more = 0.0);
 
+  /** The sums at a node, after map(). */
   Sums at(int64_t node) const;
 
  private:

@@ -46,6 +46,7 @@ class RegMPMMesh : public Region {
   int surface_interior(double *x, double cutoff) override { return touch(x, cutoff, -1.0); }
   int surface_exterior(double *x, double cutoff) override { return touch(x, cutoff, 1.0); }
 
+  /** The surface after scale, shift, and turn, but without the motion of the region. */
   const MPM_NS::SurfaceMesh &surface_mesh() const { return *mesh; }
 
   /** Stops with an error if the surface is leaky, because only inside() is known then. */
