@@ -28,8 +28,8 @@ namespace LAMMPS_NS {
 
 /** Cells of sites at origin + (s + 1/2) spacing, and the part of each cell that lies in a region.
  *
- *  The part is exact for a region mpm/mesh at rest whose parts do not overlap (mesh/cell_volumes.h). Any
- *  other region can only be asked whether a place is inside. A cell whose corners and center are all inside
+ *  The part is exact for a region mpm/mesh in 3d at rest whose parts do not overlap (mesh/cell_volumes.h).
+ *  For others, the region is only asked whether a place is inside. A cell whose corners and center are all inside
  *  counts as wholly inside, and a cell with none of them inside as outside. In any other cell, places are
  *  tried on a lattice of rank one (the additive recurrence of the generalized golden ratio), which is
  *  displaced by a function of the site. The error of one cell is therefore about 0.01 of its volume, and the
