@@ -16,21 +16,23 @@
 
 namespace LAMMPS_NS {
 
-/** Sums of two values over patches of a surface: of places that are nearer than a radius, and look the same way. All ranks have the
- *  places of all of them. */
+/** Weighted sums of two values over patches of a surface. The patch around a place consists of the places of
+ *  the same part that are closer than a radius and whose normals point to the same side. All ranks hold the
+ *  places of all ranks. */
 class MPMPatchSums {
  public:
   struct Place {
-    double part;    ///< places of different parts are on different surfaces
+    double part;    ///< places of different parts lie on different surfaces
     double at[3], normal[3];
     double value[2];
   };
 
   MPMPatchSums(MPI_Comm world, double radius) : world(world), radius(radius) {}
 
-  /** This rank's places. Collective. */
+  /** Collects the places of all ranks; mine: those of this rank. Collective. */
   void gather(const std::vector<Place> &mine);
-  /** Sums over the patch around a place, with weights that fall from one to zero at the radius. */
+  /** Sums over the patch around a place. The weights fall from one at the place to zero at the radius, and
+   *  are multiplied by the cosine between the normals. */
   std::array<double, 2> around(double part, const double *at, const double *normal) const;
 
  private:

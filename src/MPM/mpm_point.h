@@ -32,7 +32,7 @@ struct MixedControl;
 namespace LAMMPS_NS {
 
 struct MPMPointOptions {
-  /** Control of a component of the motion, which takes the place of what the path says. */
+  /** Control of one component of the motion, which replaces the control by the path. */
   struct Component {
     enum Kind { AS_PATH, RATE, STRESS } kind = AS_PATH;
     MPM_NS::NumberOrVariable value;
@@ -50,12 +50,12 @@ struct MPMPointOptions {
   static constexpr double NOT_GIVEN = -1.0;
 
   Path path = MIXED;
-  double rate = 0.0, pressure = 0.0;    ///< of the path
+  double rate = 0.0, pressure = 0.0;    ///< parameters of the path
 
   double duration = NOT_GIVEN, strain = NOT_GIVEN, amplitude = NOT_GIVEN, cycles = 0.0;
   int64_t nsteps = 1000, every = 0;
   double axis[3] = {0.0, 0.0, 0.0}, turns = 0.0;    ///< of the superposed rotation
-  std::string clock;                                ///< internal-style variable that gets the time
+  std::string clock;    ///< internal-style variable that is set to the time
   Component component[6];
   MPM_NS::NumberOrVariable spin[3];
   double temperature = NAN, length = 1.0;
@@ -63,7 +63,7 @@ struct MPMPointOptions {
   MPM_NS::Options declare();
 };
 
-/** Drives one material point along a path of strain or stress and writes a table. */
+/** Command mpm_point: drives one material point along a path of strain or stress, and writes a table. */
 class MPMPoint : public Command, private MPMPointOptions {
  public:
   MPMPoint(class LAMMPS *);

@@ -19,17 +19,18 @@ namespace LAMMPS_NS {
 class FixMPMMaterial;
 class MPMField;
 
-/** Load the present state of the n <= BATCH points in list, all of one material, into a batch (for wave
- *  speed and stored energy). */
+/** Loads the present state of the n <= BATCH points in list, all of one material, into a batch. It serves for
+ *  wave speed and stored energy. */
 void load_state(MPMField &, MPM_NS::Batch &, const int *list, int n, const FixMPMMaterial *);
 
-/** What is done with a batch of points: their state, local indices, and material. */
+/** Function that processes a batch of points. Arguments: state of the points, their local indices, and their
+ *  material. */
 using BatchVisitor =
     std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)>;
 
-/** Hand over the present state of all material points of a group that belong to a fix mpm or mpm/mesh, or are solids of a flow, in
- *  batches of one of these and one material. For output, also between runs: nothing of the points is
- *  changed. Points without material are an error. */
+/** Calls a visitor with the present state of all material points of a group that belong to a fix mpm or
+ *  mpm/mesh, or are solids of a flow. Each batch has points of one of these and of one material. For output,
+ *  also between runs: it does not change the points. Points without material are an error. */
 void visit_point_batches(class LAMMPS *, int groupbit, const BatchVisitor &);
 
 }    // namespace LAMMPS_NS

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_POINT_COLUMNS_H
 #define LMP_MPM_POINT_COLUMNS_H
 
-// Numbers by name, in the words of dump mpm/vtk, become the state of points.
+// Sets the state of points from columns of numbers, which are named as in dump mpm/vtk.
 
 #include "pointers.h"
 
@@ -20,10 +20,10 @@ namespace LAMMPS_NS {
 class FixMPMMaterial;
 struct MPMPoints;
 
-/** Columns of numbers that new points get: velocity, F, stress, mass, radius, image, history variables of materials, and
- *  vectors and arrays of fix property/atom. The names of components are those of compute mpm/atom, as stress/xy, or
- *  NAME:k, as VTK numbers them. Places, volumes, types, and IDs are needed before there is a point: these columns are found by
- *  find(), and not set. */
+/** Columns of numbers that set the state of new points: velocity, F, stress, mass, radius, image, history
+ *  variables of materials, and vectors and arrays of fix property/atom. Components are named as in compute
+ *  mpm/atom, such as stress/xy, or NAME:k, as VTK numbers them. Positions, volumes, types, and IDs are needed
+ *  before a point exists: find() finds these columns, and set() does not use them. */
 class MPMPointColumns : protected Pointers {
  public:
   explicit MPMPointColumns(LAMMPS *lmp) : Pointers(lmp) {}
@@ -43,43 +43,45 @@ class MPMPointColumns : protected Pointers {
     IMAGE,
     HISTORY,
     PROPERTY,
-    FOLLOWS,    ///< from other columns, or is of no point: not taken
+    FOLLOWS,    ///< not taken: it follows from other columns, or is no property of points
     UNKNOWN
   };
 
-  /** The next column of the rows. */
+  /** Adds the next column of the rows, and returns its kind. */
   Kind add(const std::string &name);
 
-  /** The name of component c of what has so many numbers for each point, as arrays of VTK have: NAME:c, and NAME for one
-   *  number; six of the stress are xx yy zz xy xz yz. */
+  /** Name of component c of a quantity with width numbers per point, as arrays of VTK have: NAME:c, or NAME
+   *  if there is only one number. The six components of the stress are xx yy zz xy xz yz. */
   static std::string component_name(const std::string &name, int c, int width);
 
-  /** The column of a component, -1: there is none. */
+  /** The column of a component, or -1 if there is none. */
   int find(Kind, int component = 0) const;
 
-  /** What makes this number no value of this column; empty: nothing. */
+  /** Why this number is not valid in this column; empty if it is valid. */
   std::string wrong(int column, double value) const;
 
-  /** The columns of this kind are not taken, as they follow from others. */
+  /** Leave out all columns of this kind, because they follow from others. */
   void leave(Kind);
 
-  /** Do they have what deformation leaves behind: F, stress, or history? */
+  /** Is there any column of F, stress, or history, the state that deformation leaves behind? */
   bool has_state() const;
 
-  /** Gives the points from this one on what their rows have. Their group and what fixes keep of them are set already. */
+  /** Sets the state of the points from first on to the values in rows. The group of these points and the data
+   *  that fixes keep of them must be set already. */
   void set(int first, const std::vector<double> &rows) const;
 
-  /** State that points have and these columns do not: after set(), for a warning; empty: they have all. */
+  /** State that points have and that these columns do not set, for a warning; empty if nothing is missing.
+   *  Call after set(). */
   std::string missing() const;
 
-  /** An earlier column that is the same quantity, -1: none. */
+  /** An earlier column of the same quantity, or -1 if there is none. */
   int same(int column) const;
 
-  /** How many there are, and their names, which add() understands, with NULL for those left out. */
+  /** Number of columns, and their names in a form that add() understands, with NULL for those left out. */
   int size() const { return (int) columns.size(); }
   std::string names() const;
 
-  /** Names of the columns that are taken, or of those that are not, for the log. */
+  /** Names of the columns that are taken, or of those that are not taken, for the log. */
   std::string names(bool taken) const;
 
  private:

@@ -11,21 +11,22 @@
 
 namespace LAMMPS_NS {
 
-/** Energy that material points have, and have spent so far [energy]; this rank's share. */
+/** Energy that material points have now, and energy that they have spent so far [energy], on this rank. */
 struct MPMPointEnergies {
   double kinetic;
   double stored;              ///< elastic energy and energy of the equation of state
   double plastic, viscous;    ///< work so far
-  double heat;                ///< the part of the plastic work that has become heat
+  double heat;                ///< part of the plastic work that has become heat
   double fracture;            ///< work spent on damage so far
-  double thermoelastic;       ///< energy that went from stress into heat by expansion so far
+  double thermoelastic;       ///< energy converted from stress into heat by expansion so far
 
-  /** What the points have taken up, in whatever form. */
+  /** Energy that the points have taken up, in any form. */
   double taken() const { return stored + plastic + viscous + fracture + thermoelastic; }
+  /** Kinetic energy, and the energy that the points have taken up. */
   double total() const { return kinetic + taken(); }
 };
 
-/** Those of the points of all fields, as they are now. */
+/** Energies of the points of all fields at present. */
 MPMPointEnergies point_energies(class LAMMPS *lmp);
 
 }    // namespace LAMMPS_NS

@@ -17,54 +17,58 @@ namespace LAMMPS_NS {
 class FixMPMMaterial;
 class MPMField;
 
-/** Which points are in which blocks of the lattice, and their order in memory. */
+/** Which points lie in which blocks of the lattice, and their order in memory. */
 class MPMPointMap : protected Pointers {
  public:
-  /** Consecutive points of one block and material (null: nodes of elements). */
+  /** Consecutive points of one block and one material (null: nodes of elements). */
   struct Run {
     int first, last, slot;
     FixMPMMaterial *material;
   };
-  /** A block with points: its runs, and boxes of base nodes in its tile. */
+  /** A block with points: its runs, and the boxes of base nodes in its tile. */
   struct ActiveBlock {
     int slot, first_run, last_run;
-    int box[6];             ///< of the last momentum
-    int other_box[6];       ///< of the last other sum
+    int box[6];             ///< of the last sum of momentum
+    int other_box[6];       ///< of the last sum of anything else
     int low[3], high[3];    ///< offsets of the first and last blocks that its points reach
   };
 
   std::vector<Run> runs;    ///< grouped by block
   std::vector<ActiveBlock> active;
-  double *tile, *tile_load;    ///< one that points add to, one that they read
+  double *tile, *tile_load;    ///< tile that points add to, and tile that they read
   bool valid = false;          ///< the blocks are those of the present points
-  int drifted = 0;             ///< a point has left the range of its tile
+  int drifted = 0;             ///< nonzero: a point has left the range of its tile
 
   MPMPointMap(class LAMMPS *, MPMField &);
   ~MPMPointMap();
 
-  /** Start of a run: do rebuilds of neighbor lists bound the drift of points? */
+  /** Start of a run: find out whether rebuilds of neighbor lists bound the drift of points. */
   void setup();
-  /** Runs of points, and the blocks in their reach; nothing while these are valid. */
+  /** Find the runs of points, and the blocks in their reach. Does nothing while these are valid. */
   void find_blocks();
-  /** Neighbors of blocks, room for their nodes, sharers on other ranks; then they are valid. */
+  /** Find the neighbors of blocks, allocate their nodes, and find the ranks that share them. The blocks are
+   *  valid then. */
   void finish_blocks();
-  /** The blocks are to be found anew where a point has left its tile on any rank. */
+  /** If a point has left its tile on any rank, mark the blocks to be found again. */
   void check_drift();
 
-  /** Put points in the order of block, material, cell and tag, the data itself. */
+  /** Sort the data of the points by block, material, cell, and tag. */
   void sort();
-  /** Has the order decayed since the last sort? */
+  /** Has the order decayed since the last sort so that another one pays? */
   bool wants_sort() const;
 
-  /** Base node of a position and its coordinates there in cells; false: not a usable position. */
+  /** Base node of a position, and the coordinates of the position relative to it in cells. Returns false if
+   *  the position is not usable. */
   bool base_node(const double *x, int base[3], double t[3]) const;
   /** Node index of the first entry of the tile of a block. */
   void tile_base(const ActiveBlock &, int base[3]) const;
-  /** Nodes of a block to the tile, and those of the next block towards the cache; mean: see
+  /** Load the nodes of a block into the tile, and prefetch those of the next block. mean: see
    *  TransferKernels::load_mean. */
   void load_tile(const ActiveBlock &, int base[3], bool mean);
 
+  /** Number of points in all runs. */
   bigint npoints() const;
+  /** Number of reals in a tile. */
   std::size_t tile_reals() const;
   double memory_usage() const;
 
@@ -73,12 +77,13 @@ class MPMPointMap : protected Pointers {
 
  private:
   MPMField &field;
-  bool watch_drift = false;    // rebuilds of neighbor lists do not bound the drift: check each step
-  bigint switches = 0;         // neighbors in memory that are in different cells, now
+  bool watch_drift = false;       // neighbor lists do not bound the drift: check it in each step
+  bigint switches = 0;            // neighbors in memory that are in different cells, now
   bigint sorted_switches = 0;     // and right after the last sort
   bigint disorder = 0;            // neighbors in memory that are in different cells or blocks, now
   bigint sorted_disorder = -1;    // and right after the last sort; negative: not counted yet
-  bigint extra_disorder = 0;      // what was more than that since then, summed over steps
+  bigint extra_disorder =
+      0;    // excess of disorder over sorted_disorder, summed over the steps since the last sort
 };
 
 }    // namespace LAMMPS_NS

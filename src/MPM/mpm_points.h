@@ -18,10 +18,10 @@ class Memory;
 
 /** Per-point state owned by atom style mpm, one instance for each Atom object.
  *
- *  The arrays live in a block that no AtomVec owns, because each Atom object finds its own through an
- *  entry of Atom::add_peratom(). AtomVec would add a table of rows to each; the style makes them grow.
- *  Initial volume is atom->vfrac (0: the atom is not a material point), mass is atom->rmass.
- */
+ *  The arrays live in a block that no AtomVec owns, so that each Atom object finds its own through an entry
+ *  of Atom::add_peratom(). AtomVec would add a table of rows to each of them; atom style mpm grows them
+ *  instead. The initial volume is atom->vfrac (0: the atom is not a material point), the mass is
+ *  atom->rmass. */
 struct MPMPoints {
   static constexpr int size = 9 + 6;    ///< reals of a point
   MPMRows F;                            ///< [n][9] deformation gradient, row-major
@@ -30,26 +30,28 @@ struct MPMPoints {
   /** Volume over initial volume, J = det F. */
   double jacobian(int i) const { return det(F[i]); }
 
-  /** The Cauchy stress, which is what laws and users see. */
+  /** The Cauchy stress, which material laws and users see. */
   void cauchy(int i, double sigma[6]) const
   {
     const double J = jacobian(i);
     for (int c = 0; c < 6; c++) sigma[c] = tau[i][c] / J;
   }
 
-  /** Room for so many atoms; none: the memory is given back. */
+  /** Allocates rows for nmax atoms; nmax = 0 frees the memory. */
   void grow(Memory *, int nmax);
 
-  /** Neither strain nor stress. */
+  /** Sets the state to no strain and no stress. */
   void reset(int i)
   {
     for (int k = 0; k < 9; k++) F[i][k] = k % 4 == 0 ? 1.0 : 0.0;
     for (int c = 0; c < 6; c++) tau[i][c] = 0.0;
   }
 
+  /** Determinant of a row of F. */
   static double det(const double *F) { return MPM_NS::determinant(F); }
 
-  /** State of the points of this Atom object; with create = true it is made when absent. */
+  /** State of the points of this Atom object, or null if there is none; create = true creates it if it is
+   *  absent. */
   static MPMPoints *get(Atom *atom, bool create = false);
 };
 }    // namespace LAMMPS_NS

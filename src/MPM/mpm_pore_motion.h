@@ -22,51 +22,52 @@ class MPMField;
 /** Pore water with a velocity of its own in the points of one field (u-v-p): its inertia in the momentum
  *  equation of soil and water, and its motion relative to the soil.
  *
- *  Points keep rows of dim reals: J times the flow w, the volume of water that goes through an area of the
- *  soil for each time [velocity], with the ratio J of volumes. Mass times velocity of a point, plus the
- *  density of the water times the initial volume of the point times this row, is the momentum of its soil and
- *  water together. */
+ *  Points keep rows of dim reals: J w, where the flow w is the volume of water that passes an area of the
+ *  soil per time [velocity], and J is the ratio of volumes. The momentum of soil and water of a point is mass
+ *  times velocity of the point, plus the density of the water times the initial volume of the point times
+ *  this row. */
 class MPMPoreMotion : protected Pointers {
  public:
-  /** Is a block looked at? Null: all are. */
+  /** Is a block needed? Null: all blocks are. */
   using Wanted = std::function<bool(int slot)>;
 
-  /** What the pores of a point are like. */
+  /** State of the pores of a point. */
   struct Pores {
-    double volume, J;    ///< of the point now, and over the initial one
+    double volume, J;    ///< volume of the point, and its ratio to the initial volume
     double porosity;
-    double
-        resistance;      ///< gradient of pressure per flow w, where w is small [pressure time/area]
-    double quadratic;    ///< the same per square of w
+    double resistance;    ///< gradient of pressure per flow w, for small w [pressure time/area]
+    double quadratic;     ///< gradient of pressure per square of w
   };
 
   /** density: of the water; gravity: force per mass. */
   MPMPoreMotion(class LAMMPS *, MPMField &, double density, const double *gravity);
 
-  /** A step begins: no point has water until begin_point(). flow: of the points. */
+  /** Start of a step: no point has water until begin_point() is called for it. flow: rows of the points. */
   void begin_step(const MPMRows &flow);
-  /** Gradient of the pressure in a point. */
+  /** Sets the gradient of the pressure in a point. */
   void set_gradient(int i, const double *gradient);
-  /** Nodes have mass. [node][8] gradients of pressure that drive the water to the surface, 0. Before
-   *  begin_point(). */
+  /** Call when nodes have mass, and before begin_point(). of_nodes: [node][8] gradients of pressure that
+   *  drive the water to the surface, and 0. */
   void add_gradients(std::vector<double> &of_nodes, const Wanted &);
-  /** r, normal: at an interface of soils, instead of the resistance of the pores. */
+  /** r, normal: for a point at an interface of soils, the resistance there and the normal, in place of the
+   *  resistance of the pores. */
   void begin_point(int i, const Pores &, const MPMPoreResistance *r = nullptr,
                    const double *normal = nullptr);
-  /** Flow per gradient of pressure that a step makes in point i from rest: the mobility, or less where there
-   *  is no time to speed up. */
+  /** Flow per gradient of pressure that a step produces in point i from rest: the mobility, or less if the
+   *  step is too short for the water to speed up. */
   double response(int i, const Pores &) const;
-  /** Nodes have mass, momentum, and forces, summed over ranks: takes off them what moves by itself. */
+  /** Call when nodes have mass, momentum, and forces, summed over ranks. Subtracts from these the part of the
+   *  water that moves relative to the soil. */
   void take_off();
-  /** Nodes have their final velocities, and get back their mass: new flows. */
+  /** Call when nodes have their final velocities. Restores their mass, and finds the new flows. */
   void move();
   /** Volume times flow of a point [volume*velocity]. */
   void discharge(int i, double *q) const;
-  /** [node][8] sums of volume times flow, 0, and of the volume. */
+  /** [node][8] sums of volume times flow, 0, and sum of volume. */
   void flow_at_nodes(const Wanted &, std::vector<double> &of_nodes);
 
-  /** Speed of the fastest wave in a material whose own wave speed is c: both phases move, without drag. biot,
-   *  storage [1/pressure]: of the soil; of_both: density of soil and water. */
+  /** Speed of the fastest wave in a material whose own wave speed is c, where soil and water move without
+   *  drag. biot, storage [1/pressure]: of the soil; of_both: density of soil and water together. */
   double wave_speed(double c, double of_both, double biot, double storage, double porosity) const;
   double memory_usage() const;
 
@@ -79,10 +80,10 @@ class MPMPoreMotion : protected Pointers {
   // of points in this step
 
   std::vector<double>
-      share;    // [n] mass that moves by itself: 0 where drag takes all that it gains
+      share;    // [n] mass that moves relative to the soil: 0 where drag takes all that it gains
   std::vector<double>
-      lead;    // [n][3] acceleration of this mass; until begin_point() gradient of the pressure
-  std::vector<double> nodes;     // [node][8] sums of share times lead, 0, and of share
+      lead;    // [n][3] acceleration of this mass; the gradient of the pressure until begin_point()
+  std::vector<double> nodes;     // [node][8] sums of share times lead, 0, and sum of share
   std::vector<double> change;    // [node][8] acceleration of the soil
 
   double acceleration() const;

@@ -18,15 +18,15 @@
 
 namespace LAMMPS_NS {
 
-/** Pore water: its bulk modulus [pressure] and density, and what permeabilities are divided by to make
- *  them mobilities: its unit weight [pressure/length] for hydraulic conductivities, or its viscosity
- *  [pressure time] for permeabilities in units of area. */
+/** Pore water: its bulk modulus [pressure], its density, and the divisor that makes permeabilities
+ *  mobilities. The divisor is the unit weight [pressure/length] for hydraulic conductivities, or the
+ *  viscosity [pressure time] for permeabilities in units of area. */
 struct MPMPoreWater {
   double bulk = 0.0, density = 0.0, resistance = 0.0;
 };
 
-/** What the pores of a material are like. Volumes are those of the present state, J its ratio to the
- *  initial one. */
+/** Properties of the pores of a material. Volumes are those of the present state, and J is their ratio to the
+ *  initial ones. */
 struct MPMPoreSoil {
   enum Law { CONSTANT, KOZENY, SQUARED, FORMULA };
 
@@ -34,30 +34,32 @@ struct MPMPoreSoil {
   double porosity = 0.0;
   Law law = CONSTANT;
   double permeability = 0.0;
-  std::string formula;       ///< variable, with v_
-  double biot = 1.0;         ///< coefficient of Biot
-  double grains = 0.0;       ///< bulk modulus of the grains [pressure]; 0: rigid
-  double quadratic = 0.0;    ///< gradient of pressure per square of flow (Forchheimer)
+  std::string formula;    ///< name of a variable, with v_
+  double biot = 1.0;      ///< coefficient of Biot
+  double grains = 0.0;    ///< bulk modulus of the grains [pressure]; 0: rigid
+  double quadratic =
+      0.0;    ///< gradient of pressure per square of flow (Forchheimer); see quadratic_at()
   double diameter =
-      0.0;               ///< of grains, from which that follows (Ergun); 0: it is the number above
-  bool warms = false;    ///< are the next two given?
-  double of_grains = 0.0;    ///< expansion of the grains, of their volume [1/temperature]
+      0.0;    ///< of grains, from which the quadratic term follows (Ergun); 0: use the number above
+  bool warms = false;        ///< are of_grains and of_water given?
+  double of_grains = 0.0;    ///< volumetric thermal expansion of the grains [1/temperature]
   double of_water = 0.0;     ///< the same of the water
   MPMRetention retention;
 
-  /** Volume by which grains and water in a unit of volume grow for a unit of temperature. */
+  /** Volume by which grains and water in a unit of volume grow per unit of temperature. */
   double growth_at(double J) const
   {
     const double n = pores_at(J);
     return (biot - n) * of_grains + n * of_water;
   }
 
-  /** Grains keep their volume. */
+  /** Porosity at J; grains keep their volume. */
   double porosity_at(double J) const { return 1.0 - (1.0 - porosity) / J; }
-  /** The same, where it must not vanish: not below a hundredth of the initial one. */
+  /** The same, but at least a hundredth of the initial porosity, where it must not vanish. */
   double pores_at(double J) const { return std::max(porosity_at(J), 0.01 * porosity); }
 
-  /** Kozeny and Carman: n^3/(1 - n)^2, from its initial value; without pores nothing flows. */
+  /** Kozeny and Carman: proportional to n^3/(1 - n)^2, from its initial value; nothing flows without
+   *  pores. */
   double permeability_at(double J) const
   {
     if (law == KOZENY) {
@@ -67,13 +69,14 @@ struct MPMPoreSoil {
     return law == SQUARED ? permeability * J * J : permeability;
   }
 
-  /** J at which grains fill all of the volume. */
+  /** J at which grains fill the whole volume. */
   double shut() const { return 1.0 - porosity; }
 
+  /** Does Darcy's law hold, without a quadratic term? */
   bool is_linear() const { return quadratic == 0.0 && diameter == 0.0; }
 
-  /** What the gradient of the pressure has besides that of Darcy's law, per square of the flow. density:
-   *  of the water, in units of pressure over velocity squared. */
+  /** Part of the gradient of the pressure beyond Darcy's law, per square of the flow. density: of the water,
+   *  in units of pressure over velocity squared. */
   double quadratic_at(double J, double density) const
   {
     if (diameter == 0.0) return quadratic;
@@ -81,14 +84,14 @@ struct MPMPoreSoil {
     return MPM_NS::SphereDrag::bed_inertia(density, diameter, n);
   }
 
-  /** Volume of water that a unit of volume takes up for a unit of pressure, when pores are full. */
+  /** Volume of water that a unit of volume takes up per unit of pressure, when pores are full. */
   double storage_at(double J, const MPMPoreWater &water) const
   {
     const double n = pores_at(J);
     return retention.most * n / water.bulk +
         (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
   }
-  /** Of n points at once, for each unit of their initial volume: J times that, without divisions. */
+  /** The same for n points at once, per unit of their initial volume, that is, times J; without divisions. */
   void storage_at(int n, const double *J, const MPMPoreWater &water, double *storage) const
   {
     const double of_water = retention.most / water.bulk,
@@ -100,26 +103,28 @@ struct MPMPoreSoil {
     }
   }
 
-  /** Change of the pressure as J has changed since it was this, and no water left. */
+  /** Change of the pressure when the ratio of volumes has changed from since to J and no water left. */
   double undrained(double since, double J, const MPMPoreWater &water) const
   {
     return biot * (since / J - 1.0) / storage_at(J, water);
   }
 };
 
-/** Flow w over the gradient i of the pressure that drives it, where i = w/mobility + quadratic w^2. */
+/** Ratio of the flow w to the gradient i of the pressure that drives it, where i = w/mobility + quadratic
+ *  w^2. */
 inline double secant_mobility(double mobility, double quadratic, double gradient)
 {
   return 2.0 * mobility / (1.0 + std::sqrt(1.0 + 4.0 * quadratic * mobility * mobility * gradient));
 }
 
-/** Resistance to the flow at an interface of soils, across and along it: the gradient of the pressure that drives a flow w is
- *  linear w + quadratic |w| w along each of both. */
+/** Resistance to the flow at an interface of soils, across [0] and along [1] it. In each of the two
+ *  directions, the gradient of the pressure that drives a flow w is linear w + quadratic |w| w. */
 struct MPMPoreResistance {
   double linear[2], quadratic[2];
 
+  /** Resistance in direction k to a flow of this magnitude. */
   double at(int k, double flow) const { return linear[k] + quadratic[k] * flow; }
-  /** Size of the flow with |flow_k| = push_k/(free + at(k, flow)). */
+  /** Magnitude of the flow for which |flow_k| = push_k/(free + at(k, flow)) in both directions k. */
   double flow(const double *push, double free) const
   {
     const auto next = [&](double w) {

@@ -24,31 +24,31 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** What pore water has outside of a face of the box, or of the free surface of the soil. Where there is air
- *  (SEEPAGE, RAIN, and HEAD above the table of soils that can dry) water leaves by its pressure, but none
- *  comes in, or not more than falls there. */
+/** Condition of pore water at a face of the box, or at the free surface of the soil. Where there is air
+ *  outside (SEEPAGE, RAIN, and HEAD above the water table for soils that can dry), pressure drives water out,
+ *  but no water comes in, or not more than falls there. */
 struct MPMPoreCondition {
   enum Kind { CLOSED, PRESSURE, HEAD, FLUX, SEEPAGE, RAIN };
 
   Kind kind = CLOSED;
   MPM_NS::NumberOrVariable
-      value;    ///< pressure; height of a water table; volume of water that comes in, or falls, per area
-  double now = 0.0;    ///< in this step
+      value;    ///< pressure; height of a water table; volume of water per area that comes in, or falls
+  double now = 0.0;    ///< the value in this step
 };
 
-/** Water through the surface of the soil in one field: at faces of the box, and where it is free.
+/** Flow of water through the surface of the soil in one field: at faces of the box, and where it is free.
  *
- *  Each node next to the surface stands for a share of its area. Water flows out there as it is driven by the
- *  difference of the pressure half a node spacing below the surface from that at the surface. */
+ *  Each node next to the surface stands for a share of its area. The difference between the pressure half a
+ *  node spacing below the surface and the pressure at the surface drives the flow out. */
 class MPMPoreSurface : protected Pointers {
  public:
   static constexpr int NFACE = 6, FREE = 6, NPART = 7;    ///< parts: xlo ... zhi, free surface
-  static constexpr int ENERGY = NPART;    ///< place of the energy of water behind them
+  static constexpr int ENERGY = NPART;    ///< index of the energy of water, behind the parts
   using Conditions = std::array<MPMPoreCondition, NPART>;
 
-  /** Of each node, of soils that can dry: sums over points of the capacity that full pores have, and of that
-   *  times the mobility, by the permeabilities at the pressure zero, and for parts that have a suction outside at
-   *  that. */
+  /** Of each node, for soils that can dry: sums over points of the capacity of full pores, and of this
+   *  capacity times the mobility. conductance[0] has the permeability at zero pressure, conductance[1 + part]
+   *  that at the suction outside, for parts that have one. */
   struct Wet {
     std::vector<double> capacity;
     std::array<std::vector<double>, 1 + NPART> conductance;
@@ -57,39 +57,44 @@ class MPMPoreSurface : protected Pointers {
   MPMPoreSurface(class LAMMPS *, MPMField &, const Conditions &, const MPMPoreWater &,
                  const double *gravity);
 
-  /** Does water go through any part? If not, nothing else needs to be called. */
+  /** Does water pass any part? If not, no other function needs to be called. */
   bool any() const;
   /** Start of a run. dries: is there soil that can dry? varies: does the permeability change smoothly? */
   void init(bool dries, bool varies);
-  /** Places are in reach of the points, and may have nodes beyond these. */
+  /** The places of the surface are in reach of the points, and may have nodes beyond these. */
   void extend_topology();
-  /** Where the surface is. Before MPMNodeScalar::points_to_nodes(). Collective. */
+  /** Finds where the surface is. Call before MPMNodeScalar::points_to_nodes(). Collective. */
   void find_places();
-  /** The pressure outside of a part where it is given and below that of the air; otherwise zero. */
+  /** The pressure outside of a part if it is given and below that of the air; otherwise zero. */
   double suction_outside(int part) const;
-  /** Distance of bodies that close the free surface where they touch it: distance(x, far), far where it is more. */
+  /** distance(x, far): distance of x from bodies that close the free surface where they touch it, or far if
+   *  it is greater. */
   std::function<double(const double *, double)> distance_to_seals;
-  /** Where the free surface is open to a pressure outside, and no body closes it, p is that, times a factor. */
+  /** If the free surface is open to a pressure outside, sets p to this pressure at x times a factor. Does
+   *  nothing if there are bodies that can close the surface. */
   void replace_by_outside(const double *x, double factor, double &p) const;
-  /** What flows there, from the nodes' capacities and, as volume, conductances: sums of capacity times mobility. least_storage: the smallest
-   *  of a soil; wet: of soils that can dry, or null. Returns a bound of the rates of exchange at this rank's
-   *  nodes [1/time]. Collective. */
+  /** Prepares the flow from the capacities of nodes and, as their volume, the conductances, which are sums of
+   *  capacity times mobility. least_storage: the smallest storage of a soil; wet: sums for soils that can
+   *  dry, or null. Returns a bound of the rates of exchange at this rank's nodes [1/time]. Collective. */
   double prepare(const MPMNodeScalar &, double least_storage, const Wet *wet);
-  /** For water with inertia, after prepare(): which nodes the surface belongs to. Collective. */
+  /** For water with inertia, after prepare(): finds the nodes that the surface belongs to. Collective. */
   void share_area(const MPMNodeScalar &);
-  /** Water with inertia: [node][8] what drives it, gradients of pressure, by pressures of nodes. For
+  /** For water with inertia: [node][8] gradients of pressure that drive it, from the pressures of nodes, for
    *  MPMPoreMotion. */
   void find_push(const MPMNodeScalar &, std::vector<double> &of_nodes) const;
-  /** What then flows out, [node][8]: sums of volume times flow, instead of what pressures drive. */
+  /** For water with inertia: takes the flow that results, in place of the flow that pressures drive.
+   *  of_nodes: [node][8] sums of volume times flow, 0, and sum of volume. */
   void take_flow(const std::vector<double> &of_nodes);
-  /** Can points of a block have to do with the surface? */
+  /** Can points of this block be affected by the surface? */
   bool is_near(int slot) const;
-  /** Adds this rank's share to the rates times capacity of nodes, and of the volumes of water that come in
-   *  for each time, with the energy that this brings. */
+  /** Adds this rank's contribution to the rates of nodes times their capacity, and to inflow: the volumes of
+   *  water that come in per time, and the energy that this water brings. */
   void add_rates(MPMNodeScalar &, std::vector<double> &inflow);
-  /** Values of nodes are small changes around those of the last add_rates(): the changes of these rates. Not for water with inertia. */
+  /** For values of nodes that are small changes from those of the last add_rates(): adds the changes of these
+   *  rates. Not for water with inertia. */
   void add_changes(MPMNodeScalar &) const;
-  /** Terms of minus these times dt, as symmetric ones: n nodes with numbers by which their values make one, and what multiplies that. */
+  /** Terms of minus these changes times dt, in symmetric form. use(): n nodes, the weights with which their
+   *  values are summed, and the factor of this sum. */
   template <class Use> void each_term(double dt, const Use &use) const
   {
     for (const auto &place : places) {
@@ -103,17 +108,17 @@ class MPMPoreSurface : protected Pointers {
  private:
   struct Place {
     int part;
-    double area, outside;    // pressure at which nothing flows
-    double in, out;          // conductances: volume of water for a difference in pressure, and time
-    int first, n;            // nodes of the place where the pressure is taken
-    int first_at, n_at;      // nodes of the surface next to it, where water comes in
+    double area, outside;       // outside: pressure at which nothing flows
+    double in, out;             // conductances: volume of water per difference in pressure and time
+    int first, n;               // nodes of the position where the pressure is taken
+    int first_at, n_at;         // nodes of the surface next to it, where water comes in
     double at[3], normal[3];    // on the surface, out of the soil
-    double touch;               // part of the surface there that is of this place
-    double open;                // part of it that no body closes
+    double touch;               // share of the surface there that belongs to this place
+    double open;                // share of it that no body closes
     double outside_at;          // pressure outside at the surface itself
-    double inflow;              // of water with inertia, volume for each time
-    double most;                // volume of water that can come in for each area and time
-    double slope;               // of what comes in, by minus the pressure
+    double inflow;              // of water with inertia, volume per time
+    double most;                // greatest volume of water that can come in per area and time
+    double slope;               // derivative of the inflow with respect to minus the pressure
   };
   MPMField &field;
   const Conditions &conditions;
@@ -127,7 +132,7 @@ class MPMPoreSurface : protected Pointers {
   std::vector<double> nodes;           // records with volume and its gradient
   std::vector<double> free_normals;    // [node][dim] of the free surface, times its area
   std::vector<double>
-      rows;    // [2*node] sums of conductances where pressures are taken, and where water comes in
+      rows;    // [2*node] sums of conductances: where pressures are taken, and where water comes in
   std::vector<char> near;        // [block]
   bool flow_is_given = false;    // by take_flow()
 
@@ -135,17 +140,17 @@ class MPMPoreSurface : protected Pointers {
   void map_volume();
   double function(double depth) const;
   double open_part(const double *x) const;
-  /** Where the soil ends next to a face of the box. */
+  /** End of the soil next to a face of the box. */
   struct End {
-    double gap;      ///< before the face, in node spacings, negative: beyond it
-    double share;    ///< of the area of the line that is soil
+    double gap;      ///< distance before the face, in node spacings; negative: beyond it
+    double share;    ///< share of the area of the line that is soil
   };
   End end_at_face(const int *index, int face, double wall) const;
   double pressure_outside(const MPMPoreCondition &, const double *x) const;
   int add_nodes(class MPMStencil &, const double *x);
   void add_place(class MPMStencil &, int part, double area, double touch, const double *at,
                  const double *normal, double open = 1.0);
-  /** Does the area of the free surface tell how much water comes in? */
+  /** Does the area of the free surface determine how much water comes in? */
   bool by_area() const;
   void find_areas();
   double at_surface(const MPMNodeScalar &, const Place &) const;

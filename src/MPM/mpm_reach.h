@@ -17,21 +17,22 @@
 
 namespace LAMMPS_NS {
 
-/** Blocks in reach of the points of a field, for another field on the same lattice: a rank that has points of either
- *  must know both where they may meet. */
+/** Blocks in reach of the points of a field, for another field on the same lattice. Where the two may meet, a
+ *  rank that has points of either field must know the blocks of both. */
 struct MPMReach {
-  std::vector<std::array<int, 3>> blocks;    ///< of this rank's points, canonical, sorted
-  int extent[6];                             ///< low, and minus high, of these over all ranks
+  std::vector<std::array<int, 3>> blocks;    ///< canonical blocks of this rank's points, sorted
+  int extent[6];    ///< range of the blocks of all ranks: lowest, and minus highest, indices
 
-  /** Collective: when the grid has the blocks of the points, and no others yet. */
+  /** Finds the blocks. Call when the grid has the blocks of the points, and no others yet. Collective. */
   void find(const MPM_NS::Grid &, MPI_Comm);
-  /** Activate in the grid of this field the blocks of another one that are in its range. */
+  /** Activates in the grid of this field those blocks of another field that are in the range of this
+   *  field. */
   void activate_those_of(const MPMReach &other, MPM_NS::Grid &) const;
-  /** Do the ranges of both overlap, so that they may have blocks in common? The same on all ranks. */
+  /** Do the ranges of both fields overlap, so that they may have blocks in common? The same on all ranks. */
   bool may_meet(const MPMReach &other) const;
 };
 
-/** The canonical block that has a corner of this block, which periodic axes repeat. */
+/** The canonical block that contains a corner of this block, which may be an image along periodic axes. */
 std::array<int, 3> canonical_block(const MPM_NS::Grid &, const MPM_NS::Grid::Block &, int corner);
 
 }    // namespace LAMMPS_NS

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_REGION_CUT_H
 #define LMP_MPM_REGION_CUT_H
 
-// The part of each cell of a lattice that is inside of a region, for points that have the volume of it.
+// The part of each cell of a lattice that lies inside a region, for points that get its volume.
 
 #include "lmptype.h"
 #include "pointers.h"
@@ -26,35 +26,37 @@ class CellVolumes;
 
 namespace LAMMPS_NS {
 
-/** Cells of sites at origin + (s + 1/2) spacing, and what of them is in a region.
+/** Cells of sites at origin + (s + 1/2) spacing, and the part of each cell that lies in a region.
  *
- *  In a region mpm/mesh at rest whose parts do not overlap it is exact (mesh/cell_volumes.h). Of any other region only is known
- *  whether a place is inside: a cell whose corners and center all are is taken to be inside as a whole, one of which none is
- *  to be outside, and in any other one places are tried on a lattice of rank one (the additive recurrence of the generalized golden
- *  ratio), which is displaced by a function of the site. So the error of one cell is about 0.01 of its volume, and errors of many cells
- *  cancel, wherever faces are. */
+ *  The part is exact for a region mpm/mesh in 3d at rest whose parts do not overlap (mesh/cell_volumes.h).
+ *  For others, the region is only asked whether a place is inside. A cell whose corners and center are all inside
+ *  counts as wholly inside, and a cell with none of them inside as outside. In any other cell, places are
+ *  tried on a lattice of rank one (the additive recurrence of the generalized golden ratio), which is
+ *  displaced by a function of the site. The error of one cell is therefore about 0.01 of its volume, and the
+ *  errors of many cells cancel, wherever faces are. */
 class MPMRegionCut : protected Pointers {
  public:
   struct Part {
-    double share = 0.0;    ///< of the volume of the cell
+    double share = 0.0;    ///< fraction of the volume of the cell
     double x[3];           ///< center of the part
   };
   using Sites = std::function<bool(const bigint *s)>;
 
-  /** Parts of less than this share go to a neighbor. */
+  /** Parts with a share less than this go to a neighbor. */
   static constexpr double LIGHT = 0.1;
 
-  /** axis: what is at negative x is left out. first, last [3]: sites that are asked for. */
+  /** axis: leave out the space at negative x. first, last [3]: range of the sites. */
   MPMRegionCut(LAMMPS *, class Region *, const double *origin, const double *spacing, bool axis,
                const bigint *first, const bigint *last);
   ~MPMRegionCut() override;
 
-  /** What is in the cell. */
+  /** The part of the cell that is inside the region. */
   Part inside(const bigint *s);
 
-  /** What the point of a cell has: the part of the cell, and light ones of its neighbors. A light part goes to
-   *  the largest one across a face that is not light, too, and among the sites, else across an edge, else across a corner:
-   *  volume and center of all do not change. Where there is none it stays. */
+  /** The part that the point of a cell gets: the part of its own cell, and light parts of neighbors. A light
+   *  part goes to the largest part that is not light and belongs to the sites: across a face, else across an
+   *  edge, else across a corner. Total volume and center do not change. A light part without such a neighbor
+   *  stays. */
   Part point(const bigint *s, const Sites &);
 
  private:

@@ -15,13 +15,13 @@
 
 namespace LAMMPS_NS {
 
-/** Where a region that moves is now, of which LAMMPS protects some members. */
+/** Present position of a region that moves. It gives access to protected members of Region. */
 struct MPMRegionMotion : public Region {
-  /** Center and unit axis of its rotation. */
+  /** Center and unit axis of the rotation of a region. */
   static const double *point_of(const Region *r) { return r->*(&MPMRegionMotion::point); }
   static const double *axis_of(const Region *r) { return r->*(&MPMRegionMotion::runit); }
 
-  /** Its shift and angle, as restart files keep them. */
+  /** Pointers to the shift and the angle of a region, as restart files keep them. */
   static std::array<double *, 4> of(Region *r) { return {&r->dx, &r->dy, &r->dz, &r->theta}; }
 };
 

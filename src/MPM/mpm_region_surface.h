@@ -15,7 +15,7 @@ namespace LAMMPS_NS {
 class Region;
 class RegMPMMesh;
 
-/** The surface of a region, in the state that the region has when it is asked: distances, and the normal. */
+/** The surface of a region in its present state: signed distances and normals. */
 class MPMRegionSurface {
  public:
   /** The region must have been initialized for the run. */
@@ -24,16 +24,18 @@ class MPMRegionSurface {
   /** Has the region, or a part of it, open faces? Then all of space counts as inside. */
   bool is_open() const;
 
-  /** Signed distance of x, negative in the region; far or -far where it is more, or not known. It is known but in a union
-   *  and outside of an intersection, where the nearest surface can be an edge between two parts. */
+  /** Signed distance of x, negative in the region. Returns far or -far if it is greater, or not known. It is
+   *  not known in a union and outside of an intersection if the nearest surface can be an edge between two
+   *  parts. */
   double distance(const double *x, double far) const { return find(x, far, 0.0); }
 
-  /** The same for material in front of the surface, where it need not be known as exactly: with errors of
-   *  less than 0.03 h^2/R of a surface of radius R beyond a node spacing h. A mesh is much faster then. */
+  /** Distance for material in front of the surface, where it is needed less exactly. Beyond a node spacing h,
+   *  errors are less than 0.03 h^2/R for a surface of radius R. This is much faster for a mesh. */
   double gap(const double *x, double far, double h) const { return find(x, far, h); }
 
-  /** Direction out of the region: gradient of the distance, where need be from differences with this step (one-sided
-   *  where the distance is not known). Zero at centers and where it is not known. */
+  /** Unit normal out of the region, the gradient of the distance. If necessary, it is found from differences
+   *  with this step (one-sided where the distance is not known). Zero at centers and where it is not
+   *  known. */
   void normal(const double *x, double far, double step, double *normal) const;
 
   /** The simple region, or intersection, that is nearest to a place outside of unions. */
@@ -48,7 +50,7 @@ class MPMRegionSurface {
   RegMPMMesh *mesh;
   int dim;
   bool is_cone, is_union;
-  std::vector<int> left_out;              // ends of a cone, one after the other; -1: none
+  std::vector<int> left_out;    // ends of a cone that are left out, one after the other; -1: none
   std::vector<MPMRegionSurface> parts;    // of unions and intersections
   mutable std::vector<Place> places;
 

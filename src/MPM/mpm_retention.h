@@ -34,18 +34,19 @@ struct MPMRetention {
   double power = 1.0;               ///< e
   bool bishop_effective = false;    ///< Bishop's coefficient is S_e, not S
 
+  /** Can pores lose water, so that they are not always full? */
   bool can_dry() const { return law != FULL; }
 
-  /** At a pressure below that of the air. */
+  /** State at a pressure p below that of the air. */
   struct State {
     double effective, saturation;
     double slope;       ///< dS/dp [1/pressure]
     double relative;    ///< k_r
-    double bishop;      ///< share of the pressure in the effective stress
+    double bishop;      ///< chi, share of the pressure in the effective stress (Bishop)
   };
   State at(double p) const;
-  /** Change of the pressure in the effective stress with that of the water, d(chi p)/dp. With full pores it
-   *  is chi, which is S_s where Bishop's coefficient is the saturation. */
+  /** Derivative of the pressure in the effective stress with respect to the pressure of the water, d(chi
+   *  p)/dp. With full pores it is chi, which is S_s if Bishop's coefficient is the saturation. */
   double borne(double p) const
   {
     if (!can_dry()) return 1.0;

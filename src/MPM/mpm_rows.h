@@ -13,8 +13,8 @@
 
 namespace LAMMPS_NS {
 
-/** Rows of reals of all atoms, one after the other in memory that somebody else owns. LAMMPS's own arrays
- *  keep a pointer to each row besides, which is 8 bytes more for each atom. */
+/** Rows of reals for all atoms, one after the other in memory that another object owns. Unlike arrays of
+ *  LAMMPS, they need no pointer to each row, which saves 8 bytes per atom. */
 class MPMRows {
  public:
   MPMRows() = default;
@@ -22,7 +22,7 @@ class MPMRows {
   double *operator[](int i) const { return first + (bigint) width * i; }
   explicit operator bool() const { return first; }
 
-  /** These rows with room for n of the given width; none: their memory is given back. */
+  /** These rows with room for n rows of the given width; n = 0 frees the memory. */
   MPMRows grown(Memory *memory, int n, int row_width, const char *name) const
   {
     const bigint bytes = (bigint) sizeof(double) * row_width * n;

@@ -17,16 +17,16 @@
 
 namespace LAMMPS_NS {
 
-/** Takes out of the volumes of points of fluids, and so out of their pressure, what the nodes do not
+/** Removes from the volumes of points of fluids, and so from their pressures, the part that the nodes do not
  *  see. */
 class MPMSmoothing : protected Pointers {
  public:
   MPMSmoothing(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
-  /** Start of a run: there must be a fluid. */
+  /** Start of a run. Stops with an error if there is no fluid. */
   void init();
-  /** Start of a step, where points are what the map of them knows: of each fluid, as often as sound crosses
-   *  one cell or two. */
+  /** Start of a step, when the map of points is valid. Smooths each fluid once in the time in which sound
+   *  crosses one or two cells. */
   void smooth();
 
   double memory_usage() const { return (sums.capacity() + 2 * q.capacity()) * sizeof(double); }
@@ -35,8 +35,8 @@ class MPMSmoothing : protected Pointers {
   MPMField &field;
   MPM_NS::SmoothingKernels kernels = {};
   std::vector<double> sums;       // [node][fit_width()]
-  std::vector<double> q, mean;    // of points: J - 1, and its mean by the fits around their nodes
-  std::vector<double> tile, fits;           // of a run of points: sums, and what is fitted
+  std::vector<double> q, mean;    // of points: J - 1, and its mean from the fits around their nodes
+  std::vector<double> tile, fits;           // of a run of points: sums, and fits
   std::vector<std::array<int, 6>> boxes;    // of runs of points, in their tiles
 
   double time_to_cross(const FixMPMMaterial &) const;

@@ -18,8 +18,8 @@
 
 namespace LAMMPS_NS {
 
-/** The per-point arrays of a fix. Their owners declare them; this class makes them grow and move with
- *  their atoms, and writes them to restart files. */
+/** The per-point arrays of a fix. The owners of the arrays declare them here. This class grows them, moves
+ *  them with their atoms, and writes them to restart files. */
 class MPMPointState {
  public:
   using Fresh = std::function<void(int i, double *row)>;
@@ -29,21 +29,23 @@ class MPMPointState {
   MPMPointState &operator=(const MPMPointState &) = delete;
   ~MPMPointState();
 
-  /** Keep rows of the given number of reals for all atoms; rows[i] is valid from the next grow() on.
-   *  fresh: fills the row of a new atom, which is zero without. The reference to rows must stay
-   *  valid as long as this object. */
+  /** Keep rows of width reals for all atoms; rows[i] is valid from the next grow() on. fresh: function that
+   *  fills the row of a new atom; without it the row is zero. The reference to rows must stay valid as long
+   *  as this object exists. */
   void declare(MPMRows &rows, const char *name, int width, Fresh fresh = nullptr);
-  /** The same with a pointer to each row, which is what LAMMPS takes for output (array_atom). */
+  /** The same with a pointer to each row, as LAMMPS needs for output (array_atom). */
   void declare(double **&table, const char *name, int width, Fresh fresh = nullptr);
-  /** The same for one real for each atom. */
+  /** The same for one real per atom. */
   void declare(double *&values, const char *name, Fresh fresh = nullptr);
 
+  /** Are there no arrays? */
   bool empty() const { return arrays.empty(); }
-  /** Reals of a point in all arrays. */
+  /** Number of reals of a point in all arrays. */
   int size() const;
-  /** Names and widths, for instance "C 9, X 3", for the comparison with those of a restart file. */
+  /** Names and widths, for instance "C 9, X 3", to compare with those of a restart file. */
   std::string layout() const;
 
+  /** Memory for nmax atoms; copies of rows; rows of new atoms; rows to and from a buffer. */
   void grow(int nmax);
   void copy(int from, int to);
   void fresh(int i);
@@ -52,12 +54,12 @@ class MPMPointState {
 
  private:
   struct Array {
-    // of the owner, who may be gone when the arrays are destroyed; one of the three
+    // pointer into the owner, who may be gone when the arrays are destroyed; one of the three is set
     MPMRows *rows;
     double ***table;
     double **values;
     MPMRows mine;
-    double **pointers;    // to its rows, with a table
+    double **pointers;    // to the rows, with a table
     const char *name;
     int width;
     Fresh fresh;
@@ -66,14 +68,14 @@ class MPMPointState {
   std::deque<Array> arrays;
 };
 
-/** A fix with per-point arrays: the callbacks of LAMMPS, which go to its MPMPointState. */
+/** A fix with per-point arrays. It passes the callbacks of LAMMPS to its MPMPointState. */
 class FixMPMState : public Fix {
  public:
   FixMPMState(class LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), state(memory) {}
   ~FixMPMState() override;
   /** A number that no other fix has or had. */
   int instance() const { return instance_me; }
-  /** Names and widths of its arrays that go to restart files, empty: none. */
+  /** Names and widths of the arrays that go to restart files; empty if there are none. */
   std::string keeps() const { return restarts ? state.layout() : ""; }
   double memory_usage() override;
   void grow_arrays(int nmax) override { state.grow(nmax); }
@@ -89,20 +91,21 @@ class FixMPMState : public Fix {
  protected:
   MPMPointState state;
 
-  /** At the end of the constructor, when all arrays are declared. restarts: they go to restart files. */
+  /** Call at the end of the constructor, when all arrays are declared. restarts: the arrays go to restart
+   *  files. */
   void keep_arrays(bool restarts = true);
-  /** The values of this fix for atom i in a restart file, n of them; those of nth other fixes come
-   *  first, each with their number in front. */
+  /** The values of this fix for atom i from a restart file, n of them. The values of nth other fixes come
+   *  first, each preceded by their number. */
   const double *from_restart(int i, int nth, int &n) const;
 
  private:
   bool restarts = false, callbacks = false;
 };
 
-/** The sums of n values over processes: process 0 goes on with them, the others with zero. This is what a restart file
- *  gets, and as the run that writes it goes on in the same way, both have the same digits. */
+/** Sums n values over processes: process 0 gets the sums, the others get zero. Restart files contain these
+ *  sums, and the run that writes such a file continues with them, so that both have the same digits. */
 void keep_totals(MPI_Comm, double *values, int n);
-/** Writes these sums for Fix::restart(), which sees them, and behind them what is the same on all processes. */
+/** Writes these sums as Fix::restart() reads them, followed by values that are the same on all processes. */
 void write_totals(FILE *, MPI_Comm, std::vector<double> &totals,
                   const std::vector<double> &same = {});
 

@@ -9,8 +9,8 @@
 #ifndef LMP_MPM_STENCIL_H
 #define LMP_MPM_STENCIL_H
 
-// The nodes that a point reaches, one by one: for sums that the fast transfers do not make. These are
-// the only loops over the nodes of a point outside of transfer/.
+// The nodes that a point reaches, one by one, for sums that the fast transfers do not make. These are the
+// only loops over the nodes of a point outside of transfer/.
 
 #include "mpm_cpdi.h"
 #include "mpm_frame.h"
@@ -20,22 +20,22 @@
 
 namespace LAMMPS_NS {
 
-/** The nodes of points, one point at a time. */
+/** Visits the nodes of points, one point at a time. */
 class MPMStencil {
  public:
-  /** A node as a point sees it. Domains (CPDI) see a node once from each of their corners. */
+  /** A node as a point sees it. A domain (CPDI) sees a node once from each of its corners. */
   struct Node {
     int64_t number;        ///< slot * 64 + number in the block
     double weight;         ///< N_ip
-    double gradient[3];    ///< of N_ip with respect to the place of the point [1/distance]
+    double gradient[3];    ///< of N_ip with respect to the position of the point [1/distance]
     double r[3];           ///< from the node to the point, in node spacings
   };
 
   explicit MPMStencil(const MPMField &field) : field(field) {}
 
-  /** Nodes along one axis that a position reaches (in node spacings from the origin): their number,
-   *  the first one, the weights and, if asked for, their slopes for one node spacing. Points of finite
-   *  size: those of the spline with their stencil. */
+  /** Nodes along one axis that a position t reaches (in node spacings from the origin). Returns their number,
+   *  the first node, the weights, and, if asked for, their slopes per node spacing. For points of finite size
+   *  these are the values of the spline with the same stencil. */
   int weights(double t, int &first, double w[4], double *slopes = nullptr) const
   {
     const MPM_NS::Shape shape = field.options.shape;
@@ -46,7 +46,7 @@ class MPMStencil {
     return evaluate<MPM_NS::BSpline<3>>(t, first, w, slopes);
   }
 
-  /** As weights(), of the quadratic B-splines on these nodes, whatever the functions of the field are. */
+  /** As weights(), but always for the quadratic B-splines on these nodes. */
   static int quadratic(double t, int &first, double w[4])
   {
     return evaluate<MPM_NS::BSpline<2>>(t, first, w, nullptr);
@@ -59,8 +59,8 @@ class MPMStencil {
     const int dim = lattice.dim;
     const double *const place = field.frame->places()[i];
 
-    // corners of the domain of the point, relative to it, their shares, and the gradients of these;
-    // a point without domain is the only one
+    // corners of the domain of the point relative to it, their shares, and the gradients of the shares; a
+    // point without domain is its only corner
 
     const int ncorner = field.domains ? 1 << dim : 1;
     double corner[24] = {0.0}, share[8] = {1.0}, slope[24];
@@ -102,8 +102,8 @@ class MPMStencil {
     }
   }
 
-  /** What a point without domain has along the axes: of the node with the places k along them, the number
-   *  is number(k), the weight the product of w[d][k[d]], and r the list of r[d][k[d]]. */
+  /** Values along the axes for a point without domain. The node with the indices k along the axes has the
+   *  number number(k), its weight is the product of w[d][k[d]], and its r consists of r[d][k[d]]. */
   struct Axes {
     int count[3];
     double w[3][4], r[3][4];
@@ -119,10 +119,10 @@ class MPMStencil {
     friend class MPMStencil;
     const int *slots;
     int neighbor[3][4],
-        inside[3][4];    // parts of the place in slots, and of the number in the block
+        inside[3][4];    // contributions to the index in slots, and to the number in the block
   };
 
-  /** The same of point i, which is in the given block, for loops that are written out. */
+  /** Finds the axes of point i, which is in the given block, for loops that are written out. */
   void find_axes(const MPM_NS::Grid::Block &block, int i, Axes &axes) const
   {
     const double *const place = field.frame->places()[i];
@@ -138,7 +138,7 @@ class MPMStencil {
     }
   }
 
-  /** The same of a position, such as that of an atom which is no point, where reaches_blocks(). */
+  /** The same for a position, such as that of an atom that is not a point. Requires reaches_blocks(). */
   void find_axes(const double *x, Axes &axes)
   {
     const auto &grid = field.grid;
@@ -154,8 +154,8 @@ class MPMStencil {
     for (int d = 0; d < 3; d++) number_axis(block, d, t[d], base[d], axes);
   }
 
-  /** Are all nodes that a position reaches active? The blocks must stay while this object is used: it remembers the
-   *  last one. */
+  /** Are all nodes that a position reaches active? The blocks must not change while this object is used,
+   *  because it remembers the last one. */
   bool reaches_blocks(const double *x)
   {
     const auto &grid = field.grid;
@@ -174,9 +174,9 @@ class MPMStencil {
     return true;
   }
 
-  /** Calls f(number, weight, r) for the nodes that a position reaches, such as that of an atom which
-   *  is no point, with r from the node to the position, in node spacings. Returns false when not all
-   *  nodes are active. The blocks must stay while this object is used: it remembers the last one. */
+  /** Calls f(number, weight, r) for the nodes that a position reaches, such as that of an atom that is not a
+   *  point; r: from the node to the position, in node spacings. Returns false if not all nodes are active.
+   *  The blocks must not change while this object is used, because it remembers the last one. */
   template <class F> bool visit_around(const double *x, const F &f)
   {
     const auto &grid = field.grid;
@@ -201,9 +201,9 @@ class MPMStencil {
 
  private:
   const MPMField &field;
-  int slot = -1;    // of the last block
+  int slot = -1;    // of the last block that was found
 
-  /** The block of a node. */
+  /** Finds the block of a node. */
   bool find_slot(const int base[3])
   {
     const auto &grid = field.grid;
@@ -213,7 +213,7 @@ class MPMStencil {
     return slot >= 0;
   }
 
-  /** What Axes has along one of them, besides weights. */
+  /** Sets the members of Axes along one axis, except for the weights. */
   void number_axis(const MPM_NS::Grid::Block &block, int d, double t, int base, Axes &axes) const
   {
     const auto &grid = field.grid;

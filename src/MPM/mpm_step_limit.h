@@ -13,11 +13,11 @@
 
 namespace LAMMPS_NS {
 
-/** A fix that moves material points, and that fix mpm/dt must ask for the largest time step. */
+/** A fix that moves material points and limits the time step; fix mpm/dt asks it for the largest one. */
 class MPMStepLimit {
  public:
-  /** That of the points of this rank, or the largest number that there is. tag: of the point that limits it, 0: none
-   *  does. */
+  /** The largest stable time step for the points of this rank, or the largest double if there is no limit.
+   *  tag: ID of the point that limits it, 0 if none does. */
   virtual double stable_dt(tagint &tag) const = 0;
 
  protected:

@@ -15,7 +15,7 @@
 
 namespace LAMMPS_NS {
 
-/** The value of a keyword every: a number of steps, or the word auto, which is 0. */
+/** Value of a keyword every: a number of steps, or the word auto, which is stored as 0. */
 inline MPM_NS::OptionValue steps_or_auto(int &to, const std::string &of_number,
                                          const std::string &of_auto)
 {

@@ -27,14 +27,16 @@ namespace LAMMPS_NS {
 class MPMField;
 class MPMTrialForces;
 
-/** What the stress of the points of a field would be after a motion that is only tried, and how it changes with that
- *  motion. Laws work on copies of the state of points: nothing is kept until the step itself moves them.
+/** Stress of the points of a field after a motion that is only tried, and its derivative with respect to that
+ *  motion. Material laws work on copies of the state of points: nothing is kept until the step itself moves
+ *  them.
  *
- *  A motion is a vector u [node][dim] of displacements in the step. A point has their gradient H_ij = du_i/dX_j with
- *  respect to the places of the lattice, and around an axis of symmetry also H_zz = u_r/r. Conjugate to these is the
- *  first Piola-Kirchhoff stress P = tau (F + H)^-T, for each unit of the initial volume, where F is the deformation of the
- *  places of the lattice at the start of the step: unity in the updated frame. Entries of H and P are column-major, with
- *  that around the axis at the end. Forces on nodes are in units of mass times acceleration. */
+ *  A motion is a vector u [node][dim] of displacements in the step. A point has their gradient H_ij =
+ *  du_i/dX_j with respect to the places of the lattice, and H_zz = u_r/r if there is an axis of symmetry.
+ *  Conjugate to these is the first Piola-Kirchhoff stress P = tau (F + H)^-T per unit of the initial volume,
+ *  where F is the deformation of the places of the lattice at the start of the step: unity in the updated
+ *  frame. Entries of H and P are column-major, with the entry around the axis at the end. Forces on nodes are
+ *  in units of mass times acceleration. */
 class MPMTangent : protected Pointers {
  public:
   MPMTangent(class LAMMPS *lmp, MPMField &field);
@@ -43,67 +45,80 @@ class MPMTangent : protected Pointers {
   /** Start of a run: choose the transfers. */
   void init();
 
-  /** Of all points in this step, from atom->f. To be called first in each step. Collective. */
+  /** External forces of all points in this step, from atom->f. Must be called first in each step.
+   *  Collective. */
   void external_forces(double *force);
-  /** A point of which only a share has stress, and loads that follow: walls carry the rest in this step. */
+  /** A point of which only a share has stress and loads that follow: walls carry the rest in this step. */
   struct Part {
     bigint point;
     double share;
   };
+  /** Sets these points for the present step. */
   void set_parts(std::vector<Part> list) { parts = std::move(list); }
-  /** Of the rest of these points, from atom->f. Collective. */
+  /** External forces on the rest of these points, from atom->f. Collective. */
   void forces_on_rest(double *force);
-  /** Forces of the stress after the motion u; carried: sum of V |P| / h over the points of this rank, the size of the
-   *  forces that cancel in equilibrium [mass acceleration]. Returns false, on all ranks, where a point is turned inside
-   *  out or has a stress that is not finite. Collective. */
+  /** Forces of the stress after the motion u. carried: sum of V |P| / h over the points of this rank, the
+   *  size of the forces that cancel in equilibrium [mass acceleration]. Returns false, on all ranks, if a
+   *  point is turned inside out or has a stress that is not finite. Collective. */
   bool forces(const double *u, double dt, double *force, double &carried);
 
-  /** dP/dH of all points at the motion u, by the tangents of materials that have one, by central differences of the others. Returns the sum of V |dP/dH| / h over all
-   *  points, with the largest entry of each: a strain e everywhere makes forces of e times that, which cancel. Collective. */
+  /** Finds dP/dH of all points at the motion u, from the tangents of materials that have one, and from
+   *  central differences for the others. Returns the sum of V |dP/dH| / h over all points, with the largest
+   *  entry of each: a uniform strain e makes forces of e times this sum, which cancel. Collective. */
   double linearize(const double *u, double dt);
-  /** Change of the forces for a small change of that motion. Collective. */
+  /** Change of the forces for a small change du of that motion. Collective. */
   void change_of_forces(const double *du, double *dforce)
   {
     change_of_forces(du, dforce, nullptr, nullptr);
   }
-  /** The same with the changes dp [n] of a pressure that points have besides their stress, and the changes dV [n] of their volumes. */
+  /** The same with the changes dp [n] of a pressure that points have besides their stress. It also finds the
+   *  changes dV [n] of their volumes. */
   void change_of_forces(const double *du, double *dforce, const double *dp, double *dV);
-  /** A pressure that points have in their forces besides their stress, [n], compression positive; null: none. As a Cauchy stress, it
-   *  acts on the points as they are after the motion. To be set before forces() and linearize(). */
+  /** A pressure in the forces of points besides their stress, [n], compression positive; null: none. As a
+   *  Cauchy stress, it acts on the points as they are after the motion. Set it before forces() and
+   *  linearize(). */
   void set_pressure(const double *of_points) { pressure = of_points; }
-  /** linearize() keeps the tangents of the stress without this pressure, too. */
+  /** Should linearize() also keep the tangents of the stress without this pressure? */
   void keep_without_pressure(bool keeps) { keeps_stress = keeps; }
-  /** Products, blocks, and points are from now on those of the stress without this pressure, which must have been kept; or of all. */
+  /** Should products, blocks, and points be those of the stress without this pressure from now on? These
+   *  tangents must have been kept. Otherwise they include the pressure. */
   void leave_out_pressure(bool leaves) { of_stress = leaves; }
-  /** Changes of the volumes of points by the motion u, [n]. As what has such a pressure, in the plane and in space. Collective. */
+  /** Changes of the volumes of points by the motion u, [n], as for points with such a pressure. In the plane
+   *  and in space only. Collective. */
   void volume_changes(const double *u, double *dV);
-  /** [n] Moduli of points that cannot widen, by their tangents, the mean of all axes [pressure]. */
+  /** [n] Moduli of points for compression without lateral strain, from their tangents, averaged over the axes
+   *  [pressure]. */
   void find_moduli(std::vector<double> &moduli) const;
-  /** From now on, forces() and linearize() keep how points are deformed; or no more. */
+  /** Should forces() and linearize() keep the deformation of points from now on? */
   void keep_deformations(bool keeps);
-  /** [k][dim][dim] Rotations of the places of the lattice around the nodes of a list, by the mean deformation of the points there after the last motion
-   *  that was kept; unity where there are no points. Collective. */
+  /** [k][dim][dim] Rotations of the places of the lattice around the nodes of a list, from the mean
+   *  deformation of the points there after the last motion that was kept; unity where there are no points.
+   *  Collective. */
   void mean_rotations(const std::vector<int64_t> &of, std::vector<double> &rotations);
-  /** Minus the change of forces of each node by its own motion alone: [node][dim][dim]. Collective. */
+  /** Minus the change of the force on each node due to its own motion alone: [node][dim][dim]. Collective. */
   void diagonal(std::vector<double> &blocks);
-  /** Forces of loads that follow the deformation after the motion u, less those that atom->f has. Collective. */
+  /** Forces of loads that follow the deformation after the motion u, minus those in atom->f. Collective. */
   void loads(const double *u, double *force);
-  /** Are there any such loads on any rank? Known after external_forces(). */
+  /** Are there such loads on any rank? Known after external_forces(). */
   bool has_loads() const { return loaded; }
-  /** What one point does to the system: the n nodes that it reaches, [n][ngrad] gradients of their functions, and [dim ngrad][dim
-   *  ngrad] minus the change of its force on H, for row and column l*dim + a of H_al, in the units of forces. */
+  /** Contribution of one point to the system: the n nodes that it reaches, [n][ngrad] gradients of their
+   *  functions, and [dim ngrad][dim ngrad] minus the change of its force with H, with row and column l*dim +
+   *  a for H_al, in the units of forces. */
   using UsePoint = std::function<void(int n, const int64_t *nodes, int ngrad,
                                       const double *gradient, const double *stiffness)>;
-  /** All points of this rank, those of a block one after the other. Around an axis ngrad is dim + 1, where the last entry is
-   *  that of H_zz, of the first component alone. */
+  /** Calls a function for all points of this rank, those of a block one after the other. With an axis of
+   *  symmetry ngrad is dim + 1, and the last entry is that of H_zz, which depends on the first component
+   *  alone. */
   void each_point(const UsePoint &) const;
-  /** Averages of the pressure (locking pressure) resist the changes b of the volume around nodes: sums of this rank's points for SplineMultigrid::add_mean(), which each_point() then
-   *  leaves out.  around: the node; material: its number; changes: [n][dim]. */
+  /** Averages of the pressure (locking pressure) resist the changes b of the volume around nodes. These are
+   *  the sums of this rank's points for SplineMultigrid::add_mean(); each_point() leaves them out. around:
+   *  the node; material: its number; changes: [n][dim]. */
   using UseMean = std::function<void(int64_t around, int material, const double sums[3], int n,
                                      const int64_t *nodes, const double *changes)>;
   void each_mean(const UseMean &) const;
-  /** Largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry, or, of forces on points that change with H, of
-   *  this change over a node spacing. Collective. */
+  /** Asymmetry of the system: largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry, that of
+   *  forces between points, or the largest derivative with respect to H of forces on points over the largest
+   *  V |dP/dH| / h. The largest of these is returned. Collective. */
   double asymmetry() const;
 
   double memory_usage() const;
@@ -114,22 +129,24 @@ class MPMTangent : protected Pointers {
   std::unique_ptr<MPM_NS::Batch> batch;
   std::unique_ptr<MPM_NS::Tangent> tangent;    // of that batch
   const int dim, nL;                           // nL: entries of a gradient in the plane or in space
-  int nH;                                      // those of H
-  bool mls = false;                            // gradients are those of moving least squares
+  int nH;                                      // entries of H
+  bool mls = false;                            // do gradients use moving least squares?
   std::vector<double> nodes, motion_nodes, history, P, hoop_stress, tangents, no_force,
       forces_on_points, deformations;
   std::vector<Part> parts;
   void take_parts();
-  bool loaded = false;    // some points have loads that follow them
-  // [point][3] forces of these loads besides atom->f, and [point][nH][3] derivatives by H, if there are any
+  bool loaded = false;    // do any points have loads that follow them?
+  // [point][3] forces of these loads in addition to atom->f, and [point][nH][3] their derivatives with
+  // respect to H, if there are any
   std::vector<double> load_forces, load_tangents;
 
-  // of a gradient: with it, the third derivatives of a law and the round-off of its stress are both some 1e-10 of its tangent
+  // step of the central differences of a gradient: with it, the error by the third derivatives of a law and the
+  // round-off of its stress are both some 1e-10 of its tangent
   static constexpr double DIFFERENCE = 6.0e-6;
 
-  // forces between points, see mpm_trial_forces.h: these, displacements and forces of points [n][3]
+  // forces between points, see mpm_trial_forces.h; displacements and forces of points [n][3]
   std::vector<MPMTrialForces *> between;
-  std::size_t nelements = 0;    // the first of them; the others are loads
+  std::size_t nelements = 0;    // the first ones in between; the others are loads
   std::vector<double> point_motion, point_forces, sum_forces;
   void move_points(const double *u);
   bool add_between(const double *u, double &carried);
@@ -140,8 +157,9 @@ class MPMTangent : protected Pointers {
   void scatter(const double *forces_of_points, double *force);
   bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
               MPM_NS::Tangent *tangent = nullptr);
-  // with averages of the pressure: mean stress of points and, after linearize(), its derivatives by H [point][nH]; what averages, or a
-  // pressure besides the stress, add to the mean stress; J G [point][nH] with G = F^-T of the places
+  // for averages of the pressure: mean stress of points and, after linearize(), its derivatives with respect
+  // to H [point][nH]; the addition to the mean stress by averages or by a pressure besides the stress; J G
+  // [point][nH] with G = F^-T of the places
   std::vector<double> mean_stress, mean_tangents, added, volume_gradients;
   std::vector<double> volumes;    // of points at the start of the step, weights of averages
   MPMNodeScalar means;

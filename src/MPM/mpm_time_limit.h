@@ -18,29 +18,30 @@ struct Batch;
 namespace LAMMPS_NS {
 class MPMField;
 
-/** The largest stable time step of a field. */
+/** The largest stable time step of a field, and the check of the time step against it. */
 class MPMTimeLimit : protected Pointers {
  public:
-  /** Largest |J/J_old - 1|/dt of this rank's points in all steps since it was set to zero, and whose. */
+  /** Largest |J/J_old - 1|/dt of this rank's points in all steps since it was set to zero, and the tag of
+   *  that point. */
   struct VolumeRate {
     double most;
     tagint tag;
   } volume_rate = {0.0, 0};
-  /** Below that, forces that are impulses over the time step may be beyond the largest number. */
+  /** With a smaller time step, forces that are impulses over the time step may exceed the largest number. */
   static constexpr double SMALLEST = 1.0e-150;
-  bool bound =
-      true;    ///< the step is explicit; set to false by the init_physics() of one that is not
+  bool bound = true;            ///< explicit step; init_physics() of implicit ones sets it to false
   bool watch_volume = false;    ///< keep volume_rate; set at the start of a run by fix mpm/dt
 
   MPMTimeLimit(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
-  /** Start of a run. */
+  /** Start of a run: checks the time step, and warns where it may be unstable. */
   void setup();
-  /** Smallest over this rank's points of h/(c + |v|); the point's tag goes to id. */
+  /** Smallest h/(c + |v|) of this rank's points. id: tag of the point that limits it; wave_speed: its c. */
   double stable_dt(tagint &id, double &wave_speed) const;
-  /** Stop when the time step is above the limit; looks at it every few steps. */
+  /** Stops with an error if the time step is above the limit. It is checked every few steps. */
   void check();
 
+  /** Updates volume_rate with the points of a batch, which begin at index first. */
   void note_volume_rate(const MPM_NS::Batch &, int first);
 
  private:
@@ -53,7 +54,7 @@ class MPMTimeLimit : protected Pointers {
   void warn_of_small() const;
 };
 
-/** Elapsed time at the end of the present step, as thermo keyword time has it. */
+/** Elapsed time at the end of the present step, as for the thermo keyword time. */
 double elapsed_time(const class Update &);
 
 }    // namespace LAMMPS_NS

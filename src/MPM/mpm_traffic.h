@@ -15,32 +15,36 @@ namespace LAMMPS_NS {
 class LAMMPS;
 class MPMField;
 
-/** Points that come or go during a run, and what they bring or take: reals only, for sums and restart files. */
+/** Points that come or go during a run, and the quantities that they bring or take. All members are reals,
+ *  for sums and restart files. */
 struct MPMTraffic {
   double points = 0.0, mass = 0.0, momentum[3] = {0.0, 0.0, 0.0};
   double kinetic = 0.0, stored = 0.0;    ///< [energy]
 
   static constexpr int NREAL = 7;
+  /** The NREAL members in order. */
   double *reals() { return &points; }
   const double *reals() const { return &points; }
   void add(const MPMTraffic &);
 };
 
-/** What point i has; stored energy is that of a point of a field, of others 0. field: its own, or null. */
+/** Quantities of point i. field: its field, or null. The stored energy is 0 for points without a field. */
 MPMTraffic traffic_of(LAMMPS *, MPMField *field, int i);
-/** The field of point i, null: of none. */
+/** The field of point i, or null if it belongs to none. */
 MPMField *field_of(LAMMPS *, int i);
 
-/** Ghosts, which new atoms overwrite and which do not follow those that move in memory, are forgotten, and whoever changes
- *  atoms outside of an exchange does so between these two. Collective; only where an exchange follows. */
+/** Atoms may be changed outside of an exchange only between these two calls. Ghosts are dropped, because new
+ *  atoms overwrite them, and because they do not follow atoms that move in memory. Collective; an exchange
+ *  must follow. */
 void begin_traffic(LAMMPS *);
 void end_traffic(LAMMPS *);
 
-/** Deletes the points for which leaves(i) is true; collective, where an exchange follows. The ledger of their fields and the number of
- *  atoms know; meant: who watches the number of points of a field is told. Returns sums over all processes. */
+/** Deletes the points for which leaves(i) is true. The ledgers of their fields and the number of atoms are
+ *  updated. meant: the deletion is intended, so that the check of the number of points expects it. Returns
+ *  the sums over all processes. Collective; an exchange must follow. */
 MPMTraffic remove_points(LAMMPS *, const std::function<bool(int i)> &leaves, bool meant);
 
-/** Does a fix bring points into this field during runs? Then it may be empty at the start. */
+/** Does a fix bring points into this field during runs? If so, it may be empty at the start. */
 bool emits_points(const MPMField &);
 
 }    // namespace LAMMPS_NS

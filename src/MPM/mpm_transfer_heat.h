@@ -13,17 +13,17 @@
 
 namespace LAMMPS_NS {
 
-/** The kinetic energy that transfers lose becomes heat of the points (keyword heat). */
+/** Converts the kinetic energy that transfers lose into heat of the points (keyword heat). */
 class MPMTransferHeat : protected Pointers {
  public:
   MPMTransferHeat(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
-  /** Start of a run: tells when no material takes up heat. */
+  /** Start of a run: warns if no material takes up heat. */
   void init() const;
-  /** Before points get their new velocities: what depends on the old ones. */
+  /** Finds the terms that depend on the old velocities. Call before points get their new ones. */
   void before_motion();
-  /** The heat of n points from first on in this step, per reference volume; they have their new velocities. It
-   *  is booked as given back. */
+  /** The heat of n points from first on in this step, per reference volume. The points must have their new
+   *  velocities. The ledger counts this heat as given back. */
   void give(int first, int n, double *heat);
 
   double memory_usage() const { return (energy.capacity() + C.capacity()) * sizeof(double); }
@@ -31,7 +31,7 @@ class MPMTransferHeat : protected Pointers {
  private:
   MPMField &field;
   std::vector<double>
-      energy;    // [n] twice the energy over the mass of the point, less that of its new velocity
+      energy;    // [n] twice the energy over the mass of the point, without the part of its new velocity
   std::vector<double> C;    // [n][dim*dim] fit of the old velocities of the nodes
 
   double second_moment() const;

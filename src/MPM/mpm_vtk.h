@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_VTK_H
 #define LMP_MPM_VTK_H
 
-// VTK XML files for the dump styles. Nothing here knows about points or grids.
+// VTK XML files for the dump styles. This code does not depend on points or grids.
 
 #include "error.h"
 #include "mpm_options.h"
@@ -28,46 +28,49 @@ class Input;
 
 namespace MPM_NS {
 
-/** One VTK XML file whose data are bytes in an appended section. Their places are known when the header is
- *  written, so that the values may come in any order and in pieces. Of compressed data they are not: blocks
- *  are compressed as they come, each array in order, and kept in memory until the end. */
+/** One VTK XML file whose data are bytes in an appended section. The positions of the data are known when the
+ *  header is written, so that the values may come in any order and in pieces. Compressed data have no such
+ *  positions: each array must come in order, blocks are compressed as they come, and are kept in memory until
+ *  the end. */
 class VTKFile {
  public:
   enum Type { INT64, UINT8, FLOAT64, FLOAT32 };
 
-  /** kind: of data set, PolyData or UnstructuredGrid. */
+  /** kind: type of the data set, PolyData or UnstructuredGrid. */
   explicit VTKFile(const std::string &kind, bool compressed = false) :
       kind(kind), compressed(compressed)
   {
   }
 
-  /** Was this compiled with zlib? */
+  /** Was this code compiled with zlib? */
   static bool can_compress();
 
-  /** What is wrong with the name of a dump file and how to mend it; empty: nothing.
-   *  series: one file per snapshot, with a * for the time step; pieces: a % for the number of a piece is allowed. */
+  /** Describes what is wrong with the name of a dump file and how to correct it; empty if nothing is wrong.
+   *  series: one file per snapshot, with a * for the time step; pieces: a % for the number of a piece is
+   *  allowed. */
   static std::string name_error(const std::string &name, const std::string &extension, bool series,
                                 bool pieces = false);
 
-  /** The name without the % for the number of a piece and the dot, or another separator, before it. */
+  /** The name without the % for the number of a piece, and without the dot or other separator before it. */
   static std::string without_percent(const std::string &name);
 
-  /** An array of a section (PointData, Points, Verts, Cells) for ntuple tuples; its number. */
+  /** Adds an array of ntuple tuples to a section (PointData, Points, Verts, Cells), and returns its
+   *  number. */
   int add(const std::string &section, const std::string &name, Type type, int ncomponent,
           int64_t ntuple);
 
-  /** Write all but the values. piece: attributes of the piece such as NumberOfPoints="8"; units: name of the
-   *  units of all values. */
+  /** Writes everything except for the values. piece: attributes of the piece, such as NumberOfPoints="8";
+   *  units: name of the units of all values. */
   void begin(FILE *fp, const std::string &piece, const std::string &units, double time,
              int64_t step);
 
-  /** Write n tuples of an array from the given tuple on, converted to the type of the array. */
+  /** Writes n tuples of an array from tuple first on, converted to the type of the array. */
   void write(int array, int64_t first, int64_t n, const double *values);
 
-  /** After all values. */
+  /** Call after all values. */
   void end();
 
-  /** Text of the file that lists pieces with these arrays, by their names. */
+  /** Text of the file that lists pieces with these arrays; names: files of the pieces. */
   std::string list_of_pieces(const std::vector<std::string> &names) const;
 
  private:
@@ -75,7 +78,7 @@ class VTKFile {
     std::string section, name;
     Type type;
     int ncomponent;
-    int64_t offset;    // of the lengths that precede the values, in the appended data
+    int64_t offset;    // offset in the appended data of the lengths that precede the values
     int64_t bytes;     // of the values
     std::vector<char> pending = {};             // less than a block, not yet compressed
     std::vector<char> packed = {};              // compressed blocks
@@ -93,19 +96,19 @@ class VTKFile {
   void pack(Array &);
 };
 
-/** ParaView's list of the files of a series with their times (.pvd), valid after each step. */
+/** ParaView's list of the files of a series with their times (.pvd). The list is valid after each step. */
 class VTKCollection {
  public:
-  /** Name of the list for files name.*.ext: name.pvd, or fallback.pvd when nothing is left.
-   *  suffix: goes before .pvd, for lists of different files with the same name. */
+  /** Name of the list for files name.*.ext: name.pvd, or fallback.pvd if no name is left. suffix: goes before
+   *  .pvd, for lists of different files with the same name. */
   static std::string list_name(const std::string &pattern, const std::string &fallback,
                                const std::string &suffix = "");
 
   explicit VTKCollection(const std::string &list) : list(list) {}
 
-  /** Add a file (path as opened, in the directory of the list) and write the list; only the last
-   *  keep entries stay (0 or less: all). A file that is listed already gets the new time.
-   *  append: continue a list that exists before the first call. An error text, empty: none. */
+  /** Adds a file (path as opened, in the directory of the list) and writes the list. Only the last keep
+   *  entries stay (0 or less: all). A file that is already listed gets the new time. append: continue a list
+   *  that exists before the first call. Returns the text of an error, or an empty text. */
   std::string add(const std::string &file, double time, int keep, bool append);
 
  private:
@@ -120,11 +123,13 @@ class VTKCollection {
   void read();
 };
 
-/** Errors of LAMMPS that point to a word of the command mean a word of this one, and not of that in
- *  the input, as long as this exists. LAMMPS takes the word from the input without a look at how
- *  many there are, and write_dump, an internal compute, and an internal list of columns have more. */
+/** While this object exists, errors of LAMMPS that point to a word of the command point to a word of this
+ *  command, and not of the one in the input. LAMMPS takes the word from the input without checking the number
+ *  of words, and write_dump, an internal compute, and an internal list of columns have more words than
+ *  that. */
 class ErrorWords {
  public:
+  /** arg: the narg words of this command. */
   ErrorWords(LAMMPS_NS::LAMMPS *, int narg, char **arg);
   ~ErrorWords();
   ErrorWords(const ErrorWords &) = delete;
@@ -141,10 +146,10 @@ class ErrorWords {
 
 namespace LAMMPS_NS {
 
-/** Reads compress yes|no of dump_modify and returns 2, or 0 for any other keyword. */
+/** Reads compress yes|no of dump_modify. Returns 2, or 0 for any other keyword. */
 int read_compress(LAMMPS *, int narg, char **arg, bool &compress);
 
-/** What dump styles that write VTK files share, whichever dump of LAMMPS they derive from. */
+/** Common part of the dump styles that write VTK files, whichever dump of LAMMPS they derive from. */
 template <class Base> class DumpVTKSeries : public Base {
  protected:
   bool single = false;      // precision of reals
@@ -153,7 +158,8 @@ template <class Base> class DumpVTKSeries : public Base {
 
   using Base::Base;
 
-  /** End of the constructor: rows of numbers are gathered, not text, and files go to a list. */
+  /** Call at the end of the constructor. The dump gathers rows of numbers, not text, and adds its files to a
+   *  list. */
   void begin_series(const std::string &suffix = "")
   {
     this->buffer_allow = this->buffer_flag = 0;
@@ -170,7 +176,7 @@ template <class Base> class DumpVTKSeries : public Base {
     return n > 0 ? n : Base::modify_param(narg, arg);
   }
 
-  /** The file of this snapshot that is to be opened. */
+  /** The file of this snapshot that goes to the list. */
   virtual std::string listed_file()
   {
     return utils::star_subst(this->filename, this->update->ntimestep, this->padflag);

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_WALL_GAP_H
 #define LMP_MPM_WALL_GAP_H
 
-// Has the surface of the material reached a wall? Nodes feel points from a distance of 1 to 2 cells.
+// Has the surface of the material reached a wall? Nodes see points at a distance of 1 to 2 cells.
 
 #include <cstdint>
 #include <functional>
@@ -18,17 +18,17 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Material that fills the space in front of a plane wall up to its surface, as a weight function
- *  M of the nodes at the wall sees it; x: distance from the wall in node spacings. */
+/** Reference for contact: material that fills the space in front of a plane wall up to its surface, as seen
+ *  with a weight function M of the nodes at the wall. x: distance from the wall in node spacings. */
 class MPMWallContact {
  public:
   MPMWallContact() = default;
-  /** M = sum of weights[k] N, with N of nodes at positions[k] relative to the wall (node spacings,
-   *  positive inside the material). */
+  /** M = sum of weights[k] N_k, where N_k is the function of a node at positions[k] relative to the wall
+   *  (node spacings, positive inside the material). */
   MPMWallContact(const MPMField &, const double *positions, const double *weights, int n);
 
-  /** Largest mean distance (weight M, in node spacings) of the points of material that touches the
-   *  wall, when the square of their spacing has the mean size2. */
+  /** Largest mean distance (weight M, in node spacings) of the points of material that touches the wall.
+   *  size2: mean square of the spacing of the points. */
   double distance(double size2) const;
 
  private:
@@ -45,24 +45,27 @@ class MPMWallGap {
     double distance = 0.0;    // of V N times the distance from the wall, in node spacings
     double size2 = 0.0;       // of V N times the square of the spacing of points, in node spacings
 
+    /** Adds other sums, times a weight. */
     void add(double weight, const Sums &);
-    /** Does the material touch the wall, or is it no farther from it than this (node spacings)? */
+    /** Does the material touch the wall, or is its distance from it at most near (node spacings)? */
     bool touches(const MPMWallContact &, double near = 0.0) const;
-    /** Mean distance of the points that are seen less that of material which touches the wall (node spacings); not finite where
-     *  nothing is seen. */
+    /** Mean distance of the points that are seen, minus that of material that touches the wall (node
+     *  spacings). Not finite if no points are seen. */
     double beyond(const MPMWallContact &) const;
   };
 
-  /** Collective. Sums at the nodes of the blocks [slot] that are marked in near (and others). away(x) is
-   *  the distance of a position from the wall, positive on the side of the material; smooth: it
-   *  changes by no more than the position does. No node of the wall sees farther than reach (node
-   *  spacings). more: distances beyond those that a node at the wall sees are wanted, by so much (node spacings). */
+  /** Finds the sums at the nodes of the blocks [slot] that are marked in near (and may find others). away(x):
+   *  distance of a position from the wall, positive on the side of the material. smooth: the distance changes
+   *  by no more than the position. reach: greatest distance that a node of the wall sees (node spacings).
+   *  more: distance beyond the range of nodes at the wall up to which distances are needed (node spacings).
+   *  Collective. */
   void map(MPMField &, const std::vector<char> &near, bool smooth, double reach,
            const std::function<double(const double *)> &away, double more = 0.0);
 
-  /** Distances beyond this one need not be known. */
+  /** Distances beyond this one are not needed. */
   static double farthest(const MPMField &, double more = 0.0);
 
+  /** The sums at a node, after map(). */
   Sums at(int64_t node) const;
 
  private:

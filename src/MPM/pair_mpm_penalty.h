@@ -29,17 +29,17 @@ struct MPMPoints;
 
 /** Settings of pair_style mpm/penalty. */
 struct MPMPenaltyOptions {
-  double growth = 1.2;    ///< radii grow to this multiple of their initial value at most
+  double growth = 1.2;    ///< largest ratio of a radius to its initial value
 
   MPM_NS::Options declare();
 };
 
-/** Settings of pair_coeff for mpm/penalty, as they are in restart files. */
+/** Settings of pair_coeff for mpm/penalty, as in restart files. */
 struct MPMPenaltyCoeff {
   double modulus = 0.0;     ///< pressure units
-  double friction = 0.0;    ///< coefficient of Coulomb
-  double slip = 0.0;        ///< sliding velocity from which on friction is full
-  double damping = 0.0;     ///< share of critical damping of a contact
+  double friction = 0.0;    ///< Coulomb coefficient
+  double slip = 0.0;        ///< sliding velocity above which friction is full
+  double damping = 0.0;     ///< fraction of critical damping of a contact
   int64_t set = 0;          ///< given by pair_coeff
 
   MPM_NS::Options declare();
@@ -47,12 +47,11 @@ struct MPMPenaltyCoeff {
 
 /** Contact between points of different fields (fix mpm), whatever their lattices.
  *
- *  Points are spheres (2d: disks) as wide as the spacing of points that their present volume
- *  means. Where two overlap by delta, they repel each other along the line of their centers with
- *  F = E A delta/(r_i + r_j), A the face of the smaller one: aligned faces feel the pressure
- *  E delta/spacing, as of a layer of material of modulus E between the outermost points. With an axis of
- *  symmetry all of this is along the circle that is midway between the two.
- */
+ *  Points are spheres (2d: disks) whose diameter is the spacing of points according to their present volume.
+ *  Two spheres that overlap by delta repel each other along the line of their centers with F = E A delta/(r_i
+ *  + r_j), where A is the face of the smaller one. Aligned faces feel the pressure E delta/spacing, as if a
+ *  layer of material of modulus E were between the outermost points. With an axis of symmetry, all of this is
+ *  along the circle that is midway between the two. */
 class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
  public:
   PairMPMPenalty(class LAMMPS *);
@@ -79,16 +78,17 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
       return c.friction > 0.0;
     });
   }
-  /** Does it take energy between any types, by friction or damping? */
+  /** Does contact dissipate energy between any types, by friction or damping? */
   bool takes_energy() const
   {
     return has_friction() || std::any_of(coeffs.begin(), coeffs.end(), [](const auto &c) {
              return c.damping > 0.0;
            });
   }
-  /** At init(), after that of this style: what it takes is heat of the points, for fix mpm/heat. */
+  /** Call at init(), after that of this style: the dissipated energy becomes heat of the points, for fix
+   *  mpm/heat. */
   void make_heat() { heats = true; }
-  /** Power that a point of this rank gets by that, from the forces of the step. */
+  /** Power of this heat for a point of this rank, from the forces of the step. */
   double heating(int i) const { return i < (int) heat.size() ? heat[i] : 0.0; }
 
  private:
@@ -97,22 +97,22 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
   MPMPoints *points = nullptr;
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<MPMField *> fields;
-  std::vector<char> coupled;          // [field][field] same field, or left to fix mpm/contact
+  std::vector<char> coupled;          // [field][field] same field, or contact by fix mpm/contact
   std::vector<char> present;          // [field][type]
   std::vector<double> largest;        // [type] initial radius of the largest point
-  std::vector<double> most_volume;    // [type] of points before deformation
+  std::vector<double> most_volume;    // [type] largest volume of a point before deformation
   bool rings = false;                 // axisymmetric: x is the distance from the axis
-  bool damped = false;                // some coefficients need masses
-  bool look = true;                   // at what the neighbor list consists of
-  bool warned = false;                // that points outgrow their limit
-  bool warned_deep = false;           // that bodies penetrate each other
+  bool damped = false;                // do some coefficients need masses?
+  bool look = true;                   // must the content of the neighbor list be checked?
+  bool warned = false;                // of points that outgrow their limit
+  bool warned_deep = false;           // of bodies that penetrate each other
 
-  bool heats = false;    // is what is taken heat of the points?
+  bool heats = false;    // does dissipated energy become heat of the points?
 
   std::vector<double> radius, mass;          // current, [nmax]; mass with damping only
   std::vector<double> effusivity, heat;      // [nmax] with heat only; 0: does not conduct; power
-  std::vector<std::pair<int, int>> pairs;    // in reach of each other: of different fields
-  std::vector<int> near;                     // local points in them
+  std::vector<std::pair<int, int>> pairs;    // of points of different fields in reach of each other
+  std::vector<int> near;                     // local points in these pairs
 
   void allocate();
   void find_pairs();

@@ -31,13 +31,13 @@ namespace LAMMPS_NS {
 
 /** Settings of pair_style mpm/sheet. */
 struct MPMSheetOptions {
-  double distance = 0.0;    ///< of two sheets that touch
-  bool faces = false;       ///< do nodes touch triangles, in 2d lines, and not nodes?
+  double distance = 0.0;    ///< D, of two sheets that touch
+  bool faces = false;       ///< do nodes touch triangles (in 2d lines) instead of nodes?
 
   MPM_NS::Options declare();
 };
 
-/** Settings of pair_coeff for mpm/sheet, as they are in restart files. */
+/** Settings of pair_coeff for mpm/sheet, as in restart files. */
 struct MPMSheetCoeff {
   double stiffness = 0.0;    ///< force/distance
   double damping = 0.0;      ///< force/velocity
@@ -46,13 +46,15 @@ struct MPMSheetCoeff {
   MPM_NS::Options declare();
 };
 
-/** Contact of surfaces and lines (fix mpm/elements with thickness or section) that no lattice moves with themselves, with
- *  each other, and with any other atoms: two of them that are closer than a distance D repel each other with
- *  k (D - r), except for nodes of one body that are near each other along it (by a path shorter than 2 D without
- *  deformation). D must be large enough for the mesh that nodes cannot pass between those of another layer.
+/** Contact of surfaces and lines (fix mpm/elements with thickness or section) that no lattice moves: with
+ *  themselves, with each other, and with any other atoms. Two nodes or atoms that are closer than a distance
+ *  D repel each other with k (D - r), except for nodes of one body that are near each other along it (by a
+ *  path shorter than 2 D without deformation). D must be large enough for the mesh that nodes cannot pass
+ *  between those of another layer.
  *
- *  With faces, they touch triangles of a surface, in 2d its lines, in place of its nodes. A node has a side of each face that is close, which it keeps where
- *  it goes through: it is pushed back. */
+ *  With faces, nodes touch the triangles of a surface (in 2d its lines) instead of its nodes. A node has a
+ *  side of each face that is close. It keeps this side when it passes through the face, and is pushed
+ *  back. */
 class PairMPMSheet : public Pair, private MPMSheetOptions {
  public:
   PairMPMSheet(class LAMMPS *);
@@ -80,36 +82,36 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
     tagint low;    // ID of its first node
     std::unique_ptr<MPM_NS::NearNodes> nodes;
     std::vector<Face> faces;           // with the keyword faces, in the order of their lowest nodes
-    std::vector<std::size_t> first;    // of those of a node
+    std::vector<std::size_t> first;    // of the faces of a node
   };
   struct
-      FaceContact {    // of an atom with a face, or with an edge or a node that several have in common
+      FaceContact {    // of an atom with a face, or with an edge or a node that several faces share
     int atom, nnode, node[3];
     double weight[3];                    // of the nodes
-    double n[3];                         // direction in which the atom is pushed, of length one
-    double gap;                          // below zero: it is on the other side
+    double n[3];                         // unit vector along which the atom is pushed
+    double gap;                          // negative: the atom is on the other side
     double share, stiffness, damping;    // see ContactPart
   };
   struct SeenFace {
     int body, node[3];    // local indices
-    bigint number;        // two times the element, plus which half
+    bigint number;        // twice the element, plus which half
   };
-  struct Approach {    // of an atom of this rank and a face that can touch
+  struct Approach {    // of an atom of this rank and a face that can touch it
     int atom, face;
     MPM_NS::Passages::Sight
-        sight;    // side: that from which it is pushed; within: is it on the other one?
+        sight;    // side: from which the atom is pushed; within: is it on the other one?
     bool operator<(const Approach &other) const { return sight < other.sight; }
   };
 
   std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<Body> bodies;
-  std::vector<std::pair<int, int>> pairs;    // that can touch, of the present neighbor list
-  bool starting = true;    // before the first step of bodies that are not from a restart file
+  std::vector<std::pair<int, int>> pairs;    // that can touch, from the present neighbor list
+  bool starting = true;    // until the first step, for bodies that are not from a restart file
   bool warned_deep = false, warned_dt = false, warned_gap = false, warned_through = false,
        warned_lost = false;
   MPM_NS::Passages passages;
-  std::vector<SeenFace> seen;          // all of which this rank has the nodes
-  std::vector<Approach> approaches;    // those of an atom are next to each other
+  std::vector<SeenFace> seen;          // all faces of which this rank has the nodes
+  std::vector<Approach> approaches;    // sorted: those of an atom are next to each other
 
   void allocate();
   void find_bodies();

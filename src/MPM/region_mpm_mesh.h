@@ -46,19 +46,22 @@ class RegMPMMesh : public Region {
   int surface_interior(double *x, double cutoff) override { return touch(x, cutoff, -1.0); }
   int surface_exterior(double *x, double cutoff) override { return touch(x, cutoff, 1.0); }
 
+  /** The surface after scale, shift, and turn, but without the motion of the region. */
   const MPM_NS::SurfaceMesh &surface_mesh() const { return *mesh; }
 
-  /** Stops with an error if the surface is leaky: only inside() is known then. */
+  /** Stops with an error if the surface is leaky, because only inside() is known then. */
   void need_distance() const;
 
-  /** Signed distance of x from the surface where the region is now, negative in the region; the cutoff or minus the
-   *  cutoff farther away. along_z: how far the closest point is from x along z. It is what match() and surface() tell,
-   *  for a fraction of their time when places near each other are asked for one after the other. */
+  /** Signed distance of x from the present surface of the region, negative in the region; the cutoff or minus
+   *  the cutoff if it is greater. along_z: distance along z of the closest point from x. The result agrees
+   *  with match() and surface(), but takes a fraction of their time if places near each other are asked for
+   *  one after the other. */
   double distance(const double *x, double cutoff, double &along_z);
 
-  /** As distance() for places nearer to the surface than exact, linear in cells of this size farther away: then a search
-   *  is needed once for each cell, and not for each place. The value does not depend on what was asked before.
-   *  False where the closest point is along z of x (2d: another one of the section is meant). */
+  /** As distance() for places nearer to the surface than exact. Farther away, the distance is linear in cells
+   *  of this size, so that a search is needed only once per cell, and not for each place. The value does not
+   *  depend on earlier calls. Returns false if the closest point is along z of x (in 2d, the closest point of
+   *  the section is needed instead). */
   bool distance_by_cells(const double *x, double cutoff, double exact, double size,
                          double &distance);
 
@@ -69,10 +72,10 @@ class RegMPMMesh : public Region {
   using Cells = std::unordered_map<uint64_t, Linear>;    // keys: see distance_by_cells()
   std::unique_ptr<MPM_NS::SurfaceMesh> mesh;
   bool leaky = false;
-  bool placing = false;    // inside() is called only for its place, in the coordinates of the mesh
+  bool placing = false;    // inside() only stores its argument, in the coordinates of the mesh
   double place[3];
-  int last_closest = -1;            // triangle, see SurfaceMesh::distance_within()
-  std::map<double, Cells> cells;    // by their size
+  int last_closest = -1;            // index of a triangle, see SurfaceMesh::distance_within()
+  std::map<double, Cells> cells;    // by the size of the cells
 
   void report(const char *file) const;
   void find_place(const double *x);
