@@ -32,7 +32,7 @@ struct MPMAbsorbOptions {
   MPM_NS::Options declare();
 };
 
-/** Removes the material points of its group that are in a region at the end of a step, and counts what they take with them. */
+/** Removes the material points of its group that are in a region at the end of a step, and sums up their mass and other quantities. */
 class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
  public:
   FixMPMAbsorb(class LAMMPS *, int, char **);
@@ -47,10 +47,11 @@ class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
 
  private:
   Region *region = nullptr;
-  MPMTraffic total;     // that has gone, of all ranks
-  double heat = 0.0;    // of these, above the temperature that their material has at first [energy]
-  double rate = 0.0;    // mass per time since the last look
-  double waited = 0.0;    // time since then
+  MPMTraffic total;    // of all removed points, on all ranks
+  double heat =
+      0.0;    // of these points, relative to the initial temperature of their material [energy]
+  double rate = 0.0;      // removed mass per time since the last check
+  double waited = 0.0;    // time since the last check
 
   bool absorbs(int i) const;
   double heat_of(int i) const;
