@@ -107,8 +107,8 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   std::vector<char> inner;           // [node] result of has_fluid_around(); 0: not evaluated yet
   std::vector<char> used;            // [slot] does the block have sums?
   std::vector<int> slots;            // slots of these blocks
-  // [node][8] sums over the grains around a node, per mass of fluid: impulses of buoyancy [3], coefficient, impulses of
-  // drag [3]; then the volume of grains
+  // [node][8] sums over the grains around a node: impulses of buoyancy [3] and coefficient, shared by the mass of fluid;
+  // impulses of drag [3] per mass of fluid; share of space of grains
   std::vector<double> sums;
   double force_now[6] = {};    // impulses of drag [3] and buoyancy [3] on the grains of this rank
   int count = 0;
