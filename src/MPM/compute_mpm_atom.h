@@ -43,8 +43,7 @@ class ComputeMPMAtom : public Compute {
 
   struct Quantity;
 
-  std::string
-      owner;    ///< named in error messages in place of this compute, when it is internal to another style
+  std::string owner;    ///< style that errors name in place of this internal compute; empty: none
 
  private:
   struct Column {

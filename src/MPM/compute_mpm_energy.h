@@ -73,8 +73,7 @@ class ComputeMPMEnergy : public Compute {
   std::vector<double> entries;
   std::vector<double> start;        // Sums and accounts; empty: the ledger has not started
   std::vector<int> contributors;    // instance numbers of the fixes that keep a part of the sums
-  std::vector<std::string>
-      accounts;    // names for other physics, at the definition of this compute
+  std::vector<std::string> accounts;    // of other physics, when this was defined
 
   std::vector<double> evaluate() const;
   std::vector<std::string> find_accounts() const;

@@ -62,11 +62,9 @@ struct CreatePointsOptions {
 struct CreatePointsMeshOptions {
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
   std::string part;    ///< physical group of the mesh; empty: all of it
-  bool
-      by_type = false,
-      by_group =
-          false;    ///< the number of the physical group is the type; points join a group of its name
-  MPMMeshFields::Data one;                     ///< the entry that was read last
+  bool by_type = false,
+       by_group = false;      ///< type is the number of the physical group; joins its name
+  MPMMeshFields::Data one;    ///< the entry that was read last
   std::vector<MPMMeshFields::Data> data;       ///< data of the file that points get
   std::vector<MPMMeshFields::Data> factors;    ///< factors on data, by name
   MPMThinBody thin;                            ///< surfaces or lines, for points at nodes
@@ -99,15 +97,12 @@ class CreatePoints : public Command, private CreatePointsOptions {
     double x[3];
     double volume;
     tagint tag;
-    int type = 0;         // 0: the type of the command
-    double gray = 0.0;    // value of the image
-    imageint image =
-        NO_IMAGE;    // periodic image, of nodes of a mesh that were wrapped into the box
+    int type = 0;                 // 0: the type of the command
+    double gray = 0.0;            // value of the image
+    imageint image = NO_IMAGE;    // of nodes of a mesh, wrapped into the periodic box
   };
-  using Corners =
-      std::array<double,
-                 24>;    // corners of an element relative to its center, see transfer/cpdi.h
-  struct Range {         // consecutive sites along an axis
+  using Corners = std::array<double, 24>;    // relative to the center, see transfer/cpdi.h
+  struct Range {                             // consecutive sites along an axis
     bigint first = 0, n = 1;
     bigint end() const { return first + n; }
     bool contains(bigint s) const { return s >= first && s < end(); }

@@ -25,8 +25,8 @@ class LAMMPS;
 struct CreatePointsImageOptions {
   double pixel[3] = {0.0, 0.0, 0.0};    ///< size of a pixel; 0: as in the file
   double origin[3] = {0.0, 0.0, 0.0};
-  std::string axes
-      [3];    ///< signed axis of the box for columns, rows, slices; empty: as usual for the format
+  std::string
+      axes[3];    ///< axes of the box with signs for columns, rows, slices; empty: by format
   double threshold = 0.0;
   bool invert = false;
   std::vector<std::pair<double, std::string>> from;    ///< types, each from a gray value on

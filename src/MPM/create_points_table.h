@@ -33,8 +33,7 @@ struct CreatePointsTableOptions {
   bool new_ids = false;
   double diameter = 0.0;
   std::string group_id;
-  std::vector<std::array<std::string, 2>>
-      data;    ///< columns, and the quantities of points that they set
+  std::vector<std::array<std::string, 2>> data;    ///< columns, and what they set of points
   struct Factor {
     std::string column;
     double value = 1.0;

@@ -25,6 +25,7 @@ FixStyle(mpm/absorb,FixMPMAbsorb);
 namespace LAMMPS_NS {
 class Region;
 
+/** Keywords of fix mpm/absorb. */
 struct MPMAbsorbOptions {
   std::string region_id;
   int look_every = 1;
@@ -47,9 +48,8 @@ class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
 
  private:
   Region *region = nullptr;
-  MPMTraffic total;    // of all removed points, on all ranks
-  double heat =
-      0.0;    // of these points, relative to the initial temperature of their material [energy]
+  MPMTraffic total;       // of all removed points, on all ranks
+  double heat = 0.0;      // of these, above the initial temperature of their material [energy]
   double rate = 0.0;      // removed mass per time since the last check
   double waited = 0.0;    // time since the last check
 

@@ -24,6 +24,7 @@ FixStyle(mpm/airbag,FixMPMAirbag);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/airbag. */
 struct MPMAirbagOptions {
   std::string elements_id;
   MPM_NS::NumberOrVariable pressure;    ///< difference to the pressure outside

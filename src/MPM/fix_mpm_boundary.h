@@ -39,14 +39,14 @@ namespace LAMMPS_NS {
 class MPMField;
 class Region;
 
+/** Keywords of fix mpm/boundary. */
 struct MPMBoundaryOptions {
   enum Kind { STICK, SLIP, SEPARATE };
 
   Kind kind = STICK;
   double friction = 0.0;
-  MPM_NS::NumberOrVariable velocity[3],
-      rate;                        ///< velocity components, rate of rotation; not given: free
-  bool by_displacement = false;    ///< velocity[] holds displacements
+  MPM_NS::NumberOrVariable velocity[3], rate;    ///< components that are not given are free
+  bool by_displacement = false;                  ///< velocity[] holds displacements
   double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
   std::string field_id;                                             ///< empty: all fields
   MPMFrictionHeatOptions heat;
@@ -100,7 +100,7 @@ class FixMPMBoundary :
   bool is_region() const { return !region_id.empty(); }
   /** Do the walls have a velocity, now or later in the run? */
   bool moves() const;
-  /** Signed distance of x from the surface of the region, negative inside, at most far. Only during a run. */
+  /** Signed distance of x from the surface of the region, negative inside; far if it is larger. Only during a run. */
   double distance(const double *x, double far) const { return surface->distance(x, far); }
   /** Does this wall keep nodes of the field at the face xlo, an axis of symmetry, from moving along x? */
   bool holds_axis(const MPMField &) const;
@@ -137,10 +137,9 @@ class FixMPMBoundary :
 
   struct Face {    // a face of the box on the lattice of a field
     int axis;
-    int inward;    // direction from the face into the box along the axis: 1 or -1
-    int plane;     // index of its plane of nodes, or the nearest one
-    bool cut =
-        false;    // face lies between planes: its velocity is a sum over nweight nodes from first on
+    int inward;          // direction from the face into the box along the axis: 1 or -1
+    int plane;           // index of its plane of nodes, or the nearest one
+    bool cut = false;    // lies between planes: nweight nodes from first on make its velocity
     int first = 0, nweight = 0;
     double weight[4];
     MPMWallContact contact;    // of material that touches it
@@ -266,13 +265,11 @@ class FixMPMBoundary :
   };
   struct Wall {    // motion of the wall in a step: velocity = shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];
-    double before[3];    // shift in the last step
-    double gradient_before[3][3],
-        origin_before[3];    // at the end of that step, see at_end_of_step()
+    double before[3];                                  // shift in the last step
+    double gradient_before[3][3], origin_before[3];    // at its end, see at_end_of_step()
     bool uniform;
-    bool changes;    // may the velocity differ from that in the last step?
-    double turned[3][3],
-        moved[3];    // a node of the total frame at X is now at X + turned X + moved
+    bool changes;                     // may the velocity differ from that in the last step?
+    double turned[3][3], moved[3];    // nodes of the total frame at X are at X + turned X + moved
 
     void rotate(double angle, const double *axis, const double *center, double dt);
     void refer();
@@ -285,9 +282,8 @@ class FixMPMBoundary :
   struct Prescribed {    // velocity that a wall gives to nodes
     double V[3];
     double share[3];    // share of the change to V that nodes take
-    double limit
-        [3];    // bound of old velocities relative to the wall, where these are constrained, too
-    bool hold[3];    // are the old velocities constrained?
+    double limit[3];    // bound of constrained old velocities, relative to the wall
+    bool hold[3];       // are the old velocities constrained?
   };
   struct Past {     // state of previous steps, as kept in restart files, without padding
     double work;    // on the body, this rank's share; in files as energy, of all ranks
@@ -308,8 +304,7 @@ class FixMPMBoundary :
   Wall wall = {};                   // in this step
   Past past = {};
   bigint motion_step = -1;    // step for which the motion of the wall is known
-  double impulse[6] =
-      {};    // impulse on the body and its moment in the last step, this rank's share
+  double impulse[6] = {};     // on the body, and its moment, in the last step; this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
   bool placed = false;    // is past.region valid in this run?
@@ -327,8 +322,7 @@ class FixMPMBoundary :
     bool open;             // the material touches the wall, or may touch it in this step
     bool active = true;    // the material is held at the wall
     double gap = 0.0;      // between material and wall at the start of the step [distance]
-    double push = 0.0, base = 0.0,
-           force = 0.0;    // impulse, its part by wall motion; normal force N
+    double push = 0.0, base = 0.0, force = 0.0;    // impulse; part by motion of walls; N
     double slip[3] = {0.0, 0.0, 0.0}, rubs[3] = {0.0, 0.0, 0.0};    // slip s; friction force
     double dual[3] = {0.0, 0.0, 0.0};                               // w, see add_friction_change()
     explicit Touch(bool open) : open(open), active(open) {}
@@ -359,10 +353,9 @@ class FixMPMBoundary :
   double rub_share = 1.0;    // share of the friction that nodes get
   int rounds = 0;            // rounds of decisions in this step
   bool in_implicit_steps = false;
-  bool seeks = false;      // looks for material that comes to the wall in implicit steps
-  bool follows = false;    // a moving region holds material by lines in implicit steps
-  bool carrying =
-      false;    // the region is a grip for material inside, see fix_mpm_boundary_carry.cpp
+  bool seeks = false;       // looks for material that comes to the wall in implicit steps
+  bool follows = false;     // a moving region holds material by lines in implicit steps
+  bool carrying = false;    // a grip for the material inside, see fix_mpm_boundary_carry.cpp
   bool closes =
       false;    // lines that are held move to the wall now; else they are at rest relative to it
   std::vector<double> clear;    // [point][face] distance from the wall at the start of the step

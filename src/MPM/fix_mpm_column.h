@@ -35,10 +35,7 @@ class FixMPMColumn : public Fix, public MPMNodeAction {
   void post_force(int) override;
   double memory_usage() override;
 
-  Turn turn() const override
-  {
-    return PHASES;
-  }    // before walls, so that what shakes it sees the leveled motion
+  Turn turn() const override { return PHASES; }    // before walls, which may shake it
   void init_action() override;
   bool looks_beyond_points() const override { return false; }
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override { return false; }

@@ -43,6 +43,7 @@ namespace LAMMPS_NS {
 class FixMPMRefine;
 class MPMField;
 
+/** Keywords of fix mpm/contact. */
 struct MPMContactOptions {
   enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
   enum Normal { MASS, VOLUME, COLINEAR, LOGISTIC };
@@ -208,17 +209,16 @@ class FixMPMContact :
   };
   using LinesByKey = std::map<std::array<int, 6>, std::vector<int>>;    // indices of lines
   static constexpr int AROUND = 2;    // nodes of a line beyond those that both bodies reach
-  struct
-      Tie {    // two bodies at a line of nodes through their interface, with the lines that join it
-    int first, last;       // range in links
-    int a, b;              // indices in bodies
-    bool owned;            // does this rank count the tie in sums?
-    Key key;               // the same on all ranks
-    bool active;           // do the bodies touch?
-    bool sticks;           // by friction or law stick
-    int parted;            // number of releases in the step; with law stick: while it stuck
-    int changes;           // number of changes between sliding and sticking in the step
-    double n[3];           // mean normal from a to b
+  struct Tie {          // two bodies at a line of nodes through their interface, with joined lines
+    int first, last;    // range in links
+    int a, b;           // indices in bodies
+    bool owned;         // does this rank count the tie in sums?
+    Key key;            // the same on all ranks
+    bool active;        // do the bodies touch?
+    bool sticks;        // by friction or law stick
+    int parted;         // number of releases in the step; with law stick: while it stuck
+    int changes;        // number of changes between sliding and sticking in the step
+    double n[3];        // mean normal from a to b
     double along[2][3];    // unit vectors along the interface, or zero
     double gap;            // gap that is to be closed [distance]
     // diagonal of C P_w M^-1 C^T; rows of C are along the normals and, where the tie sticks, along the interface

@@ -28,6 +28,7 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 namespace LAMMPS_NS {
 class FixMPMColumn;
 
+/** Keywords of fix mpm/dashpot. */
 struct MPMDashpotOptions {
   enum Surface { REGION };
 

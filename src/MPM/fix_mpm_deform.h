@@ -23,6 +23,7 @@ FixStyle(mpm/deform,FixMPMDeform);
 namespace LAMMPS_NS {
 class MPMField;
 
+/** Keywords of fix mpm/deform. */
 struct MPMDeformOptions {
   enum Drive { HELD, ERATE, TRATE, STRAIN, STRESS };
   static constexpr int NPART = 6;    ///< xx yy zz xy xz yz

@@ -24,12 +24,11 @@ FixStyle(mpm/dt,FixMPMDt);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/dt. */
 struct MPMDtOptions {
-  double fraction = 0.0, grow = 1.05, dt_min = 0.0,
-         dt_max = 0.0;    ///< dt_min, dt_max: 0: no limit
+  double fraction = 0.0, grow = 1.05, dt_min = 0.0, dt_max = 0.0;    ///< dt_min, dt_max: 0 = none
   double strain = 0.0;    ///< largest change of volume in a step; 0: no limit
-  double grains =
-      0.0;    ///< largest step as a share of the duration of a collision of grains; 0: no limit
+  double grains = 0.0;    ///< largest share of a collision of grains in a step; 0: no limit
   double until = 0.0;     ///< elapsed time at which runs end; 0: none
   int look_every = 10;    ///< steps between checks of wave speeds
 

@@ -36,6 +36,7 @@ struct ElementRule;
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/elements. */
 struct MPMElementsOptions {
   std::string file, part;     ///< part: physical group of the mesh; empty: all of it
   bool fbar = false;          ///< average the volume over an element

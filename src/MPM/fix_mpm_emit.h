@@ -32,6 +32,7 @@ class MPMField;
 class MPMMouth;
 class Region;
 
+/** Keywords of fix mpm/emit. */
 struct MPMEmitOptions {
   std::string region_id;
   MPM_NS::NumberOrVariable velocity[3];    ///< of the material, relative to the mouth
@@ -96,9 +97,8 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
 
   // state in restart files, together with that of the mouth
   struct {
-    double travel =
-        0.0;    // distance that the flow has traveled so far, from the length of the mouth on
-    double shift[3] = {0.0, 0.0, 0.0};        // displacement of the mouth since the start
+    double travel = 0.0;                  // distance that the flow has traveled so far, see above
+    double shift[3] = {0.0, 0.0, 0.0};    // displacement of the mouth since the start
     double direction[3] = {0.0, 0.0, 0.0};    // of the flow
     double layers = 0.0;                      // number of layers that have entered
     double started = 0.0;
@@ -110,10 +110,9 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   } past;
   static constexpr int NREAL = 15 + MPMTraffic::NREAL;
 
-  double flow[3] = {0.0, 0.0, 0.0},
-         drift[3] = {0.0, 0.0, 0.0};    // velocities of material and mouth in this step
-  double speed = 0.0;                   // along the flow, relative to the mouth
-  bigint motion_step = -1;              // step for which these are known
+  double flow[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};    // of material, of mouth
+  double speed = 0.0;                                    // along the flow, relative to the mouth
+  bigint motion_step = -1;                               // step for which these are known
   double impulse[3] = {0.0, 0.0, 0.0}, dt_last = 0.0;    // on the material in the last step
   std::vector<int64_t> nodes;                            // nodes of the mouth, which are held
 

@@ -25,6 +25,7 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 namespace LAMMPS_NS {
 class MPMField;
 
+/** Keywords of fix mpm/handshake. */
 struct MPMHandshakeOptions {
   /** A zone in which the weight of the atoms falls linearly from 1 to 0 between two planes. */
   struct Zone {
@@ -71,13 +72,7 @@ class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHan
   void act(double dt, Stage) override;
 
  private:
-  enum Role {
-    UNKNOWN,
-    APART,
-    COUPLED,
-    POINT,
-    NEAR_POINT
-  };    // NEAR_POINT: reaches nodes of the zone
+  enum Role { UNKNOWN, APART, COUPLED, POINT, NEAR_POINT };    // NEAR_POINT: near nodes of the zone
 
   /** Pair style eam, if it is used. */
   struct Embedded {

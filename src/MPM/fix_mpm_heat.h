@@ -34,6 +34,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/heat. */
 struct MPMHeatOptions {
   MPMHeatCondition conditions[MPMHeatFaces::NFACE];
   MPMHeatSurfaces::Conditions surfaces;
@@ -96,9 +97,8 @@ class FixMPMHeat :
  private:
   using Heats = MPMConduction::Heats;
 
-  MPMRows
-      gradients;    // [n][dim] gradients of the temperature at points; not with transfer pic and xpic
-  MPMRows waiting;    // [n][1] heat that points got from grains, see MPMGrainHeat
+  MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic and xpic
+  MPMRows waiting;      // [n][1] heat that points got from grains, see MPMGrainHeat
   std::unique_ptr<MPMGrainHeat> grain_heat;    // null: not requested
   MPMRows rubbing;    // [n][1] power that points get by pair style mpm/penalty in the next step
   std::vector<double> rubbed;                        // [n] heat by this power

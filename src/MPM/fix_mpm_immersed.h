@@ -27,10 +27,10 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 namespace LAMMPS_NS {
 class MPMField;
 
+/** Keywords of fix mpm/immersed. */
 struct MPMImmersedOptions {
   std::string field_id;
-  double density = 0.0,
-         viscosity = 0.0;    ///< viscosity: read in units of pressure, kept in units of mass
+  double density = 0.0, viscosity = 0.0;    ///< viscosity: read as pressure, kept as mass
   MPM_NS::SphereDrag::Law law = MPM_NS::SphereDrag::GIDASPOW;
   double gravity[3] = {0.0, 0.0, 0.0};
   bool displace = false;    ///< grains displace fluid: it has no mass where grains are

@@ -70,7 +70,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
       {};    // static: kinetic energy taken from points, and work in a step; this rank's share [energy]
   double at_start[NTOTAL] = {};    // total[] at the start of this run
   double seconds = 0.0;            // time spent in the solver in this run
-  bool told_of_turns = false;      // was the warning of tell_of_turns() printed?
+  bool told_of_turns = false;      // was it reported that rotated bodies yield with stress mls?
 
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;

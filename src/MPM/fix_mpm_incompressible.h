@@ -41,6 +41,7 @@ class MPMFlowTension;
 class MPMFlowViscosity;
 struct MPMFlowPoints;
 
+/** Keywords of fix mpm/incompressible. */
 struct MPMIncompressibleOptions {
   enum Transfer { AUTO, APIC, FLIP, AFLIP, PIC };
 
@@ -51,11 +52,10 @@ struct MPMIncompressibleOptions {
   double angle = 90.0;    ///< contact angle between surfaces and walls [degrees]
   Transfer transfer = AUTO;
   bool transfer_is_given = false;
-  double flip = 0.0;    ///< share of FLIP; with AUTO, the share in this step
-  double reflect =
-      0.0;               ///< share of the velocity change by the pressure that is applied once more
-  bool sharp = false;    ///< sharp paths of points, see find_paths()
-  double spread = 0.5;    ///< share of an excess of points that spreads in a step
+  double flip = 0.0;       ///< share of FLIP; with AUTO, the share in this step
+  double reflect = 0.0;    ///< share of the change by the pressure that is applied again
+  bool sharp = false;      ///< sharp paths of points, see find_paths()
+  double spread = 0.5;     ///< share of an excess of points that spreads in a step
   double tolerance = 1.0e-9;
   int most_iterations = 10000;
   int64_t most_parts = 64;    ///< most parts of a step if implicit viscosity does not converge

@@ -57,7 +57,7 @@ class FixMPMMaterial : public FixMPMState {
   int find_history(const std::string &) const;
 
   bool mass_varies = false;    ///< the mass of points changes with the water in their pores
-  bool watching;               ///< is there a range of validity that no report was made of yet?
+  bool watching;               ///< is there a range of validity whose exit was not reported yet?
 
   /** Checks whether points of an updated batch have left a range of validity. first: local index of
    *  its first point. */

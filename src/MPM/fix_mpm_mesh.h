@@ -40,6 +40,7 @@ class FixMPMMeshHeat;
 struct MPMMeshBodies;
 struct MPMPoints;
 
+/** Keywords of fix mpm/mesh. */
 struct MPMMeshOptions {
   enum Transfer { FLIP, APIC };
 

@@ -28,6 +28,7 @@ namespace LAMMPS_NS {
 class MPMMeshRanks;
 struct MPMPoints;
 
+/** Keywords of fix mpm/mesh/contact. */
 struct MPMMeshContactOptions {
   enum Law { FRICTIONLESS, COULOMB, STICK };
 

@@ -39,6 +39,7 @@ struct MPMMeshHeatCondition {
   MPM_NS::NumberOrVariable value[2];
 };
 
+/** Keywords of fix mpm/mesh/heat. */
 struct MPMMeshHeatOptions {
   std::vector<MPMMeshHeatCondition> conditions;
 
@@ -95,8 +96,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   };
 
   std::string mesh_id;
-  MPMRows
-      gradients;    // [n][3] gradients of the temperature at points, in the reference configuration
+  MPMRows gradients;    // [n][3] of the temperature at points, in the reference configuration
   MPMPoints *points = nullptr;
   std::vector<Thermal> thermals;
   std::vector<OfNode> of_nodes;

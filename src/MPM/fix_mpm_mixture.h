@@ -29,12 +29,12 @@ FixStyle(mpm/mixture,FixMPMMixture);
 namespace LAMMPS_NS {
 class MPMField;
 
+/** Keywords of fix mpm/mixture. */
 struct MPMMixtureOptions {
   enum Drag { NO_DRAG, DARCY, SPHERES };
 
   std::string soil_id, water_id;
-  double grain_density = 0.0,
-         viscosity = 0.0;    ///< viscosity: read in units of pressure, kept in units of mass
+  double grain_density = 0.0, viscosity = 0.0;    ///< viscosity: read as pressure, kept as mass
   Drag drag = NO_DRAG;
   double permeability = 0.0;          ///< intrinsic [area]
   double reference_porosity = 0.0;    ///< porosity of that permeability; 0: it holds for any
@@ -54,11 +54,10 @@ struct MPMMixtureOptions {
 /** Shares of soil and water in the volume at a node, from the volumes there of the grains, of the soil with its pores,
  *  and of the water. */
 struct MPMMixtureShares {
-  double here;    ///< porosity
-  double
-      porosity;    ///< porosity of the soil itself; here may be larger or smaller at the end of the soil
-  double filled;     ///< share of the pores that is filled with water
-  double of_soil;    ///< share of the pressure that the soil bears
+  double here;        ///< porosity
+  double porosity;    ///< porosity of the soil itself, which differs at its end
+  double filled;      ///< share of the pores that is filled with water
+  double of_soil;     ///< share of the pressure that the soil bears
 
   MPMMixtureShares(double grains, double with_pores, double water);
 };
@@ -146,11 +145,9 @@ class FixMPMMixture :
   std::vector<Node> nodes;
   std::vector<Push> pushes;      // of this step
   std::vector<double> stress;    // [soil node][8] mean stress of the water in filled pores
-  std::vector<double> by_grains,
-      by_water;    // [node][8] forces by the water pressure in the volumes of grains and of water
-  std::vector<double> flux,
-      lead;                     // [node][8] U at nodes of the soil, U - u at nodes of the water
-  std::vector<double> rates;    // [n] div U at points of soil
+  std::vector<double> by_grains, by_water;    // [node][8] forces of the pressure in these volumes
+  std::vector<double> flux, lead;    // [node][8] U at nodes of soil, U - u at nodes of water
+  std::vector<double> rates;         // [n] div U at points of soil
   bool lists_valid = false;
   bool boxes_meet = false;    // do the boxes around both phases overlap?
   bool may_meet = false;      // do both have a block in common on any rank?

@@ -24,15 +24,15 @@ FixStyle(mpm/pml,FixMPMPML);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/pml. */
 struct MPMPMLOptions {
   static constexpr int NFACE = 6;
 
-  int cells[NFACE] = {0, 0, 0,
-                      0, 0, 0};    ///< thickness of the layer at each face of the box, xlo ... zhi
-  double reflection = 1.0e-4;      ///< reflected share of the amplitude of a wave along the normal
-  double exponent = 2.0;           ///< exponent of the depth in the profile of damping
-  double speed = 0.0;              ///< wave speed; 0: of the fastest wave in the layers
-  double mix = 0.0;                ///< share of the damping of an axis that is added to other axes
+  int cells[NFACE] = {0, 0, 0, 0, 0, 0};    ///< of the layer at each face of the box, xlo ... zhi
+  double reflection = 1.0e-4;    ///< reflected share of the amplitude of a wave along the normal
+  double exponent = 2.0;         ///< exponent of the depth in the profile of damping
+  double speed = 0.0;            ///< wave speed; 0: of the fastest wave in the layers
+  double mix = 0.0;              ///< share of the damping of an axis that is added to other axes
 
   MPM_NS::Options declare(int dimension);
 };
@@ -70,9 +70,8 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
     DAMPING,              // along each axis [1/time]
     TAU = DAMPING + 3,    // Kirchhoff stress at the start
     START = TAU + 6,      // position at the start, without periodic images
-    G = START +
-        3,    // displacement gradient in stretched coordinates, in the layout of velocity gradients
-    SUM = G + 9,    // integral of the change of stress over time, half a step ago
+    G = START + 3,        // displacement gradient in stretched coordinates, like velocity gradients
+    SUM = G + 9,          // integral of the change of stress over time, half a step ago
     WIDTH_2D = SUM + 6,
     SUM_OF_SUM = WIDTH_2D,    // integral of SUM over time
     WAY = SUM_OF_SUM + 6,     // integral of the displacement, half a step ago

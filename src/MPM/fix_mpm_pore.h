@@ -31,6 +31,7 @@ FixStyle(mpm/pore,FixMPMPore);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/pore. */
 struct MPMPoreOptions {
   enum Formulation { U_P, U_V_P };
 
@@ -139,10 +140,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   bool gradients_known = true;    // false until gradients of given pressures are found
   struct {
     double steps = 0.0, time = 0.0;
-  } waited;                 // steps and time since the last flow
-  double crossing = 0.0;    // time for waves by the stiffness of the water to cross a cell
-  bool coarse =
-      false;    // are points so far apart that they can be as stiff as the lattice can be?
+  } waited;                     // steps and time since the last flow
+  double crossing = 0.0;        // time for waves by the stiffness of the water to cross a cell
+  bool coarse = false;          // can sparse points be as stiff as the lattice can be?
   bool step_flows = true;       // does water flow in this step?
   bool shut_known = false;      // was a warning printed about shut pores?
   bool long_known = false;      // was a warning printed about flows that take too much at once?
@@ -183,8 +183,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
 
   // greatest rates of the last step on all ranks [1/time], so that a run in two parts takes the steps of one
   double conducted = 0.0, exchanged = 0.0;
-  double thinned = std::numeric_limits<
-      double>::max();    // see find_thin_layers(); largest number: not yet known
+  double thinned = std::numeric_limits<double>::max();    // see find_thin_layers(); max(): unknown
   bool rates_known = false;
 
   bool is_implicit = false;                    // is the pressure solved for with the motion?

@@ -24,6 +24,7 @@ FixStyle(mpm/record,FixMPMRecord);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/record. */
 struct MPMRecordOptions {
   double start = 0.0;
   bool hold = true;

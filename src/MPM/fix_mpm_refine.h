@@ -55,10 +55,7 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
 
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
-  bool looks_beyond_points() const override
-  {
-    return true;
-  }    // looks at parents of nodes in reach
+  bool looks_beyond_points() const override { return true; }    // parents of nodes in reach
 
   Turn turn() const override { return TIED_NODES; }
   void init_action() override;

@@ -21,8 +21,9 @@ FixStyle(mpm/relax,FixMPMRelax);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/relax. */
 struct MPMRelaxOptions {
-  double tolerance = 0.0;    ///< for the ratio of unbalanced to total forces
+  double tolerance = 0.0;    ///< for the ratio of unbalanced to carried forces
   int64_t look_every = 10;
   bool stops = true;
 
@@ -66,7 +67,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   double carried = 0.0;       // sum of forces on nodes by the stress of points [force]
   double ratio = 0.0;         // unbalanced over carried; UNKNOWN before the first check
   double nrests = 0.0;        // number of times that velocities were set to zero
-  double nsteps = 0.0;        // number of steps
+  double nsteps = 0.0;        // number of steps so far
   double rested = 0.0;        // value of nsteps at the last rest
   double interval = 0.0;      // steps between the last two rests
   double peak = 0.0;          // kinetic energy before it fell in this step; 0: it did not fall
@@ -77,7 +78,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   bool falls = false;    // does the kinetic energy fall in this step?
   std::vector<MPMField *> fields;
   bool may_start_by_half = false;
-  bool told_of_turns = false;    // was the warning of tell_of_turns() printed?
+  bool told_of_turns = false;    // was it reported that rotated bodies yield with stress mls?
 
   void look();
   void rest();

@@ -35,11 +35,10 @@ class MPMField;
 
 /** State of a rigid body, as kept in restart files. */
 struct MPMRigidMotion {
-  double x[3], v[3], L[3];    ///< center, its velocity, angular momentum
-  double Q[3][3];             ///< rotation from the frame of the mesh to space
-  double omega[3];            ///< angular velocity
-  double impulse[6],
-      dt_last;    ///< impulse and moment of the material on the body in the last step; its duration
+  double x[3], v[3], L[3];       ///< center, its velocity, angular momentum
+  double Q[3][3];                ///< rotation from the frame of the mesh to space
+  double omega[3];               ///< angular velocity
+  double impulse[6], dt_last;    ///< of the material on the body in the last step
 };
 
 /** Options; v and omega of MPMRigidMotion are the initial values. */
@@ -54,9 +53,8 @@ struct MPMRigidOptions : MPMRigidMotion {
   Kind kind = STICK;
   double friction = 0.0;
   double gravity[3] = {0.0, 0.0, 0.0};
-  MPM_NS::NumberOrVariable load[3], moment[3];    ///< force and torque
-  bool fixed[6] = {false, false, false, false,
-                   false, false};    ///< components of velocity and angular velocity that stay zero
+  MPM_NS::NumberOrVariable load[3], moment[3];                   ///< force and torque
+  bool fixed[6] = {false, false, false, false, false, false};    ///< velocities that stay zero
   MPMFrictionHeatOptions heat;
 
   MPM_NS::Options declare();
@@ -85,7 +83,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
   bool decides_contact(const MPMField &) const override { return kind == SEPARATE; }
   void act(double dt, Stage) override;
 
-  /** Signed distance of x from the surface, negative inside, at most far. Not for bodies in a flow. */
+  /** Signed distance of x from the surface, negative inside; far if it is larger. Not for bodies in a flow. */
   double distance(const double *x, double far) const;
   /** Largest time step in which no point of the body crosses a cell. */
   double stable_dt() const;
