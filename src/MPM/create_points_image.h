@@ -44,7 +44,9 @@ struct CreatePointsImageOptions {
   };
   std::vector<Field> fields;
 
+  /** Adds these keywords to others. */
   void add_to(MPM_NS::Options &, int dimension);
+  /** Checks of their values. */
   MPM_NS::OptionRules rules() const;
   /** The keywords of this struct alone, for the manual. */
   MPM_NS::Options declare(int dimension);

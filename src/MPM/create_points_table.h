@@ -65,6 +65,7 @@ class CreatePointsTable : protected Pointers {
 
   /** Points and values [n][width()] of the rows first to first + n - 1, on all ranks. Collective. */
   void rows(bigint first, int n, std::vector<Point> &, std::vector<double> &) const;
+  /** Number of columns. */
   int width() const { return ncolumn; }
 
  private:

@@ -97,6 +97,7 @@ class FixMPMBoundary :
 
   bool loses_heat() const override { return friction > 0.0 && !heat.said; }
   bool gives_heat() const override { return heat.heats(); }
+  /** Is the wall a region? Otherwise it is one or more faces of the box. */
   bool is_region() const { return !region_id.empty(); }
   /** Do the walls have a velocity, now or later in the run? */
   bool moves() const;
@@ -115,6 +116,7 @@ class FixMPMBoundary :
     std::vector<int> mirrored;    // [3*node+d] index in mirrors + 1, negative for an image; 0: none
     std::vector<Mirror> mirrors;
 
+    /** Empties all lists, for this number of nodes. */
     void reset(int64_t nnodes);
   };
   /** Corrects the impulse that the wall counted for a node when it acted in this step: adds push, an impulse on

@@ -59,10 +59,13 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
 
   // for flows
 
+  /** ID of the fix of the fluid. */
   const std::string &fluid() const { return field_id; }
   double fluid_density() const { return density; }
   const double *acceleration_of_gravity() const { return gravity; }
+  /** Do grains displace fluid? */
   bool displaces() const { return displace; }
+  /** Is this local atom a grain in the fluid? */
   bool is_grain(int i) const;
   double volume(int i) const;    ///< in 2d per unit of depth
   /** Number of steps for which forces still act on a grain before it moves. mass: of the grain; infinite: held. */

@@ -117,6 +117,7 @@ class FixMPMIncompressible :
   double stable_dt(tagint &tag) const override;
   /** Node spacing of this flow if the region is solid for it, else 0. */
   double spacing_around(const std::string &region) const;
+  /** Node spacing. */
   double spacing() const { return h; }
   MPMFlowSolids *solids_of() const { return solids.get(); }    ///< null: none
   double density_of_fluid() const { return density; }

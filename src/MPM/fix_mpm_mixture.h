@@ -59,6 +59,7 @@ struct MPMMixtureShares {
   double filled;      ///< share of the pores that is filled with water
   double of_soil;     ///< share of the pressure that the soil bears
 
+  /** Volumes at a node. */
   MPMMixtureShares(double grains, double with_pores, double water);
 };
 
