@@ -110,7 +110,7 @@ class FixMPMBoundary :
   struct Foreseen {
     struct Mirror {              // a node and its images
       double mass;               // sum over all of these nodes
-      double wall[3], odd[3];    // velocity of the wall; velocity of the node relative to it
+      double wall[3], odd[3];    // velocity of the wall; odd part of velocities relative to it
     };
     std::vector<double> held;     // [3*node+d] velocities of nodes that are held
     std::vector<int> mirrored;    // [3*node+d] index in mirrors + 1, negative for an image; 0: none

@@ -44,7 +44,7 @@ struct MPMImmersedOptions {
 class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // fix mpm calls this
+  int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   void setup(int) override;
   double compute_scalar() override;

@@ -54,7 +54,7 @@ struct MPMMeshBodies {
 class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
  public:
   FixMPMMeshContact(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // fix mpm/mesh calls this
+  int setmask() override { return 0; }    // called by fix mpm/mesh
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;

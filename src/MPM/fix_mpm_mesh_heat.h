@@ -53,7 +53,7 @@ struct MPMMeshHeatOptions {
 class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
  public:
   FixMPMMeshHeat(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // fix mpm/mesh calls this
+  int setmask() override { return 0; }    // called by fix mpm/mesh
   void init() override;
   double compute_scalar() override;
   double compute_vector(int) override;

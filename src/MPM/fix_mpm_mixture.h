@@ -72,7 +72,7 @@ class FixMPMMixture :
     private MPMMixtureOptions {
  public:
   FixMPMMixture(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // fix mpm calls this
+  int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   double compute_scalar() override;
   double compute_vector(int) override;

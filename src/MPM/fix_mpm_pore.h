@@ -68,7 +68,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
  public:
   FixMPMPore(class LAMMPS *, int, char **);
   ~FixMPMPore() override;
-  int setmask() override { return 0; }    // fix mpm calls this
+  int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   void post_run() override;
   double compute_scalar() override;
@@ -146,7 +146,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   bool step_flows = true;       // does water flow in this step?
   bool shut_known = false;      // was a warning printed about shut pores?
   bool long_known = false;      // was a warning printed about flows that take too much at once?
-  bool grains_known = false;    // was a warning printed about grains that do not fit their soil?
+  bool grains_known = false;    // was check_grains() done?
   double smoothed =
       0.0;    // lost share of pressures that vary over some cells, see MPMPore::Smoothing, in these runs
   bool smooth_known = false;    // was a warning printed about it?

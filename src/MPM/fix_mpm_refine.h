@@ -34,7 +34,7 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
  public:
   FixMPMRefine(class LAMMPS *, int, char **);
   ~FixMPMRefine() override;
-  int setmask() override { return 0; }    // fix mpm calls this
+  int setmask() override { return 0; }    // called by fix mpm
   void post_run() override;
 
   /** Fields of this body that are finer than the one with this name (ID); empty if that field is not part of the body. */

@@ -70,7 +70,7 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
  public:
   Turn turn() const override { return RIGID_BODIES; }
   FixMPMRigid(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // fix mpm calls this
+  int setmask() override { return 0; }    // called by fix mpm
   bool loses_heat() const override { return friction > 0.0 && !heat.said; }
   bool gives_heat() const override { return heat.heats(); }
   void init() override;
