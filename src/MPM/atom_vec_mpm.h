@@ -20,11 +20,11 @@ AtomStyle(mpm,AtomVecMPM);
 namespace LAMMPS_NS {
 struct MPMPoints;
 
-/** Material points: mass, initial volume, deformation gradient and stress.
+/** Atom style mpm: material points with mass, initial volume, deformation gradient, and stress.
  *
- *  Atoms with initial volume 0 are no material points (grains, MD atoms, ...) and keep the mass
- *  that their own style gives them. The data file has a mass density and the initial volume;
- *  in a hybrid with a sphere style that density column is shared.
+ *  Atoms with initial volume 0 (grains, MD atoms, ...) are not material points and keep the mass
+ *  that their own style gives them. The data file has columns for the mass density and the initial
+ *  volume; in a hybrid with a sphere style, both styles share the density column.
  */
 class AtomVecMPM : public AtomVec {
  public:
@@ -50,7 +50,7 @@ class AtomVecMPM : public AtomVec {
   double memory_usage_bonus() override;
 
  private:
-  MPMPoints *points;    // never owned: several styles and Atoms may refer to the same arrays
+  MPMPoints *points;    // not owned: several styles and Atoms may refer to the same arrays
   double *rmass = nullptr, *vfrac = nullptr, *radius = nullptr;
   bool after_sphere = false;    // a sphere style converts density to mass before this style does
   double rmass_one;

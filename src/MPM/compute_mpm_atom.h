@@ -24,10 +24,10 @@ namespace LAMMPS_NS {
 class MPMPhysics;
 struct MPMPoints;
 
-/** Quantities of material points by name: one column for each name, 0 for other atoms.
+/** Quantities of material points by name: one column per name, 0 for other atoms.
  *
- *  The names are those of the table in compute_mpm_atom.cpp, those of other physics, and the history variables of
- *  the materials. A name that is not in the table is taken for a history variable until init(),
+ *  A name is in the table of compute_mpm_atom.cpp, or it is a quantity of other physics, or a
+ *  history variable of a material. A name that is not in the table is checked only in init(),
  *  because materials may be defined later than this compute.
  */
 class ComputeMPMAtom : public Compute {
@@ -38,19 +38,19 @@ class ComputeMPMAtom : public Compute {
   void compute_peratom() override;
   double memory_usage() override;
 
-  /** The names that a wildcard (stress/<star>) stands for, or the name itself. */
+  /** Names that a wildcard such as stress/<star> stands for, or only the name itself. */
   static std::vector<std::string> expand(const std::string &name);
 
   struct Quantity;
 
-  std::string owner;    ///< what errors name in place of this compute, if it is a part of that
+  std::string owner;    ///< style that errors name in place of this internal compute; empty: none
 
  private:
   struct Column {
     std::string name;
-    const Quantity *quantity;               // null: history variable, or one of other physics
+    const Quantity *quantity;               // null: history variable, or quantity of other physics
     int component;                          // of the quantity
-    const MPMPhysics *physics = nullptr;    // which has it
+    const MPMPhysics *physics = nullptr;    // that has the quantity; null: none
   };
 
   MPMPoints *points;

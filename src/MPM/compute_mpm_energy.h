@@ -26,11 +26,11 @@ namespace LAMMPS_NS {
 /** Energy ledger of all material points.
  *
  *  The balance is (kinetic + stored + plastic + viscous + fracture) - (the same at the start) =
- *  external + boundary + contact + transfer + integration + deleted + residual. What other physics
- *  (MPMPhysics) store and get adds to the two sides. Internal work is what the
- *  internal forces take from the kinetic energy; what of it is neither stored nor dissipated by
- *  the law is the error of time integration. The residual closes the balance of the stages of
- *  fix mpm and must be round-off.
+ *  external + boundary + contact + transfer + integration + deleted + residual. The accounts of
+ *  other physics (MPMPhysics) add to the left side (stored) and to the right side (received).
+ *  Internal work is the energy that internal forces take from the kinetic energy. The part of it
+ *  that the law neither stores nor dissipates is the error of time integration. The residual
+ *  closes the balance of the stages of fix mpm and must be round-off.
  */
 class ComputeMPMEnergy : public Compute {
  public:
@@ -40,29 +40,29 @@ class ComputeMPMEnergy : public Compute {
   double compute_scalar() override;
   void compute_vector() override;
 
-  /** What the ledger started from, for restart files; empty before it has started. */
+  /** Sums and accounts at the start of the ledger, for restart files; empty before the start. */
   const std::vector<double> &start_sums() const { return start; }
 
  private:
   enum Entry {
     KINETIC,        // of the points
-    STORED,         // sum of V0 times stored energy
+    STORED,         // sum over points of V0 times stored energy density
     PLASTIC,        // plastic work
     VISCOUS,        // viscous work, also of artificial viscosity
-    HEAT,           // part of plastic and viscous work that became heat
+    HEAT,           // part of the plastic and viscous work that became heat
     EXTERNAL,       // work of atom->f
     BOUNDARY,       // work of boundaries
-    CONTACT,        // work between fields
+    CONTACT,        // work of contact between fields
     TRANSFER,       // kinetic energy gained by transfers
     INTEGRATION,    // energy gained by time integration of the laws
-    RESIDUAL,       // what the balance misses
+    RESIDUAL,       // error of the balance
     FRACTURE,       // work spent on damage
-    DELETED,        // energy of points that were deleted, negative
-    LAWS,           // the part of INTEGRATION that laws have beyond the work of their stress
-    NENTRY          // those of other physics follow
+    DELETED,        // minus the energy of deleted points
+    LAWS,           // part of INTEGRATION: energy of the laws beyond the work of their stress
+    NENTRY          // entries of other physics follow
   };
 
-  /** What the entries are computed from, summed over ranks; the accounts of other physics follow. */
+  /** Sums over all ranks from which the entries follow; accounts of other physics come after it. */
   struct Sums : MPMPointEnergies {
     double external, boundary, contact, transfer, internal, stress_work;
     double deleted_kinetic, deleted_stored;
@@ -71,8 +71,8 @@ class ComputeMPMEnergy : public Compute {
   static constexpr std::size_t NSUMS = sizeof(Sums) / sizeof(double);
 
   std::vector<double> entries;
-  std::vector<double> start;            // Sums and accounts; empty: the ledger has not started
-  std::vector<int> contributors;        // fixes that keep a part of these, by their instance
+  std::vector<double> start;        // Sums and accounts; empty: the ledger has not started
+  std::vector<int> contributors;    // instance numbers of the fixes that keep a part of the sums
   std::vector<std::string> accounts;    // of other physics, when this was defined
 
   std::vector<double> evaluate() const;

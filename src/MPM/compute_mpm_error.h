@@ -22,7 +22,7 @@ ComputeStyle(mpm/error,ComputeMPMError);
 
 namespace LAMMPS_NS {
 
-/** Norms, over material points, of the difference between what they have and an exact solution. */
+/** Norms over material points of the difference between a quantity and its exact solution. */
 class ComputeMPMError : public Compute {
  public:
   ComputeMPMError(class LAMMPS *, int, char **);
@@ -36,13 +36,13 @@ class ComputeMPMError : public Compute {
 
   struct Value {      // a per-atom quantity
     int type;         // ArgInfo::X, V, COMPUTE, FIX, or VARIABLE
-    int component;    // of x, v; column of a compute or fix, 0: its vector
+    int component;    // of x or v; column of a compute or fix, 0: per-atom vector
     std::string id;
     int variable;
     int iarg;
   };
 
-  std::vector<Value> values;    // each with its exact solution behind it
+  std::vector<Value> values;    // each followed by its exact solution
   std::vector<double> computed, wanted, difference2, exact2;
   double norms[NVALUES] = {0.0};
 

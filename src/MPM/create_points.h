@@ -38,22 +38,24 @@ namespace LAMMPS_NS {
 struct CreatePointsOptions {
   static constexpr int MAX_PPC = 1000;
 
-  int ppc[3] = {0, 0, 0};    ///< 0: not given, 2
+  int ppc[3] = {0, 0, 0};    ///< points per cell along each axis; 0: not given, 2
   double spacing[3] = {0.0, 0.0, 0.0};
   std::string fix_id;
   double jitter = 0.0;
   int seed = 0;
   bool allow_overlap = false, ignore_outside = false;
-  double diameter = 0.0;    ///< 0: that of the volume
-  double share = 1.0;       ///< of the volume of its site that a point has
-  bool cut = false;         ///< points have the part of their cell that is in the region
-  int relax = 0;            ///< how many times points move to the centers of their cells
-  /** Equal-style variable: into how many points a site is divided along each axis; empty: it is one. And the variables of
-   *  style internal that have the place of the site then. */
+  double diameter = 0.0;    ///< for contact with grains; 0: edge length of the volume of the point
+  double share = 1.0;       ///< share of the volume of its site that a point gets
+  bool cut = false;         ///< points get the part of their cell that is in the region
+  int relax = 0;            ///< number of times that points move to the centers of their cells
+  /** split: equal-style variable with the number of points along each axis of a site; empty: one.
+   *  split_place: internal-style variables that are set to the position of the site for it. */
   std::string split, split_place[3];
-  std::string group_id;    ///< that the points join, empty: none
+  std::string group_id;    ///< group that the points join; empty: none
 
+  /** Adds these keywords to others. */
   void add_to(MPM_NS::Options &, int dimension);
+  /** Checks of their values. has_radius: points have a radius (atom_style hybrid sphere mpm). */
   MPM_NS::OptionRules rules(bool has_radius) const;
   MPM_NS::Options declare(int dimension, bool has_radius);
 };
@@ -61,26 +63,26 @@ struct CreatePointsOptions {
 /** Keywords of create_points for meshes. */
 struct CreatePointsMeshOptions {
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
-  std::string part;    ///< a physical group of the mesh, empty: all of it
+  std::string part;    ///< physical group of the mesh; empty: all of it
   bool by_type = false,
-       by_group = false;      ///< the group of a point is its type; joins a group of this name
-  MPMMeshFields::Data one;    ///< as read last
-  std::vector<MPMMeshFields::Data> data;       ///< what points get of the file
-  std::vector<MPMMeshFields::Data> factors;    ///< on data by their names
-  MPMThinBody thin;                            ///< surfaces or lines, for nodes
-  int halve = 0;                               ///< how many times elements are divided
+       by_group = false;      ///< type is the number of the physical group; joins its name
+  MPMMeshFields::Data one;    ///< the entry that was read last
+  std::vector<MPMMeshFields::Data> data;       ///< data of the file that points get
+  std::vector<MPMMeshFields::Data> factors;    ///< factors on data, by name
+  MPMThinBody thin;                            ///< surfaces or lines, for points at nodes
+  int halve = 0;                               ///< number of times that elements are divided
   double diameter = 0.0;
   std::string group_id;
 
   MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius, bool nodes);
 };
 
-/** Fills a region or the bodies of an image with material points on a regular lattice of sites, or puts them at the
- *  nodes of a mesh, or makes one for each of its elements.
+/** Command create_points: fills a region or the bodies of an image with material points on a regular
+ *  lattice of sites, or makes a point at each node or for each element of a mesh, or at each row of a table.
  *
  *  Sites are at origin + (s + 1/2) spacing for integer s. Their numbering, the test against the
- *  region, the jitter and the IDs are functions of the site alone; ranks take equal shares of the
- *  sites of a bounding box in turn and send the points to their owners. So every site is looked at
+ *  region, the jitter, and the IDs are functions of the site alone. Ranks take equal shares of the
+ *  sites of a bounding box in turn and send the points to their owners. So every site is visited
  *  exactly once, and the points do not depend on the number of ranks or the layout.
  */
 class CreatePoints : public Command, private CreatePointsOptions {
@@ -97,11 +99,11 @@ class CreatePoints : public Command, private CreatePointsOptions {
     double x[3];
     double volume;
     tagint tag;
-    int type = 0;                 // 0: that of all
+    int type = 0;                 // 0: the type of the command
     double gray = 0.0;            // value of the image
-    imageint image = NO_IMAGE;    // of the periodic box: of nodes of a mesh that was wrapped
+    imageint image = NO_IMAGE;    // of nodes of a mesh, wrapped into the periodic box
   };
-  using Corners = std::array<double, 24>;    // of an element from its center, see transfer/cpdi.h
+  using Corners = std::array<double, 24>;    // relative to the center, see transfer/cpdi.h
   struct Range {                             // consecutive sites along an axis
     bigint first = 0, n = 1;
     bigint end() const { return first + n; }
@@ -112,15 +114,15 @@ class CreatePoints : public Command, private CreatePointsOptions {
 
   int type;
   class Region *region = nullptr;    // null: the whole box
-  class MPMField *fix = nullptr;     // whose lattice the sites refer to; null: none
+  class MPMField *fix = nullptr;     // field whose lattice the sites refer to; null: none
   double origin[3];
 
   // derived
 
-  int group_bits = 0;    // that of keyword group
+  int group_bits = 0;    // bit of the group of keyword group
   double volume;         // of a point, or the mean of all
   Range box[3];          // sites in the simulation box
-  Range search[3];       // sites that can be in the region, also outside the box
+  Range search[3];       // sites that can be in the region, also outside of the box
   std::unique_ptr<class MPMRegionCut> region_cut;    // with keyword cut, else null
   int split_variable = -1;                           // index, -1: none
   int place_variable[3] = {-1, -1, -1};
@@ -128,18 +130,18 @@ class CreatePoints : public Command, private CreatePointsOptions {
 
   // of an image
 
-  struct Field {    // what gets scale * gray value + offset
+  struct Field {    // a quantity that is set to scale * gray value + offset
     double scale, offset;
   };
   std::unique_ptr<MPM_NS::ImageBody> image;    // null: none
   bool sites_on_pixels = false;
   std::vector<Field> fields;
-  std::unique_ptr<class MPMPointColumns> field_columns;    // what they are, null: there are none
-  std::vector<double> grays;                               // of the points made here, for fields
+  std::unique_ptr<class MPMPointColumns> field_columns;    // the quantities of fields; null: none
+  std::vector<double> grays;    // gray values of the points made here, for fields
 
-  std::vector<Site> mesh_sites;    // nodes of a mesh, or its elements,
-  std::vector<Corners> corners;    // and the domains of these; at last those of the points here
-  std::unique_ptr<class MPMMeshFields> mesh_fields;    // of the points of a mesh, else null
+  std::vector<Site> mesh_sites;    // nodes or elements of a mesh
+  std::vector<Corners> corners;    // domains of elements; finally of the points of this rank
+  std::unique_ptr<class MPMMeshFields> mesh_fields;    // data of the points of a mesh, else null
 
   std::unique_ptr<class CreatePointsTable> table;    // null: none
   std::vector<double> table_rows;                    // of the points made here

@@ -9,7 +9,7 @@
 #ifndef LMP_CREATE_POINTS_IMAGE_H
 #define LMP_CREATE_POINTS_IMAGE_H
 
-// create_points TYPE image FILE: what the input says of an image, and the image on all ranks.
+// create_points TYPE image FILE: keywords for the image, and the image itself on all ranks.
 
 #include "declare/option.h"
 #include "image/body.h"
@@ -21,15 +21,15 @@
 namespace LAMMPS_NS {
 class LAMMPS;
 
-/** Keywords of create_points for images, besides those for regions. */
+/** Keywords of create_points for images, in addition to those for regions. */
 struct CreatePointsImageOptions {
-  double pixel[3] = {0.0, 0.0, 0.0};    ///< 0: as the file says
+  double pixel[3] = {0.0, 0.0, 0.0};    ///< size of a pixel; 0: as in the file
   double origin[3] = {0.0, 0.0, 0.0};
   std::string
-      axes[3];    ///< axis of the box with its sign for columns, rows, slices; empty: by format
+      axes[3];    ///< axes of the box with signs for columns, rows, slices; empty: by format
   double threshold = 0.0;
   bool invert = false;
-  std::vector<std::pair<double, std::string>> from;    ///< gray values and types
+  std::vector<std::pair<double, std::string>> from;    ///< types, each from a gray value on
   std::vector<std::pair<std::array<int, 3>, std::string>> colors;
   bool on_pixels = false;
   double smooth = 0.0;
@@ -44,9 +44,11 @@ struct CreatePointsImageOptions {
   };
   std::vector<Field> fields;
 
+  /** Adds these keywords to others. */
   void add_to(MPM_NS::Options &, int dimension);
+  /** Checks of their values. */
   MPM_NS::OptionRules rules() const;
-  /** These alone, for the manual. */
+  /** The keywords of this struct alone, for the manual. */
   MPM_NS::Options declare(int dimension);
 
  private:
@@ -56,8 +58,9 @@ struct CreatePointsImageOptions {
   std::string from_type, color_type;
 };
 
-/** Reads the image on rank 0, puts it to its place in the box, and sends what is in the box to all; stops with an error
- *  if something is wrong with it. type: of points; arg[2] is the name of the file. */
+/** Reads the image on rank 0, places it in the box, and sends the part in the box to all ranks.
+ *  Stops with an error if the image is not valid. type: of the points; file: its name, which is
+ *  arg[2] of the command. */
 std::unique_ptr<MPM_NS::ImageBody> read_image_body(LAMMPS *, const CreatePointsImageOptions &,
                                                    const MPM_NS::Options &, int type,
                                                    const char *file);

@@ -9,7 +9,7 @@
 #ifndef LMP_CREATE_POINTS_TABLE_H
 #define LMP_CREATE_POINTS_TABLE_H
 
-// create_points TYPE table FILE: what the input says of a table of points, and its rows.
+// create_points TYPE table FILE: keywords for the table, and its rows as points.
 
 #include "declare/option.h"
 #include "mpm_point_columns.h"
@@ -26,14 +26,14 @@ namespace LAMMPS_NS {
 
 /** Keywords of create_points for tables. */
 struct CreatePointsTableOptions {
-  std::string columns;    ///< their names, separated by commas; empty: the file has them
+  std::string columns;    ///< names of columns, separated by commas; empty: names in the file
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
-  double volume = 0.0;    ///< of each point, 0: a column has it
-  int part = 0;           ///< only rows of this type, 0: all
+  double volume = 0.0;    ///< of each point; 0: taken from a column
+  int part = 0;           ///< only rows of this type; 0: all rows
   bool new_ids = false;
   double diameter = 0.0;
   std::string group_id;
-  std::vector<std::array<std::string, 2>> data;    ///< columns, and what they are for points
+  std::vector<std::array<std::string, 2>> data;    ///< columns, and what they set of points
   struct Factor {
     std::string column;
     double value = 1.0;
@@ -47,24 +47,25 @@ struct CreatePointsTableOptions {
   Factor factor;
 };
 
-/** The points of a table: rank 0 has all of them, and the others what they are asked to make. */
+/** The points of a table: rank 0 keeps all of them and hands out rows to the other ranks. */
 class CreatePointsTable : protected Pointers {
  public:
-  /** type: of points that have none in the file. Reads and checks the file; stops with an error for what is wrong. */
+  /** Reads and checks the file; stops with an error if it is not valid. type: of points that have none in the file. */
   CreatePointsTable(LAMMPS *, const CreatePointsTableOptions &, int type, const char *file);
 
   struct Point {
     double x[3];      ///< in the box
     double volume;    ///< initial
-    bigint tag;       ///< of the file, 0: a new one
+    bigint tag;       ///< ID in the file; 0: a new ID
     int type;
-    imageint image;    ///< where the file has the point, from where it is in the box
+    imageint image;    ///< periodic image in which the file has the point
   };
   MPMPointColumns columns;
-  bigint npoint = 0;    ///< of all ranks
+  bigint npoint = 0;    ///< points on all ranks
 
-  /** Rows first to first + n - 1 for all ranks: their points, and their numbers, one row after the other. */
+  /** Points and values [n][width()] of the rows first to first + n - 1, on all ranks. Collective. */
   void rows(bigint first, int n, std::vector<Point> &, std::vector<double> &) const;
+  /** Number of columns. */
   int width() const { return ncolumn; }
 
  private:

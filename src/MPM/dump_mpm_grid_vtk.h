@@ -21,10 +21,10 @@ DumpStyle(mpm/grid/vtk,DumpMPMGridVTK);
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Node fields of one fix mpm at the nodes, as a VTK UnstructuredGrid of the cells in use.
+/** Node fields of one fix mpm, as a VTK UnstructuredGrid of the cells in use.
  *
- *  The lattice is block-sparse: a node is written when it has mass, a cell when all its nodes
- *  are. Every node comes from the one process that owns it, in order of its indices, so that the
+ *  The lattice is block-sparse: a node is written if it has mass, and a cell if all its nodes are
+ *  written. Each node comes from the process that owns it, in the order of indices, so that the
  *  file does not depend on the number of processes.
  */
 class DumpMPMGridVTK : public DumpVTKSeries<Dump> {
@@ -40,7 +40,7 @@ class DumpMPMGridVTK : public DumpVTKSeries<Dump> {
   void write_footer() override;
 
  private:
-  enum Column { INDEX = 0, VELOCITY = 3, MASS = 6, NCOLUMN };    // of a row, for a node
+  enum Column { INDEX = 0, VELOCITY = 3, MASS = 6, NCOLUMN };    // of the row of a node
 
   struct Quantity {
     std::string name;
@@ -51,7 +51,7 @@ class DumpMPMGridVTK : public DumpVTKSeries<Dump> {
   MPMField *field = nullptr;
   static const std::vector<Quantity> known;
   std::vector<Quantity> fields;
-  std::vector<double> rows;    // of this process, then of the present file
+  std::vector<double> rows;    // of this process, then of the whole file
 
   MPMField *find_field() const;
 };

@@ -22,12 +22,11 @@ DumpStyle(mpm/vtk,DumpMPMVTK);
 
 namespace LAMMPS_NS {
 
-/** Points as VTK PolyData for ParaView, one file per snapshot, or several and a list of these, and a list with
- *  the times.
+/** Points as VTK PolyData for ParaView: one file per snapshot, or several pieces with a list of them,
+ *  and a list of all snapshots with their times.
  *
- *  A dump custom with fields of more than one component. Names of compute mpm/atom become columns
- *  of an internal compute, so that selection of atoms, sorting, and communication are those of
- *  dump custom.
+ *  A dump custom whose fields may have several components. Names of compute mpm/atom become columns
+ *  of an internal compute, so that dump custom selects, sorts, and communicates the atoms.
  */
 class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
  public:
@@ -41,21 +40,21 @@ class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
   std::string listed_file() override;
 
  private:
-  /** An array of the file: columns of dump custom that are its components. */
+  /** An array of the file; its components are columns of dump custom. */
   struct Field {
     std::string name;
     std::vector<int> columns;
     bool integer;
   };
 
-  /** A dump custom command that delivers the fields. */
+  /** The dump custom command that delivers the fields. */
   struct Request {
     LAMMPS *lmp;
     std::vector<std::string> words;
     std::vector<char *> args;
     std::vector<Field> fields;
     Field position;
-    std::string compute;    // ID of the internal compute mpm/atom, empty: none
+    std::string compute;    // ID of the internal compute mpm/atom; empty: none
     std::unique_ptr<MPM_NS::ErrorWords> shown;    // until dump custom is made
 
     Request(LAMMPS *, int, char **);
@@ -70,8 +69,8 @@ class DumpMPMVTK : public DumpVTKSeries<DumpCustom> {
   MPM_NS::VTKFile vtk{"PolyData"};    // arrays: fields, position, connectivity, offsets
   bigint nwritten = 0;                // points of the present file
   std::vector<double> values;
-  int npiece = 1;    // files of a snapshot, with a % in the name
-  /** Lists of pieces that are to be deleted with the pieces, and the first piece of each. */
+  int npiece = 1;    // files per snapshot, with a % in the name
+  /** Lists of pieces, which are deleted together with the pieces, and the first piece of each. */
   std::vector<std::pair<std::string, std::string>> listed;
 
   void list_pieces();

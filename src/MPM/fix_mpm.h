@@ -23,16 +23,16 @@ namespace LAMMPS_NS {
 class MPMField;
 class MPMPlan;
 
-/** One velocity field on one lattice, which moves the material points of its group: what LAMMPS sees of
- *  an MPMField.
+/** Fix mpm: one velocity field on one lattice, which moves the material points of its group. It is the
+ *  interface of LAMMPS to an MPMField.
  *
- *  The whole step happens in initial_integrate(): there atom->f is complete whatever the order of
- *  fixes, and all state is on one time level at output. The first instance drives all of them.
+ *  The whole step is done in initial_integrate(): at this time atom->f is complete for any order of
+ *  fixes, and at output all state is on one time level. The first instance drives all of them.
  */
 class FixMPM : public FixMPMState {
  public:
   std::unique_ptr<MPMField> field;
-  bool rests_dry = false;    ///< has mpm_geostatic given points a stress without pore water?
+  bool rests_dry = false;    ///< did mpm_geostatic give points a stress without pore water?
 
   FixMPM(class LAMMPS *, int, char **);
   ~FixMPM() override;
@@ -54,10 +54,10 @@ class FixMPM : public FixMPMState {
   void restart(char *) override;
 
  private:
-  std::unique_ptr<MPMPlan> plan;    // in the driving instance
+  std::unique_ptr<MPMPlan> plan;    // only in the driving instance
   std::unique_ptr<class MPMContinuation> continuation;
 
-  bool no_torques = false;    // on atoms that are not in the neighbor lists
+  bool no_torques = false;    // torques of atoms outside of neighbor lists are zero already
 
   void check_fields() const;
   void check_include() const;

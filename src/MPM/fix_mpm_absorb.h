@@ -25,6 +25,7 @@ FixStyle(mpm/absorb,FixMPMAbsorb);
 namespace LAMMPS_NS {
 class Region;
 
+/** Keywords of fix mpm/absorb. */
 struct MPMAbsorbOptions {
   std::string region_id;
   int look_every = 1;
@@ -32,7 +33,7 @@ struct MPMAbsorbOptions {
   MPM_NS::Options declare();
 };
 
-/** Removes the material points of its group that are in a region at the end of a step, and counts what they take with them. */
+/** Removes the material points of its group that are in a region at the end of a step, and sums up their mass and other quantities. */
 class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
  public:
   FixMPMAbsorb(class LAMMPS *, int, char **);
@@ -47,10 +48,10 @@ class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
 
  private:
   Region *region = nullptr;
-  MPMTraffic total;     // that has gone, of all ranks
-  double heat = 0.0;    // of these, above the temperature that their material has at first [energy]
-  double rate = 0.0;    // mass per time since the last look
-  double waited = 0.0;    // time since then
+  MPMTraffic total;       // of all removed points, on all ranks
+  double heat = 0.0;      // of these, above the initial temperature of their material [energy]
+  double rate = 0.0;      // removed mass per time since the last check
+  double waited = 0.0;    // time since the last check
 
   bool absorbs(int i) const;
   double heat_of(int i) const;

@@ -24,20 +24,21 @@ FixStyle(mpm/airbag,FixMPMAirbag);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/airbag. */
 struct MPMAirbagOptions {
   std::string elements_id;
-  MPM_NS::NumberOrVariable pressure;    ///< above that outside
+  MPM_NS::NumberOrVariable pressure;    ///< difference to the pressure outside
   bool has_pressure = false, has_gas = false, has_inflow = false;
-  double p = 0.0, gamma = 1.4, outside = 0.0;    ///< of the gas at first, and outside
-  double temperature = 0.0, R = 0.0;             ///< of the gas at first, and outside; 0: not given
-  MPM_NS::NumberOrVariable inflow[2];            ///< mass per time, temperature
-  double vent = 0.0, coefficient = 1.0;          ///< area of holes, and their discharge coefficient
-  double opens = 0.0;    ///< pressure above that outside at which these open
+  double p = 0.0, gamma = 1.4, outside = 0.0;    ///< initial pressure, adiabatic exponent; outside
+  double temperature = 0.0, R = 0.0;       ///< of the initial gas and of that outside; 0: not given
+  MPM_NS::NumberOrVariable inflow[2];      ///< mass per time; temperature
+  double vent = 0.0, coefficient = 1.0;    ///< area of the vents, and their discharge coefficient
+  double opens = 0.0;    ///< difference to the pressure outside at which the vents open for good
 
   MPM_NS::Options declare();
 };
 
-/** Pressure on one side of a surface of fix mpm/elements: as given, or that of a gas in the closed bag which this is. */
+/** Pressure on one side of a surface of fix mpm/elements: a given one, or that of a gas if the surface is a closed bag. */
 class FixMPMAirbag : public Fix, private MPMAirbagOptions, private MPMElementsPressure {
  public:
   FixMPMAirbag(class LAMMPS *, int, char **);
@@ -51,12 +52,12 @@ class FixMPMAirbag : public Fix, private MPMAirbagOptions, private MPMElementsPr
  private:
   class FixMPMElements *elements = nullptr;
   MPM_NS::BagGas gas;
-  bool filled = false;           // has the gas a volume?
-  bool open = false;             // the vents
-  double over = 0.0;             // present pressure above that outside
+  bool filled = false;           // does the gas have a volume yet?
+  bool open = false;             // are the vents open?
+  double over = 0.0;             // present pressure minus that outside
   double volume = 0.0;           // present
   double area = 0.0;             // present
-  double in = 0.0, out = 0.0;    // mass that has come and gone
+  double in = 0.0, out = 0.0;    // mass that flowed in and out so far
 
   double on_surface(double volume, double area, bool starting) override;
   bool is_given() const override { return has_pressure; }

@@ -39,19 +39,20 @@ namespace LAMMPS_NS {
 class MPMField;
 class Region;
 
+/** Keywords of fix mpm/boundary. */
 struct MPMBoundaryOptions {
   enum Kind { STICK, SLIP, SEPARATE };
 
   Kind kind = STICK;
   double friction = 0.0;
-  MPM_NS::NumberOrVariable velocity[3], rate;    ///< of those not given, material is free
-  bool by_displacement = false;                  ///< what is in velocity is a displacement
+  MPM_NS::NumberOrVariable velocity[3], rate;    ///< components that are not given are free
+  bool by_displacement = false;                  ///< velocity[] holds displacements
   double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
   std::string field_id;                                             ///< empty: all fields
   MPMFrictionHeatOptions heat;
 
   bool all_given() const { return velocity[0].given && velocity[1].given && velocity[2].given; }
-  /** Does contact depend on the impulse? */
+  /** Does the impulse decide whether there is contact, or whether it slides? */
   bool decides() const { return kind == SEPARATE || friction > 0.0; }
   bool rotating() const { return axis[0] != 0.0 || axis[1] != 0.0 || axis[2] != 0.0; }
   MPM_NS::Options declare(int dimension);
@@ -59,8 +60,8 @@ struct MPMBoundaryOptions {
 
 /** Walls that act on the nodes of the fields: faces of the box, or a region.
  *
- *  A face mirrors: nodes beyond it are images of nodes inside. A region acts on each of the nodes
- *  inside it.
+ *  A face is a mirror: nodes beyond it are images of nodes inside of the box. A region acts on lines
+ *  of nodes through its surface, or on each of the nodes inside of it, see acts_across().
  */
 class FixMPMBoundary :
     public Fix,
@@ -96,71 +97,72 @@ class FixMPMBoundary :
 
   bool loses_heat() const override { return friction > 0.0 && !heat.said; }
   bool gives_heat() const override { return heat.heats(); }
+  /** Is the wall a region? Otherwise it is one or more faces of the box. */
   bool is_region() const { return !region_id.empty(); }
-  /** Have its walls a velocity, now or later? */
+  /** Do the walls have a velocity, now or later in the run? */
   bool moves() const;
-  /** Of a place from the surface of the region, negative inside; far where it is more. During a run. */
+  /** Signed distance of x from the surface of the region, negative inside; far if it is larger. Only during a run. */
   double distance(const double *x, double far) const { return surface->distance(x, far); }
-  /** Keeps the nodes of a field at the face xlo, an axis of symmetry, from moving along x. */
+  /** Does this wall keep nodes of the field at the face xlo, an axis of symmetry, from moving along x? */
   bool holds_axis(const MPMField &) const;
 
   /** Velocities that walls will give to nodes. */
   struct Foreseen {
     struct Mirror {              // a node and its images
-      double mass;               // of them all
-      double wall[3], odd[3];    // velocity of the wall, and that of the node, relative to it
+      double mass;               // sum over all of these nodes
+      double wall[3], odd[3];    // velocity of the wall; odd part of velocities relative to it
     };
-    std::vector<double> held;    // [3*node+d] of nodes that are held
-    std::vector<int>
-        mirrored;    // [3*node+d] place in mirrors from 1 on; negative: of an image; 0: none
+    std::vector<double> held;     // [3*node+d] velocities of nodes that are held
+    std::vector<int> mirrored;    // [3*node+d] index in mirrors + 1, negative for an image; 0: none
     std::vector<Mirror> mirrors;
 
+    /** Empties all lists, for this number of nodes. */
     void reset(int64_t nnodes);
   };
-  /** The wall bears another impulse of a node than what it has counted when it acted in this step: adds this one on
-   *  the body [mass velocity] to the reaction and its moment, and to the work, with the present velocities. */
+  /** Corrects the impulse that the wall counted for a node when it acted in this step: adds push, an impulse on
+   *  the body [mass velocity], to the reaction, its moment, and the work, with the present velocities. */
   void bear(MPMField &, int64_t node, const double *push);
 
-  /** Components of nodes of a field to which this wall gives its velocity, for good: sets bit d of
-   *  held[node], one entry for each node; where it mirrors a node outside, bit 3 + d. */
+  /** Marks the velocity components of nodes that this wall always prescribes: sets bit d of
+   *  held[node], with one entry per node, and bit 3 + d where the wall mirrors a node outside. */
   void mark_held(const MPMField &, std::vector<char> &held) const;
-  /** What this wall will make of the present velocities of nodes in blocks that are near. */
+  /** Finds the velocities that this wall will give to nodes, from their present velocities. near: [block]. */
   void foresee(MPMField &, const std::vector<char> &near, Foreseen &);
 
  private:
-  static constexpr int DEPTH = 3;    // nodes on either side of a mirror plane that are paired
-  // node spacings from which material may come to a wall in an implicit step, and those that have to be known then
+  static constexpr int DEPTH = 3;    // paired nodes on either side of a mirror plane
+  // node spacings: largest distance from which material may reach a wall in an implicit step; range of nodes needed for it
   static constexpr double COMES_FROM = 2.5;
   static constexpr int SOUGHT = 6;
   static constexpr double DEEPEST =
-      1.25;    // node spacings in a region where it is known what touches
+      1.25;    // depth in a region [node spacings] up to which contact is known
 
   struct Face {    // a face of the box on the lattice of a field
     int axis;
     int inward;          // direction from the face into the box along the axis: 1 or -1
     int plane;           // index of its plane of nodes, or the nearest one
-    bool cut = false;    // lies between planes: nweight nodes from first on make the velocity there
+    bool cut = false;    // lies between planes: nweight nodes from first on make its velocity
     int first = 0, nweight = 0;
     double weight[4];
     MPMWallContact contact;    // of material that touches it
 
     Face(const MPMField &, const Domain &, int face);
-    // range of nodes along the axis that are looked at together
+    // range of nodes along the axis that are treated together
     int begin() const { return cut ? first : plane - DEPTH; }
     int end() const { return cut ? first + nweight - 1 : plane + DEPTH; }
-    int length() const { return cut ? nweight : 1 + 2 * DEPTH; }    // of a line of nodes
+    int length() const { return cut ? nweight : 1 + 2 * DEPTH; }    // nodes in a line
     void cut_weights(const MPMField &, double x);
     MPMWallContact contact_of(const MPMField &, double x) const;
   };
   using Faces = std::vector<Face>;
   enum Contact { FREE, SLIDING, STUCK };    // what a wall does to a line or node
 
-  // nodes along the normal of a face that cuts cells, from its first one on, or of a face with friction
-  // or separation: in the plane, inside, and their images; -1: out of reach of points
+  // nodes along the normal of a face: if it cuts cells, from its first node on; else, with friction
+  // or separation, in the plane, inside, and their images; -1: out of reach of points
   struct Line {
     int face;    // index into faces
     Contact contact;
-    bool touched;    // separate: by the surface of the material in this step
+    bool touched;    // separate: the surface of the material touches it in this step
     int64_t node[1 + 2 * DEPTH];
   };
   struct Member {
@@ -168,58 +170,58 @@ class FixMPMBoundary :
     int sign;
   };
   struct Orbit {           // a node with all its images: in one face, in two at an edge, ...
-    int64_t wall;          // node at the wall whose velocity counts
-    int64_t inner;         // first node inside, -1: out of reach of points, or held by a wall, too
+    int64_t wall;          // node at the wall where the velocity of the wall is taken
+    int64_t inner;         // first node inside; -1: out of reach of points, or also held by a wall
     int first, last;       // range in members
     bool prescribed[3];    // components
-    bool fixed;            // is in a plane
+    bool fixed;            // lies in the plane of a face
   };
   struct Single {    // a node on its own
     int64_t node;
-    double normal[3] = {0.0, 0.0, 0.0};    // from the wall to the body; zero: not known
+    double normal[3] = {0.0, 0.0, 0.0};    // from the wall to the body; zero: unknown
     double growth = 0.0;      // speed of the surface of a region that changes its shape
-    double distance = 0.0;    // from the surface at the start of the step, for growth and gaps
-    double share = 1.0;       // of the way to the velocity of the wall that the node goes
+    double distance = 0.0;    // from the surface at the start of the step; for growth and gaps
+    double share = 1.0;       // share of the change to the velocity of the wall that the node takes
     Contact contact = FREE;
-    bool touched = true;    // separate: by the surface of the material in this step
+    bool touched = true;    // separate: the surface of the material touches it in this step
   };
-  // a line of nodes along an axis that goes through the surface of a region, from inside of it to outside
+  // a line of nodes along an axis, from the inside of a region through its surface to the outside
   struct Crossing {
     int axis, n;
     int64_t node[4];    // -1: out of reach of points
-    int64_t base;       // of these, from which the line was found
-    int64_t behind;     // the next one in the region, which only material inside reaches
-    double surface;     // place on the line
+    int64_t base;       // node of the line from which the line was found
+    int64_t behind;     // next node in the region, which only material inside reaches
+    double surface;     // position of the surface on the line
     double weight[4];
-    double normal[3];    // of the surface, where the line goes through it
+    double normal[3];    // of the surface at the crossing
     int full;            // index of its contact
-    int inside;          // number of nodes behind the surface, the first ones
-    int place;           // of the first node on the line, growing outward
-    double depth;        // of the first node behind the surface, in node spacings
+    int inside;          // number of nodes behind the surface, which come first
+    int place;           // coordinate of the first node on the line, growing outward
+    double depth;        // depth of the first node behind the surface [node spacings]
     Contact contact = FREE;
-    bool touched = true;    // by the surface of the material in this step
-    // acts without a question; where another face is near: unless the material is behind; where nodes of the line are
-    // nearer to another face, or beyond it: when the material is in front
+    bool touched = true;    // the surface of the material touches it in this step
+    // SOUND: always acts; THIN_PLACE (another face is near): acts unless the material is behind; NEAR_OTHERS (nodes of the
+    // line are nearer to another face, or beyond it): acts only if the material is in front
     enum Front { SOUND, THIN_PLACE, NEAR_OTHERS } front = SOUND;
-    bool acts = true, in_plate = false;    // in_plate: of less than RESOLVED
-    bool alone = false;                    // grips: no other line has nodes of this one
+    bool acts = true, in_plate = false;    // in_plate: in a plate thinner than RESOLVED
+    bool alone = false;                    // grips: shares no node with another line
     bool in_knot = false;
   };
-  // lines that have nodes in common and prescribe nearly the same there, which act together, see fix_mpm_boundary_knot.cpp
+  // lines that share nodes and prescribe nearly the same there; they act together, see fix_mpm_boundary_knot.cpp
   struct Knot {
     std::vector<int> lines;             // indices of crossings
     std::vector<int64_t> node;          // all of their nodes
-    std::vector<double> mass, share;    // of nodes, and of lines: 0: does not act, for which
-    std::vector<double> inverse;        // [row][row] is known
+    std::vector<double> mass, share;    // masses of nodes and shares of lines (0: does not act)
+    std::vector<double> inverse;        // [row][row], valid for this mass and share
   };
-  // a line of nodes through the surface of material that is not at the wall yet, in trials, see
-  // fix_mpm_boundary_approach.cpp; from the wall to the material
+  // in trials: a line of nodes through the surface of material that is not at the wall yet, in the
+  // direction from the wall to the material, see fix_mpm_boundary_approach.cpp
   struct Approach {
     int axis, n;
     int64_t node[4];    // -1: out of reach of points
     double weight[4];
     double normal[3];    // of the wall
-    double gap;          // between them [distance]
+    double gap;          // between wall and material [distance]
   };
   struct FieldNodes {
     MPMField *field;
@@ -230,26 +232,26 @@ class FixMPMBoundary :
     std::vector<Single> singles;
     std::vector<Crossing> crossings = {};
     std::vector<Knot> knots = {};
-    // lines that do not act but tell where nodes see too little of a region: at blades and wires
+    // lines that do not act but show where a region is too thin for the nodes: at blades and wires
     std::vector<Crossing> looked_at = {};
-    std::vector<MPMWallContact> contacts = {};    // with nodes at depths in a region
-    std::vector<MPMWallContact> crossed = {};     // with crossings, as far as they have been needed
+    std::vector<MPMWallContact> contacts = {};    // for nodes by their depth in a region
+    std::vector<MPMWallContact> crossed = {};     // for crossings, computed when first needed
     std::vector<char> crossed_known = {};
     std::vector<Approach> approaches = {};
     struct Around {
-      double at[4] = {};    // shift and angle of the region, around which blocks are
+      double at[4] = {};    // shift and angle of the region when the blocks around it were found
       bool known = false;
     } around = {};
 
     void list_line(int face, const int *index);
     void list_orbits(const bool *prescribed, int axis);
   };
-  // nodes of a line that have points, from outside of the material to inside, see fix_mpm_boundary_cut.cpp
+  // nodes of a line that have mass, from the outside of the material to the inside, see fix_mpm_boundary_cut.cpp
   struct Chain {
     int m = 0;
-    int inner = 0;    // of them, whose old velocity FLIP takes as that near the wall
+    int inner = 0;    // index of the node whose old velocity FLIP takes as that near the wall
     int64_t node[4];
-    const double *r[4];    // records
+    const double *r[4];    // node records
     double A[4], B[4] = {0.0, 0.0, 0.0, 0.0}, V[4][3], total = 0.0;
     bool straight = false;    // B is used
 
@@ -258,17 +260,17 @@ class FixMPMBoundary :
     double solve(const double *relative, double *change) const;
 
    private:
-    double inverse[4], heaviest = 0.0;    // inverse masses, that of the heaviest node is 1
+    double inverse[4], heaviest = 0.0;    // inverse masses, 1 for the heaviest node
     double AA = 0.0, det = 0.0;
 
     double D(int j, int k) const { return A[j] * B[k] - A[k] * B[j]; }
   };
-  struct Wall {    // its motion in a step: velocity shift + gradient (x - origin)
+  struct Wall {    // motion of the wall in a step: velocity = shift + gradient (x - origin)
     double shift[3], gradient[3][3], origin[3];
-    double before[3];                                  // velocity in the last step
+    double before[3];                                  // shift in the last step
     double gradient_before[3][3], origin_before[3];    // at its end, see at_end_of_step()
     bool uniform;
-    bool changes;                     // may its velocity be another one than in the last step?
+    bool changes;                     // may the velocity differ from that in the last step?
     double turned[3][3], moved[3];    // nodes of the total frame at X are at X + turned X + moved
 
     void rotate(double angle, const double *axis, const double *center, double dt);
@@ -281,64 +283,64 @@ class FixMPMBoundary :
   };
   struct Prescribed {    // velocity that a wall gives to nodes
     double V[3];
-    double share[3];    // of the way to it that nodes go
-    double limit[3];    // of old velocities relative to the wall, where these are constrained, too
-    bool hold[3];       // are these?
+    double share[3];    // share of the change to V that nodes take
+    double limit[3];    // bound of constrained old velocities, relative to the wall
+    bool hold[3];       // are the old velocities constrained?
   };
-  struct Past {     // of the steps before, as restart files keep it, without padding
-    double work;    // on the body, this rank's share; in files that of all, as energy
+  struct Past {     // state of previous steps, as kept in restart files, without padding
+    double work;    // on the body, this rank's share; in files as energy, of all ranks
     double shift[3], gradient[3][3],
-        origin[3];                    // velocity of the wall in the last step, at its end
+        origin[3];                    // velocity of the wall at the end of the last step
     double region[4];                 // shift and angle of the region at the end of the last step
-    double displaced[3];              // what the displacement was by then
-    double turned[3][3], moved[3];    // as in Wall, by then
-    int64_t acted;                    // there was a last step
+    double displaced[3];              // displacement at that time
+    double turned[3][3], moved[3];    // as in Wall, at that time
+    int64_t acted;                    // was there a last step?
   };
 
   std::vector<int> face_list;    // 2 * axis + (0: lo, 1: hi)
   std::string region_id;
   Region *region = nullptr;
-  std::unique_ptr<MPMRegionSurface> surface;    // its surface
+  std::unique_ptr<MPMRegionSurface> surface;    // of the region
 
-  std::vector<FieldNodes> nodes;    // of the fields to act on
+  std::vector<FieldNodes> nodes;    // one entry for each field to act on
   Wall wall = {};                   // in this step
   Past past = {};
   bigint motion_step = -1;    // step for which the motion of the wall is known
-  double impulse[6] = {};     // on the body, with its moment, in the last step: this rank's share
+  double impulse[6] = {};     // on the body, and its moment, in the last step; this rank's share
   double dt_last = 0.0;
   bool reaction_known = true;
-  bool placed = false;    // is past.region its place in this run?
+  bool placed = false;    // is past.region valid in this run?
   std::vector<int64_t>
-      held_by_lines;    // nodes inside that are not nearest to the face of their line
+      held_by_lines;    // nodes inside whose nearest face is not that of their line
   MPMWallGap gap;
-  bool warned = false;            // of a region that is too fast
-  bigint steps = 0;               // of this fix in this run
+  bool warned = false;            // about a region that is too fast
+  bigint steps = 0;               // number of steps of this fix in this run
   MPMFirstNote<5> too_thin;       // region: step, index of the field, place
   MPMFirstNote<5> not_touched;    // follows: step, minus mean distance, place
   double reaction[6] = {};        // force and torque
 
-  // contact of which a solver decides, see mpm_trial_contact.h: one for each line, crossing, single, and approach, in this order
+  // contact decided by a solver, see mpm_trial_contact.h: one entry for each line, crossing, single, and approach, in this order
   struct Touch {
-    bool open;             // the material touches the wall, or may come to do so
-    bool active = true;    // it is held
-    double gap = 0.0;      // between them at the start of the step [distance]
-    double push = 0.0, base = 0.0, force = 0.0;    // sum of impulses, that of walls alone; N
-    double slip[3] = {0.0, 0.0, 0.0}, rubs[3] = {0.0, 0.0, 0.0};    // s, and friction
+    bool open;             // the material touches the wall, or may touch it in this step
+    bool active = true;    // the material is held at the wall
+    double gap = 0.0;      // between material and wall at the start of the step [distance]
+    double push = 0.0, base = 0.0, force = 0.0;    // impulse; part by motion of walls; N
+    double slip[3] = {0.0, 0.0, 0.0}, rubs[3] = {0.0, 0.0, 0.0};    // slip s; friction force
     double dual[3] = {0.0, 0.0, 0.0};                               // w, see add_friction_change()
     explicit Touch(bool open) : open(open), active(open) {}
   };
-  struct {                      // what act() does now to the nodes of a field
-    bool counting;              // reactions and work
+  struct {                      // state of act() while it treats the nodes of a field
+    bool counting;              // reactions and work are counted
     bool decided;               // contact was decided before in this step (MUSL)
     class MPMLedger *ledger;    // null: none; else old velocities are in reals 4..6
     double old_share;           // FLIP share when old velocities are constrained, too; otherwise 0
-    double kinetic;             // gained by the nodes
-    double driven;              // the part of it that is done by the motion of the wall
+    double kinetic;             // kinetic energy gained by the nodes
+    double driven;              // part of it that is work by the motion of the wall
     double collided;         // ledger: kinetic energy lost where nodes cannot keep their velocity
-    int place;               // of the field in the list
-    const double *normal;    // of the wall on which nodes slide and become warm; null: they do not
-    Touch *touch;            // null: what touches is decided here
-    double unit;             // of pushes, in impulses
+    int place;               // index of the field in the list
+    const double *normal;    // of a wall on which nodes slide and become warm; null: no such wall
+    Touch *touch;            // contact decided by a solver; null: decided here
+    double unit;             // unit of pushes, as an impulse
   } now;
 
   struct Held {    // a node, and its share in the motion of the surface
@@ -350,15 +352,15 @@ class FixMPMBoundary :
   MPMField *tried = nullptr;
   const double *motion = nullptr;    // velocities of nodes at the end of the step
   double trial_dt = 0.0, trial_slip_time = 0.0, eps = 0.0, soft = 0.0;
-  double rub_share = 1.0;    // of friction that nodes get
-  int rounds = 0;            // of decisions in this step
+  double rub_share = 1.0;    // share of the friction that nodes get
+  int rounds = 0;            // rounds of decisions in this step
   bool in_implicit_steps = false;
-  bool seeks = false;       // material that comes to the wall in implicit steps
-  bool follows = false;     // a region that moves and holds: by lines in implicit steps
-  bool carrying = false;    // it is a grip for the material inside, see fix_mpm_boundary_carry.cpp
+  bool seeks = false;       // looks for material that comes to the wall in implicit steps
+  bool follows = false;     // a moving region holds material by lines in implicit steps
+  bool carrying = false;    // a grip for the material inside, see fix_mpm_boundary_carry.cpp
   bool closes =
-      false;    // lines that are held go to the wall now, else they are at rest relative to it
-  std::vector<double> clear;    // [point][face] its distance from the wall at the start of the step
+      false;    // lines that are held move to the wall now; else they are at rest relative to it
+  std::vector<double> clear;    // [point][face] distance from the wall at the start of the step
 
   void begin_trials(MPMField &, double dt, double slip_time, double eps, bool rests) override;
   bool close_gaps(bool yes) override;
@@ -396,11 +398,11 @@ class FixMPMBoundary :
                  double *slip, double &away) const;
   void rub_nodes(MPM_NS::Grid &);
   std::vector<double>
-      water;    // [node][3] impulse of water in pores on the surface of the body; empty: none
-  std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
+      water;    // [node][3] impulse of pore water on the surface of the body; empty: none
+  std::unique_ptr<MPMFrictionHeat> heating;    // null: not requested
 
   bool region_moves() const;
-  /** Does a region act on lines of nodes through its surface? Else on nodes inside, one by one. */
+  /** Does a region act on lines of nodes through its surface? Otherwise it acts on each node inside. */
   bool acts_across() const;
   bool is_driven() const;
   bool holds_surface() const;

@@ -24,9 +24,9 @@ namespace LAMMPS_NS {
 
 /** Averages over the points in each cell of a lattice, for dump grid, fix ave/grid, dump image.
  *
- *  The computing lattice is sparse and has no arrays that LAMMPS could read, so this is a dense
- *  grid of cells over the box, partitioned as LAMMPS's own grids (fix ave/grid relies on that).
- *  It is filled when somebody asks for its data in a step, and costs nothing otherwise.
+ *  The computing lattice is sparse and has no arrays that LAMMPS could read. This fix has a dense
+ *  grid of cells over the box, partitioned like other LAMMPS grids (fix ave/grid relies on that).
+ *  It is filled when its data are first requested in a step, and costs nothing otherwise.
  */
 class FixMPMCells : public Fix {
  public:
@@ -57,7 +57,8 @@ class FixMPMCells : public Fix {
           lo[0];
     }
   };
-  /** An average with one value or with columns, null: the other. In 2d LAMMPS knows the part z = 0. */
+  /** An average: an array of one value or of several columns per cell, the other pointer is null. In 2d,
+   *  LAMMPS gets the part z = 0. */
   struct Average {
     double ***scalar;     // [z][y][x]
     double ****vector;    // [z][y][x][column]
@@ -67,12 +68,12 @@ class FixMPMCells : public Fix {
   int dim, ncell[3];
   class Grid2d *grid2d = nullptr;
   class Grid3d *grid3d = nullptr;
-  Cells owned, all;     // of this rank: without and with ghost cells
-  double skin = 0.0;    // when the grid was made
+  Cells owned, all;     // cells of this rank, without and with ghost cells
+  double skin = 0.0;    // neighbor skin when the grid was made
   std::vector<double> buf1, buf2;
   std::vector<double> sums;    // [all][NSUM]
   std::vector<Average> averages;
-  bigint filled = -1;    // time step of the averages, -1: none
+  bigint filled = -1;    // time step of the averages; -1: none
 
   void set_size();
   void deallocate();

@@ -23,9 +23,9 @@ FixStyle(mpm/column,FixMPMColumn);
 
 namespace LAMMPS_NS {
 
-/** A body that is a column of level ground: all nodes at the same height have one velocity, so that it moves as if
- *  it went on at its sides without end, whatever its width is. Fix mpm/dashpot takes the motion and the stress of the free field
- *  from it. */
+/** A body that represents a column of level ground. All nodes at the same height have one velocity, so that the column
+ *  moves like ground of infinite extent, whatever its width. Fix mpm/dashpot takes the motion and the stress of the
+ *  free field from it. */
 class FixMPMColumn : public Fix, public MPMNodeAction {
  public:
   FixMPMColumn(class LAMMPS *, int, char **);
@@ -35,7 +35,7 @@ class FixMPMColumn : public Fix, public MPMNodeAction {
   void post_force(int) override;
   double memory_usage() override;
 
-  Turn turn() const override { return PHASES; }    // who shakes it sees the motion of the column
+  Turn turn() const override { return PHASES; }    // before walls, which may shake it
   void init_action() override;
   bool looks_beyond_points() const override { return false; }
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override { return false; }
@@ -43,17 +43,17 @@ class FixMPMColumn : public Fix, public MPMNodeAction {
   void act(double, Stage stage) override { level(stage); }
   void has_acted(MPMNodeAction &, Stage stage) override { level(stage); }
 
-  // for who has this column at its side, all the same on all ranks
+  // for the users of this column, the same on all ranks
 
-  int axis = 0;    ///< along which it stands
-  /** Its field, in this run. */
+  int axis = 0;    ///< axis of the column
+  /** Its field. Valid during a run. */
   MPMField &ground() const;
-  /** Stress [pressure] xx yy zz xy xz yz at a height, on the lattice, in the present state: linear between layers of points and on to
-   *  half of their distance beyond the lowest and the highest. */
+  /** Present stress [pressure] xx yy zz xy xz yz at a height on the lattice: linear between layers of points, and
+   *  extrapolated by half of their distance beyond the lowest and the highest layer. */
   void stress(double height, double sigma[6]) const;
-  /** Velocities in this step, after it has acted: before the momentum equation, and what that has changed. */
+  /** Velocity at a height before the momentum equation, and its change by this equation; after the column has acted in this step. */
   void motion(double height, double old[3], double change[3]) const;
-  /** Heights of the lowest and the highest layer, and the largest distance of layers. */
+  /** Heights of the lowest and the highest layer, and the largest distance between layers. */
   double lowest() const { return layers.front().height; }
   double highest() const { return layers.back().height; }
   double apart() const { return most_apart; }
@@ -65,12 +65,12 @@ class FixMPMColumn : public Fix, public MPMNodeAction {
   struct Layer {
     double volume, height, sigma[6];
   };
-  std::vector<Layer> layers;    // upwards
+  std::vector<Layer> layers;    // from the lowest to the highest
   double most_apart = 0.0;
 
-  bool fresh = true;    // the nodes are new
-  int first_row = 0;    // number of the lowest plane of nodes
-  // of planes of nodes: mass, momentum, and, in a step, momentum before the momentum equation
+  bool fresh = true;    // the topology has changed
+  int first_row = 0;    // index of the lowest plane of nodes
+  // for each plane of nodes: mass, momentum, and, in a step, momentum before the momentum equation
   static constexpr int WIDTH = 7;
   std::vector<double> mine, rows;
 

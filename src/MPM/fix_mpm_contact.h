@@ -43,6 +43,7 @@ namespace LAMMPS_NS {
 class FixMPMRefine;
 class MPMField;
 
+/** Keywords of fix mpm/contact. */
 struct MPMContactOptions {
   enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
   enum Normal { MASS, VOLUME, COLINEAR, LOGISTIC };
@@ -50,16 +51,16 @@ struct MPMContactOptions {
   Law law = FRICTIONLESS;
   Normal normal_by = COLINEAR;
   double kinetic_friction = 0.0;
-  double static_friction = -1.0;    ///< negative: the same
+  double static_friction = -1.0;    ///< negative: equal to kinetic_friction
   double normal_strength = 0.0, shear_strength = 0.0, release_work = 0.0;
   bool gap = true;
-  double full = 1.0;    ///< with gap: volume share of a node at which bodies touch
+  double full = 1.0;    ///< with gap: filled share of the volume of a node at which bodies touch
   MPMFrictionHeatOptions heat;
 
   MPM_NS::Options declare();
 };
 
-/** Contact between bodies that are fields (fix mpm) on one lattice, at the nodes they share. */
+/** Contact between bodies, each a field (fix mpm), at the nodes that they share on one lattice. */
 class FixMPMContact :
     public Fix,
     public MPMNodeAction,
@@ -88,11 +89,11 @@ class FixMPMContact :
   void act(double dt, Stage) override;
   MPMTrialContact *trial_contact() override { return tries ? this : nullptr; }
 
-  /** Is contact between these two fields (IDs) left to this fix? */
+  /** Does this fix treat contact between these two fields (IDs)? */
   bool couples(const std::string &a, const std::string &b) const;
   /** Is this field (ID) one of the bodies? */
   bool touches(const std::string &name) const;
-  /** Has this fix what decides about contact in common with another one? */
+  /** Does this fix have the same contact law and parameters as another one? */
   bool has_law_of(const FixMPMContact &) const;
 
   static constexpr int MAX_FIELDS = 8;
@@ -105,32 +106,32 @@ class FixMPMContact :
   enum State : char { OPEN, SLIDING, STUCK };
 
   struct Common {            // a block of nodes that several fields have
-    int slot[MAX_FIELDS];    // -1: the field does not have it
+    int slot[MAX_FIELDS];    // of the block in each field; -1: none
     uint64_t canonical, owned;
   };
   struct Pair {              // two bodies at one node
-    int a, b;                // places in fields
+    int a, b;                // indices in bodies
     double *ra, *rb;         // node records
     double n[3];             // unit normal from a to b
     double area;             // of the interface at the node
-    double fade;             // share of the adhesive strength that is left at this gap
-    double water;            // impulse on b along n that water in pores bears
-    struct Walls {           // what they will do to a body after contact
-      char held;             // components to which they give their velocity, bits
-      char mirrored;         // and that move with those of the images of the node
-      char outside;          // of these those of a node outside of the mirror
-      double velocity[3];    // of these, now
+    double fade;             // share of the adhesive strength that remains at this gap
+    double water;            // part of the impulse on b along n that pore water bears
+    struct Walls {           // what walls will do to a body after contact
+      char held;             // bits: components to which walls give their velocity
+      char mirrored;         // bits: components that move with those of the images of the node
+      char outside;          // bits: mirrored components of a node outside of the mirror
+      double velocity[3];    // velocity that walls will give to these components
       double mass[3];        // of the node and its images
-      double start[3];       // velocity of the node now
+      double start[3];       // present velocity of the node
 
       bool moves_with_images(const double *record) const;
-      /** Component of the velocity of this record, or what walls make of it. */
+      /** Component d of the velocity of this record, or the velocity that walls will give to it. */
       double velocity_of(const double *record, int d) const;
     } walls_a, walls_b;
-    bool alike;    // they do the same to both
-    char left;     // components that are left to the walls, or to contact at the image of the node
+    bool alike;    // walls act on the same components of both bodies
+    char left;     // bits: components left to the walls, or to contact at the image of the node
     State state;
-    double normal, tangential[3];    // impulses on b so far, along n and in the plane
+    double normal, tangential[3];    // impulses on b so far, along n and in the tangential plane
 
     double impulse(int d) const { return left >> d & 1 ? 0.0 : normal * n[d] + tangential[d]; }
   };
@@ -143,29 +144,29 @@ class FixMPMContact :
   struct Meeting {
     Node *node;
     Velocities start;    // before contact
-    int group;           // of nodes that depend on each other
+    int group;           // number of its group of nodes that depend on each other
   };
   struct Room {    // for nodes near fixed faces: share of their volume inside of the box
-    static constexpr int REACH = 2;    // of the function of a node, in nodes
+    static constexpr int REACH = 2;    // reach of the function of a node [node spacings]
     struct Side {
       int plane;                  // index of the plane of nodes at the face
-      bool fixed;                 // else there is no such face
-      bool mirror;                // and it is in that plane
-      double share[REACH + 1];    // from the plane on inward
+      bool fixed;                 // is the face fixed? else it does not count
+      bool mirror;                // does a fixed face lie in that plane?
+      double share[REACH + 1];    // of the nodes from the plane inward
     } sides[3][2];                // [axis][side]
 
     void find(const MPMField &, const Domain &);
     double at(int *index, int dim, bool &image) const;
-    /** Blocks with the mirror images of the nodes of a block: calls f(block). */
+    /** Calls f(block) for each block with mirror images of the nodes of a block. */
     template <class F> void images(const MPM_NS::Grid &, const int *block, const F &f) const;
   };
   struct Body {
     MPMField *field;
     MPMReach reach;
-    std::vector<int> images;          // blocks with periodic images
-    FixMPMRefine *refined;            // the body that this field is a part of, or null
-    std::vector<MPMField *> finer;    // its parts on finer lattices
-    std::vector<char> near;           // [slot] a block where bodies share nodes
+    std::vector<int> images;    // blocks with periodic images
+    FixMPMRefine *refined;      // body on several lattices to which this field belongs, or null
+    std::vector<MPMField *> finer;    // parts of that body on finer lattices
+    std::vector<char> near;           // [slot] do bodies share nodes of this block?
     std::vector<double> gradient;     // of the volume (or mass) at the nodes
     std::vector<double> share;        // volume at the nodes / node volume
     std::vector<double> water;        // [node][3] of MPMPhysics::surface_force(); empty: none
@@ -182,107 +183,107 @@ class FixMPMContact :
     }
   };
 
-  // contact of which a solver decides (fix_mpm_contact_trial.cpp)
+  // contact decided by a solver (fix_mpm_contact_trial.cpp)
 
   struct Link {            // a node of a tie
-    int64_t a, b;          // in vectors of the solver
-    double *ra, *rb;       // records
-    double share, n[3];    // of the interface; normal there
+    int64_t a, b;          // indices of the node of each body in vectors of the solver
+    double *ra, *rb;       // node records
+    double share, n[3];    // share of the interface, and its normal at the node
   };
-  struct Covers {       // what is seen of a body along a line of nodes
-    double g[3];        // sum of the gradients of its surface there, over the cross-section
+  struct Covers {       // how a body covers the cross-section of a line of nodes
+    double g[3];        // sum of the gradients of its surface on the line, over the cross-section
     double alone[3];    // the same without images
-    double share;       // of the cross-section of the line
+    double share;       // covered share of the cross-section
   };
   struct Line {                                 // of nodes through an interface
-    std::array<int, 6> key;                     // bodies, axis and direction, index across
-    std::vector<std::pair<int, int>> places;    // index along the axis (of the first one) and pair
-    int axis, index[3];                         // any node of it
+    std::array<int, 6> key;                     // bodies, axis and direction, indices across
+    std::vector<std::pair<int, int>> places;    // index along the axis and pair, of each node
+    int axis, index[3];                         // axis; index of any node of the line
     double sign;                                // of the normal along the axis
-    int joins;                                  // line of which it is a part, -1: none
+    int joins;                                  // line of which this one is a part; -1: none
     Covers seen[2];                             // of both bodies
-    double n[3];                                // its direction, from a to b
+    double n[3];                                // direction of the interface normal, from a to b
 
     int low() const { return places.front().first; }
     int high() const { return low() + (int) places.size() - 1; }
   };
-  using LinesByKey = std::map<std::array<int, 6>, std::vector<int>>;    // places of lines
+  using LinesByKey = std::map<std::array<int, 6>, std::vector<int>>;    // indices of lines
   static constexpr int AROUND = 2;    // nodes of a line beyond those that both bodies reach
-  struct Tie {    // two bodies at a line of nodes through their interface, and those that join it
-    int first, last;       // range in links
-    int a, b;              // places in bodies
-    bool owned;            // in sums
-    Key key;               // of the same tie on all ranks
-    bool active;           // it touches
-    bool sticks;           // by friction or law stick
-    int parted;            // times in the step that it was let go, with law stick while it stuck
-    int changes;           // times in the step that it began to slide or stick
-    double n[3];           // mean normal from a to b
+  struct Tie {          // two bodies at a line of nodes through their interface, with joined lines
+    int first, last;    // range in links
+    int a, b;           // indices in bodies
+    bool owned;         // does this rank count the tie in sums?
+    Key key;            // the same on all ranks
+    bool active;        // do the bodies touch?
+    bool sticks;        // by friction or law stick
+    int parted;         // number of releases in the step; with law stick: while it stuck
+    int changes;        // number of changes between sliding and sticking in the step
+    double n[3];        // mean normal from a to b
     double along[2][3];    // unit vectors along the interface, or zero
-    double gap;            // that is to be closed [distance]
-    // rows of C are along the normals and, where it sticks, along the interface: diagonal of C P_w M^-1 C^T
+    double gap;            // gap that is to be closed [distance]
+    // diagonal of C P_w M^-1 C^T; rows of C are along the normals and, where the tie sticks, along the interface
     double diagonal[3];
-    double push[3], base[3];    // of rows: impulse so far, and that by the motion of walls alone
-    double force[3];            // of rows, of a on b
-    double stop[3];             // of rows, impulse at the end of the step
-    // of what slides: slip of a on b in the step, its direction in the iteration before, force on a
+    double push[3], base[3];    // [row] impulse so far; impulse by the motion of walls alone
+    double force[3];            // [row] force of a on b
+    double stop[3];             // [row] impulse at the end of the step
+    // sliding ties: slip of a on b in the step, its direction in the previous iteration, friction force on a
     double slip[3], way[3], rubs[3];
-    double turns;    // length d by which that direction counts [distance]
+    double turns;    // weight d of the previous direction [distance], see find_way()
   };
 
   struct Account {        // of two bodies, this rank's share
-    double impulse[3];    // on the second one in the last step
+    double impulse[3];    // on the second body in the last step
     double count;         // nodes in contact
     double work;          // of friction so far
   };
 
   std::vector<std::string> names;
   Room room;
-  bool on_several_lattices = false;    // is a body?
+  bool on_several_lattices = false;    // is a body on several lattices?
 
   std::vector<Body> bodies;
   std::vector<Common> common;
   bool lists_valid = false, may_touch = false;
-  bool look = true;    // for bodies that overlap, in the first step of a run
+  bool look = true;    // check for bodies that overlap, in the first step of a run
   std::vector<Node> nodes;
-  std::vector<Meeting> meetings;    // where walls move one body with its images and another not
+  std::vector<Meeting> meetings;    // where walls move one body with its images, but not another
   std::vector<Pair> pairs;
 
-  // of nodes that are solved together
+  // for nodes that are solved together
 
   std::vector<double> impulses;
   std::vector<char> states;
   MPM_NS::Aitken series;
 
-  bigint steps = 0;            // of this fix in this run
+  bigint steps = 0;            // number of steps of this fix in this run
   MPMFirstNote<4> unsolved;    // step and place
   double water_sums[2] = {
-      0.0, 0.0};    // of the impulse of water at nodes in contact, and at those that are nearly
+      0.0, 0.0};    // impulse of water at nodes in contact, and at nodes nearly in contact
   bool told_of_water = false;
 
-  // of group_meetings()
+  // for group_meetings()
 
   MPM_NS::Sets dependent;
   std::vector<int> first_with_mirror;
 
   // in trials
 
-  bool tries = false;    // are the steps of this run those of a solver?
+  bool tries = false;    // does a solver do the steps of this run?
   std::vector<Tie> ties;
   std::vector<Link> links;
-  std::vector<char> owned_pairs;    // of nodes that this rank counts
+  std::vector<char> owned_pairs;    // [pair] does this rank count the node?
   std::function<int64_t(const MPMField &)> place_of;
   double trial_dt = 0.0;
-  double of_forces = 1.0;    // of their impulse in a step, what the momentum changes by
+  double of_forces = 1.0;    // share of the impulse of forces that changes the momentum in a step
   bool closes = false;
-  int rounds = 0;    // of decisions in this step
+  int rounds = 0;    // rounds of decisions in this step
   bool told_of_torn = false;
   double shared_at_start =
-      0.0;    // largest share of the volume of a node that two bodies overlap at, see check_overlap()
+      0.0;    // largest share of the volume of a node that two bodies fill together, see check_overlap()
 
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};
-  std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
+  std::unique_ptr<MPMFrictionHeat> heating;    // null: not requested
   double array[MAX_PAIRS][5] = {};
   bigint array_step = -1;
 
@@ -347,7 +348,7 @@ class FixMPMContact :
   {
     return tie.along[0][0] != 0.0 || tie.along[0][1] != 0.0 || tie.along[0][2] != 0.0;
   }
-  /** Does this row hold? */
+  /** Does this row constrain the motion? */
   bool acts(const Tie &tie, int row) const
   {
     return tie.active && tie.diagonal[row] > 0.0 && (row == 0 || tie.sticks);

@@ -28,24 +28,25 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 namespace LAMMPS_NS {
 class FixMPMColumn;
 
+/** Keywords of fix mpm/dashpot. */
 struct MPMDashpotOptions {
   enum Surface { REGION };
 
   Surface surface = REGION;
   std::string region;
   double speed_p = 0.0, speed_s = 0.0;
-  double density = 0.0;    ///< 0: that of the points
+  double density = 0.0;    ///< 0: density of the points
   MPM_NS::NumberOrVariable incoming[3];
   bool has_incoming = false, support = true;
   double relax = 0.0, spacing = 0.0, area = 0.0;    ///< 0: not given
-  std::string column;    ///< ID of a fix mpm/column that the far side moves like; empty: none
+  std::string column;    ///< ID of the fix mpm/column with the motion of the far side; empty: none
 
   MPM_NS::Options declare(int dimension);
 };
 
-/** Surfaces of bodies behind which the body goes on without end: dashpots take the waves that arrive (Lysmer and
- *  Kuhlemeyer), bring others in, and what the far side bears at the start is held. It can be at rest, or move like a column of
- *  ground. */
+/** Surfaces of bodies behind which the body continues to infinity. Dashpots absorb the waves that arrive (Lysmer and
+ *  Kuhlemeyer) and send in others, and a static support keeps the traction that the far side bears at the start. The far
+ *  side is at rest or moves like a column of ground. */
 class FixMPMDashpot :
     public FixMPMState,
     public MPMNodeAction,
@@ -76,9 +77,9 @@ class FixMPMDashpot :
   void add_stress(const MPMField &, int first, int n, double *tau) const override;
 
  private:
-  // Of a point: area of the surface that its dashpot stands for and the way from the point to that [3], normal out of the body [3],
-  // density of the far side; shares in the static support (MPMFace): area and stress, traction [3]; motion of the surface so far [3].
-  // traction at the mark that the support lacks [3]. All of them go with the point as they were found, without a turn.
+  // For each point: area of the surface of its dashpot, vector from the point to this surface [3], normal out of the body [3],
+  // density of the far side; shares in the static support (MPMFace): area and stress, traction [3]; motion of the surface so far [3];
+  // traction at the mark that the support lacks [3]. All of them move with the point as they were found and do not rotate.
   MPMRows rows;
   enum {
     AREA,
@@ -91,15 +92,15 @@ class FixMPMDashpot :
     MOTION = HELD + 3,
     LACK = MOTION + 3,
     WIDTH = LACK + 3,
-    // with a column: traction of the support that is not of the column at the start [3]; HELD is the present sum of both
+    // with a column: initial traction of the support without that of the column [3]; HELD is the present sum of both
     REST = WIDTH,
     WIDTH_COLUMN = REST + 3
   };
 
   struct Node {
     int64_t number;     // canonical
-    double function,    // of the lattice, at the surface
-        weight;         // that of the dashpot
+    double function,    // function of the node at the surface
+        weight;         // weight of the node for the dashpot
     double r[3];        // from the surface to the node, in node spacings
   };
   struct Mark {                // a place on the surface
@@ -110,8 +111,8 @@ class FixMPMDashpot :
     MPM_NS::NodeField *rates, *pushes;
     std::vector<int64_t> canonical;
     std::vector<int>
-        points;    // with marks, until the topology is renewed, which is when points move in memory
-    std::vector<uint64_t> blocks;    // that marks reach, by their keys, sorted
+        points;    // with marks; valid until the topology is renewed, when points move in memory
+    std::vector<uint64_t> blocks;    // keys of the blocks that marks reach, sorted
     struct Stressed {
       int i, slot;
     };
@@ -120,17 +121,17 @@ class FixMPMDashpot :
     std::vector<Node> nodes;
   };
   std::vector<Body> bodies;
-  bool defined = false;     // where the surface is
-  double known = 0.0;       // how many points have a part in it
-  bool supports = false;    // there is a stress to hold
-  bool fresh = false;       // what it lacks is not known yet
+  bool defined = false;     // is it known where the surface is?
+  double known = 0.0;       // number of points with a part of the surface
+  bool supports = false;    // is there a stress that the support holds?
+  bool fresh = false;       // the traction that the support lacks is not known yet
   double work = 0.0;    // on the bodies, without the support, this rank's share [mass velocity^2]
-  // force of nodes on which marks act [3], of the support on points [3], area, what the support lacked [3]
+  // force on nodes by marks [3], force on points by the support [3], area, force that the support lacked [3]
   static constexpr int NSUM = 10;
   double sums[NSUM] = {}, all_sums[NSUM] = {};
   bool sums_known = true;
-  double arriving[3] = {};               // velocity of the waves that come in, in this step
-  FixMPMColumn *free_field = nullptr;    // what moves at the far side, or null
+  double arriving[3] = {};               // velocity of incoming waves in this step
+  FixMPMColumn *free_field = nullptr;    // motion of the far side, or null
 
   void define();
   void find_column();

@@ -23,6 +23,7 @@ FixStyle(mpm/deform,FixMPMDeform);
 namespace LAMMPS_NS {
 class MPMField;
 
+/** Keywords of fix mpm/deform. */
 struct MPMDeformOptions {
   enum Drive { HELD, ERATE, TRATE, STRAIN, STRESS };
   static constexpr int NPART = 6;    ///< xx yy zz xy xz yz
@@ -35,9 +36,9 @@ struct MPMDeformOptions {
 
 /** The mean deformation of a periodic cell, along a path of strain or stress, component by component.
  *
- *  Points and nodes have the motion that is left without the mean one, which is periodic, so that box, lattice, and
- *  positions stay as they are: x = Fm X + u with the mean deformation gradient Fm, which is an upper triangular matrix as the box of fix
- *  deform is, and the periodic displacement u. The rate of Fm adds to the gradients that points get of the nodes. */
+ *  The position is x = Fm X + u with the mean deformation gradient Fm, an upper triangular matrix as for the box of fix
+ *  deform, and the periodic displacement u. Points and nodes move only with u, so that box and lattice stay as they
+ *  are. The rate of Fm is added to the velocity gradients that points get from the nodes. */
 class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
  public:
   FixMPMDeform(class LAMMPS *, int, char **);
@@ -57,22 +58,22 @@ class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
  private:
   std::vector<MPMField *> fields;
 
-  // the same on all ranks, and in restart files
+  // state in restart files, the same on all ranks
   struct {
     double F[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};    // mean, row-major
-    // of components with a stress: speed, for each length of the cell [1/time]; lack of stress in the last step; way and time since
-    // that changed its sign
+    // components with a given stress: rate of the deformation [1/time]; lack of stress in the last step; deformation and time
+    // since the last change of sign of that lack
     double speed[NPART] = {}, lack[NPART] = {}, way[NPART] = {}, time[NPART] = {};
-    double tau[6] = {};    // mean over the cell before deformation, Kirchhoff [pressure]
-    double P[9] = {};      // the same, first Piola-Kirchhoff
-    double work = 0.0;     // of the mean deformation, so far [energy]
-    double known = 0.0;    // the stress is known
+    double tau[6] = {};    // mean Kirchhoff stress over the cell before deformation [pressure]
+    double P[9] = {};      // first Piola-Kirchhoff stress, the same mean
+    double work = 0.0;     // work of the mean deformation so far [energy]
+    double known = 0.0;    // 1: the stress is known
   } past;
   static constexpr int NREAL = 9 + 4 * NPART + 6 + 9 + 2;
   double *reals() { return past.F; }
 
   double next[9];    // F at the end of the step
-  double rate[9];    // of F in this step, which the frames see
+  double rate[9];    // rate of F in this step, as seen by the frames
 
   double volume() const;
   double length(int axis) const;

@@ -24,18 +24,19 @@ FixStyle(mpm/dt,FixMPMDt);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/dt. */
 struct MPMDtOptions {
   double fraction = 0.0, grow = 1.05, dt_min = 0.0, dt_max = 0.0;    ///< dt_min, dt_max: 0 = none
-  double strain = 0.0;    ///< largest change of volume in a step, 0: any
-  double grains = 0.0;    ///< largest share of a collision of grains in a step, 0: any
-  double until = 0.0;     ///< elapsed time at which runs end, 0: none
-  int look_every = 10;    ///< steps between looks at wave speeds
+  double strain = 0.0;    ///< largest change of volume in a step; 0: no limit
+  double grains = 0.0;    ///< largest share of a collision of grains in a step; 0: no limit
+  double until = 0.0;     ///< elapsed time at which runs end; 0: none
+  int look_every = 10;    ///< steps between checks of wave speeds
 
   MPM_NS::Options declare();
 };
 
-/** Time step as a fraction of the smallest h/(c + |v|) over all material points, and with a limit of
- *  their change of volume in a step, and of its share of a collision of grains. Ends runs at a given time. */
+/** Sets the time step to a fraction of the smallest h/(c + |v|) over all material points. Can also limit the change
+ *  of volume of points in a step and the share of a collision of grains in a step, and end runs at a given time. */
 class FixMPMDt : public Fix, private MPMDtOptions {
  public:
   FixMPMDt(class LAMMPS *, int, char **);
@@ -58,27 +59,27 @@ class FixMPMDt : public Fix, private MPMDtOptions {
  private:
   /** The point that limits the time step, or the collision of grains. */
   struct Limit {
-    double dt;       // its h/(c + |v|); 0: it has no valid wave speed; strain, grains: dt/fraction
-    double speed;    // its wave speed, 0: limit of strain or grains
+    double dt;       // h/(c + |v|); 0: no valid wave speed; limit of strain or grains: dt/fraction
+    double speed;    // wave speed; 0: limit of strain or grains
     double tag;
-    double other;    // grains: the other one, 0: a wall; NO_GRAIN: no collision
+    double other;    // tag of the other grain; 0: a wall; NO_GRAIN: no collision
   };
   static constexpr double NO_GRAIN = -1.0;
   static constexpr Limit NO_POINTS = {std::numeric_limits<double>::max(), 0.0, 0.0, NO_GRAIN};
   Limit limit = {0.0, 0.0, 0.0, NO_GRAIN};
   std::unique_ptr<class MPMGrains> collisions;    // keyword grains
-  double wanted = 0.0;    // time step, before the last steps are made to fit
+  double wanted = 0.0;    // time step before the last steps are fitted to the end time
   bigint nchanges = 0;
 
   // runs that end at a time
   bool ended = false, told_of_rest = false;
   double time_at_start = 0.0, wall_at_start = 0.0;
 
-  // what the last run left, to see whether anything was changed since
+  // state at the end of the last run, to detect changes since then
   bool continues = false;
   double dt_left = 0.0, wanted_left = 0.0;
-  double limit_left = 0.0, grains_left = 0.0;    // time steps that points and grains allowed
-  Limit carried = NO_POINTS;    // strain since the last look, from the restart file
+  double limit_left = 0.0, grains_left = 0.0;    // time steps allowed by points and by grains
+  Limit carried = NO_POINTS;    // limit by strain since the last check, from the restart file
 
   Limit find_limit() const { return grain_limit(point_limit()); }
   Limit point_limit() const;

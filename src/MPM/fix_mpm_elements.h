@@ -36,40 +36,42 @@ struct ElementRule;
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/elements. */
 struct MPMElementsOptions {
-  std::string file, part;     ///< part: a physical group of the mesh, empty: all of it
+  std::string file, part;     ///< part: physical group of the mesh; empty: all of it
   bool fbar = false;          ///< average the volume over an element
   MPMThinBody thin;           ///< surfaces or lines
-  bool compression = true;    ///< do these resist it, or wrinkle?
+  bool compression = true;    ///< do surfaces and lines resist compression? else they wrinkle
   enum Bending { NONE, CONSTANT, LINEAR };
   Bending bending =
-      NONE;               ///< do these resist it, with constant or linear curvatures in triangles?
-  bool curved = false;    ///< does a closed surface curve between its nodes?
-  bool has_axes = false;    ///< of the material
-  double axes[6] = {};      ///< in surfaces: axis 1, and the side of axis 2
+      NONE;    ///< resistance to bending: none, or by constant or linear curvatures in triangles
+  bool curved = false;      ///< is a closed surface curved between its nodes?
+  bool has_axes = false;    ///< are axes of the material given?
+  double axes[6] = {};      ///< in surfaces: axis 1, and a vector on the side of axis 2
 
   MPM_NS::Options declare(int dim);
 };
 
-/** Who gives the pressure on one side of a surface of elements. */
+/** Interface for the pressure on one side of a surface of elements. */
 class MPMElementsPressure {
  public:
-  /** On all ranks together, in each step: the pressure, for the volume that is enclosed (not known: 0) and the area. */
+  /** Pressure for the enclosed volume (0: not closed) and the area of the surface. Collective, in each
+   *  step. starting: at the setup of a run. */
   virtual double on_surface(double volume, double area, bool starting) = 0;
-  /** Does it depend on neither of these? */
+  /** Is the pressure independent of volume and area? */
   virtual bool is_given() const = 0;
-  /** How much it falls with a larger volume, -dp/dV, at this one. */
+  /** Decrease of the pressure with the volume, -dp/dV, at this volume. */
   virtual double stiffness(double volume) const = 0;
 
  protected:
-  ~MPMElementsPressure() = default;    // who it is owns itself
+  ~MPMElementsPressure() = default;    // not deleted through this interface
 };
 
-/** Finite elements whose nodes are material points: the points have no stress of their own, the
- *  internal force is integrated over the elements (total Lagrangian) and put on atom->f, and fix
- *  mpm moves the points, or, without a lattice, fix nve. This is the generalized particle in cell method of V.P. Nguyen,
- *  A. de Vaucorbeil, C. Nguyen-Thanh, T.K. Mandal, Comput. Methods Appl. Mech. Eng. 371 (2020)
- *  113308.
+/** Finite elements whose nodes are material points. The points have no stress of their own: the
+ *  internal force is integrated over the elements (total Lagrangian) and added to atom->f. The
+ *  points are moved by fix mpm or, without a lattice, by fix nve. This is the generalized particle
+ *  in cell method of V.P. Nguyen, A. de Vaucorbeil, C. Nguyen-Thanh, T.K. Mandal, Comput. Methods
+ *  Appl. Mech. Eng. 371 (2020) 113308.
  *
  *  An element belongs to one of its nodes and migrates with it; the others may be ghosts.
  */
@@ -88,7 +90,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void post_neighbor() override
   {
     find_nodes();
-    if (!has_lattice) check_free_dt();    // which fix mpm does otherwise
+    if (!has_lattice) check_free_dt();    // with a lattice, fix mpm checks the time step
   }
   void post_force(int) override { compute(false); }
   double compute_scalar() override { return (double) nelements; }
@@ -107,24 +109,24 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   /** Does a fix mpm move the nodes? */
   bool on_lattice() const { return has_lattice; }
 
-  /** A surface has a pressure inside, or, if it is open, on the side from which its elements go around counterclockwise.
-   *  Until the next init(). closed: it must enclose a volume. */
+  /** Sets the pressure, which pushes a closed surface outward, and an open one toward the side from which its elements
+   *  go around counterclockwise (in 2d: to the right of lines). Valid until the next init(). closed: an error if the
+   *  surface encloses no volume. */
   void set_pressure(MPMElementsPressure *, bool closed);
 
-  /** Energy stored by the elements of this rank, and, on the first rank, without the work that the pressure in a closed surface
-   *  has done [pressure * volume]. */
+  /** Energy stored by the elements of this rank [pressure * volume]; on the first rank, minus the work done so far by
+   *  the pressure in a closed surface. */
   double stored_energy() const;
 
-  /** Forces of the elements, and of the pressure in a closed surface, on the points of this rank, [nlocal][3], as added to
-   *  atom->f. */
+  /** Forces of the elements and of the pressure on the points of this rank, [nlocal][3], as added to atom->f. */
   const double *forces() const override { return force_on.data(); }
 
   /** Smallest stable time step of this rank's elements: 2/omega with a bound of the highest
-   *  frequency omega. tag: a node of that element, speed: its wave speed, 0: gas in a closed surface has the
-   *  larger part in it. On all ranks together. */
+   *  frequency omega. tag: a node of the limiting element; speed: its wave speed, or 0 if the gas in
+   *  a closed surface contributes more. Collective. */
   double stable_dt_local(tagint &tag, double &speed) const;
 
-  /** Stop when the time step is above that of an element. */
+  /** Stops with an error if the time step exceeds the stable one of an element. */
   void check_dt() const;
 
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -135,7 +137,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void add_blocks(double *blocks) override;
   double asymmetry() const override;
 
-  /** What trial motions do not know, and what to do about it; null: nothing. */
+  /** Message on a feature that trial motions do not support, with advice; null: all is supported. */
   const char *beyond_trials() const
   {
     return bending ? "bending: use explicit steps"
@@ -147,50 +149,52 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
         : nullptr;
   }
 
-  /** Is it a surface or a line? */
+  /** Are the elements a surface or a line? */
   bool is_thin() const { return (bool) thin; }
 
-  /** ID of a fix mpm that moves nodes, null: there is none. On all ranks together. */
+  /** ID of a fix mpm that moves nodes, or null. Collective. */
   const char *field_of_nodes() const;
 
-  /** The IDs of nodes are consecutive. */
+  /** Smallest ID and number of the nodes; their IDs are consecutive. */
   tagint first_node() const { return ids.low; }
   bigint number_of_nodes() const { return ids.n; }
 
-  /** Edges of all elements, and diagonals of quadrangles, without deformation, on all ranks together; nodes are counted from the
-   *  first one on. An edge is there once for each of its elements. */
+  /** Undeformed edges of all elements and diagonals of quadrangles, on all ranks. Nodes are numbered from the first one
+   *  on. An edge is listed once for each of its elements. Collective. */
   std::vector<MPM_NS::NearNodes::Edge> edges() const;
 
-  /** Of a surface or line as it is now, and of all ranks together: the largest distance from the nodes around it of a place on it, through which
-   *  something can pass that keeps less than this distance from nodes. */
+  /** Largest distance of a place on the present surface or line from the nodes around it, over all ranks. An object
+   *  that keeps only a smaller distance from nodes can pass through there. Collective. */
   double widest_gap() const;
 
-  /** The largest distance of two nodes of an element, with room for more deformation, on all ranks together. */
+  /** Largest distance between two nodes of an element on all ranks, with room for further deformation. Collective. */
   double largest_extent() const;
 
-  /** Faces of a surface (in 2d: lines) that are elements of this rank, or halves of them; without those there is none. */
+  /** Face of a surface (in 2d: a line): an element or half of a quadrangle. */
   struct Face {
     bigint element;    ///< its label
-    int part;          ///< 0 or 1: which half of a quadrangle
+    int part;          ///< 0 or 1: half of a quadrangle
     int node[3];       ///< local indices, in the order of the element
   };
+  /** Faces of the elements of this rank. */
   std::vector<Face> faces() const;
 
-  /** The same of all ranks together, on all ranks: nodes are counted from the first one on. */
+  /** Face with nodes numbered from the first one on. */
   struct NumberedFace {
     bigint element, part;
     int64_t node[3];
   };
+  /** Faces of all ranks, on all ranks. Collective. */
   std::vector<NumberedFace> all_faces() const;
 
  private:
   struct Work;
-  struct IDs {    // of the nodes: their number and range
+  struct IDs {    // number and range of the IDs of nodes
     bigint n;
     tagint low, high;
   };
 
-  int dim, along;     // of space and of elements
+  int dim, along;     // dimensions of space and of elements
   int maxnode = 0;    // of the largest element of the mesh
   int nhistory, stride;
   int max_of_node = 0;    // largest number of elements that belong to one node
@@ -198,37 +202,38 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   MPM_NS::SurfaceKind kind = {};
   MPMElementsPressure *pressure = nullptr;
   double side =
-      0.0;    // of the pressure: 1: on the inside if elements go around counterclockwise; 0: not known
+      0.0;    // 1: the pressure pushes toward the side from which elements go around counterclockwise; -1: away from it; 0: unknown
   IDs ids;
   bool has_lattice = true;      // does a fix mpm move the nodes?
   bool warned_slack = false;    // in this run
-  double spent = 0.0;    // by a body without a lattice: plastic work and such, this rank's share
+  double spent = 0.0;    // plastic and other dissipated work without a lattice, this rank's share
   double pressure_work = 0.0, volume_before = 0.0, pressure_before = 0.0;    // of a closed surface
   double stiffness = 0.0, nu = 0.0, bending_frequency = 0.0;                 // of bending
   double shortest = 0.0;             // length of the smallest element, for artificial viscosity
   class FixMPMMaterial *material;    // found again at the start of each run
-  std::string variables;             // names of its history variables, which rows of the pool have
+  std::string variables;             // names of its history variables, in the order of the pool
   struct MPMPoints *points;
   std::unique_ptr<Work> work;
   std::unique_ptr<MPM_NS::PlaneStress> plane_stress;    // of surfaces and lines
 
   // A row of the pool: label and type of an element, tags of its nodes [maxnode], their reference
   // positions relative to the first one [maxnode][dim], and for each integration point F [9],
-  // tau [6], history, and, of surfaces and lines, the gradient of the motion along them [9]. What bends
-  // has a row, too, with the square of its extent and a BentTriangle, BentLine, or SharedStrain in the place of positions and points.
+  // tau [6], history, and, for surfaces and lines, the gradient of the motion along them [9]. Parts that
+  // bend have rows of their own, with the square of their extent and a BentTriangle, BentLine, or SharedStrain in
+  // place of positions and integration points.
 
-  double *first, *count;    // of an atom: its elements in the pool
+  double *first, *count;    // [n] range of the elements of an atom in the pool
   std::vector<double> pool;
   std::vector<std::array<int, MPM_NS::PATCH_NODES>> nodes;    // local indices, after find_nodes()
   int width;                                                  // of rows of sums
   std::vector<double> sums;                                   // forces and averages of nodes
   std::vector<double> force_on;
-  // trial motions: [local and ghost][3] displacements, and what other ranks get; a component of one node of each element that has moved;
-  // [element][maxnode dim][maxnode dim] forces by a motion of each
+  // trial motions: [local and ghost][3] displacements; values to send to other ranks;
+  // [element][maxnode dim][maxnode dim] forces by a motion of each component of each node
   std::vector<double> motion, sent, tangents;
-  int shifted_node = -1;
-  double shift[3] = {0.0, 0.0, 0.0};
-  bool *trying = nullptr;    // is all finite?
+  int shifted_node = -1;                // node of each element that is shifted; -1: none
+  double shift[3] = {0.0, 0.0, 0.0};    // its shift
+  bool *trying = nullptr;               // set to whether all is finite; null: no trial
 
   double *row(std::size_t e) const { return const_cast<double *>(pool.data()) + e * stride; }
   double *state_of(double *row, int q) const
@@ -238,7 +243,7 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   double &extent_of(double *row) const { return row[2 + maxnode]; }
   double *bent_of(const double *row) const { return const_cast<double *>(row) + 3 + maxnode; }
   int point_size() const { return 15 + nhistory + (thin ? 9 : 0); }
-  /** Area of the curved surface over that of the element. */
+  /** Area of the curved surface divided by that of the flat element. */
   double swell_of(const double *row) const { return curved ? row[stride - 1] : 1.0; }
   double *motion_of(double *state) const { return state + 15 + nhistory; }    // of surfaces, lines
   FixMPMMaterial *find_material() const;

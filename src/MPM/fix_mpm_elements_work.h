@@ -17,10 +17,10 @@
 
 namespace LAMMPS_NS {
 
-/** Triangles of a quadrangle, with a weight of half each; the first one is that of a triangle. */
+/** Triangles of a quadrangle, each with the weight 1/2; the first one also stands for a triangle. */
 static constexpr int SPLIT[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
 
-/** Normal of a triangle or line with the length of its area. */
+/** Normal of a triangle (in 2d: a line) whose magnitude is its area (length). at: [dim] corners. */
 inline void area_vector(int dim, const double *const at[3], double *normal)
 {
   double a[3], b[3];
@@ -36,23 +36,23 @@ inline void area_vector(int dim, const double *const at[3], double *normal)
   }
 }
 
-/** Elements whose integration points are in the batch. */
+/** A batch of integration points, and their elements. */
 struct FixMPMElements::Work {
   struct Element {
     std::size_t number;
     double *row;
     const MPM_NS::ElementRule &rule;
-    int start;    // its first point
+    int start;    // first point of the element in the batch
   };
   std::vector<Element> elements;
-  int n;                                                    // points
-  double *state[MPM_NS::BATCH];                             // F tau history
+  int n;                                                    // number of points in the batch
+  double *state[MPM_NS::BATCH];                             // F, tau, history
   double g[MPM_NS::BATCH][MPM_NS::MAX_ELEMENT_NODES][3];    // gradients of the functions in space
   double volume[MPM_NS::BATCH];                             // reference volume
-  double J[MPM_NS::BATCH];                                  // without F-bar
+  double J[MPM_NS::BATCH];                                  // determinant of F without F-bar
   MPM_NS::Batch batch = {};                        // must start from zero, see material/batch.h
-  std::vector<double> history, mean;               // of the batch, of an element
-  std::vector<MPM_NS::PlaneStress::Point> thin;    // [BATCH], of surfaces and lines
+  std::vector<double> history, mean;               // history of the batch; means over an element
+  std::vector<MPM_NS::PlaneStress::Point> thin;    // [BATCH], for surfaces and lines
 };
 
 }    // namespace LAMMPS_NS

@@ -32,11 +32,12 @@ class MPMField;
 class MPMMouth;
 class Region;
 
+/** Keywords of fix mpm/emit. */
 struct MPMEmitOptions {
   std::string region_id;
   MPM_NS::NumberOrVariable velocity[3];    ///< of the material, relative to the mouth
   MPM_NS::NumberOrVariable move[3];        ///< velocity of the mouth
-  double normal[3] = {0.0, 0.0, 0.0};      ///< direction of the flow; zero: that of the velocity
+  double normal[3] = {0.0, 0.0, 0.0};    ///< direction of the flow; zero: direction of the velocity
   int ppc = 2;
   double spacing = 0.0, area = 0.0;    ///< 0: not given
   double temperature = 0.0;
@@ -45,12 +46,12 @@ struct MPMEmitOptions {
   MPM_NS::Options declare(int dimension);
 };
 
-/** Inflow of material points through a region, the mouth. Points enter at its upstream end, layer by layer, and move with the
- *  given velocity until they leave it: the nodes of the mouth have that velocity.
+/** Inflow of material points through a region, the mouth. Points enter at its upstream end, layer by layer, and move with
+ *  the given velocity until they leave it, because the nodes of the mouth have that velocity.
  *
- *  Layers are frozen in the flow: layer k is at the distance S - (k + 1/2) d from the upstream end, with the way S of the
- *  flow so far and the distance d of layers. It enters in the step in which this becomes positive, at the place that it has by then. So the
- *  mass is that of the flow at any velocity and time step. */
+ *  Layers are frozen in the flow: layer k is at the distance S - (k + 1/2) d from the upstream end, where S is the
+ *  distance that the flow has traveled so far and d is the distance between layers. A layer enters at its current place in
+ *  the step in which this distance becomes positive. So the mass agrees with the flow for any velocity and time step. */
 class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
  public:
   FixMPMEmit(class LAMMPS *, int, char **);
@@ -73,46 +74,47 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   bool is_projection() const override { return true; }
   void act(double dt, Stage) override;
 
-  /** Are its points in this field? */
+  /** Do the points enter this field? */
   bool emits_into(const MPMField &) const;
 
   // for incompressible flows
 
+  /** Do the points enter this flow? */
   bool emits_into(const Fix &flow) const { return (flow.groupbit & (1 | groupbit)) != 0; }
-  const MPMMouth &passage() const { return *mouth; }    ///< from setup_pre_exchange() on
-  /** Of the material in this step; collective. */
+  const MPMMouth &passage() const { return *mouth; }    ///< valid from setup_pre_exchange() on
+  /** Velocity v[3] of the material relative to the mouth in this step. Collective. */
   void velocity_now(double *v);
 
  private:
   int type;
   Region *region = nullptr;
   MPMField *field = nullptr;
-  const FixMPMIncompressible *fluid = nullptr;    // in place of a field and a material
+  const FixMPMIncompressible *fluid = nullptr;    // flow, in place of a field and a material
   FixMPMMaterial *material = nullptr;
   std::unique_ptr<MPMMouth> mouth;
-  double layer = 0.0;      // distance of layers
-  double section = 0.0;    // area of the mouth, that of rings around an axis of symmetry
+  double layer = 0.0;      // distance between layers
+  double section = 0.0;    // area of the mouth; of rings around an axis of symmetry
 
-  // what restart files keep, with what the mouth is made of
+  // state in restart files, together with that of the mouth
   struct {
-    double travel = 0.0;                      // way of the flow through the mouth so far
-    double shift[3] = {0.0, 0.0, 0.0};        // of the mouth since the start
+    double travel = 0.0;                  // distance that the flow has traveled so far, see above
+    double shift[3] = {0.0, 0.0, 0.0};    // displacement of the mouth since the start
     double direction[3] = {0.0, 0.0, 0.0};    // of the flow
-    double layers = 0.0;                      // that have entered
+    double layers = 0.0;                      // number of layers that have entered
     double started = 0.0;
     double work = 0.0;      // of the mouth on the material, this rank's share [energy]
-    double newest = 0.0;    // largest ID of any point so far, also of those that were removed
-    double acted = 0.0;     // there was a last step,
-    double velocity[3] = {0.0, 0.0, 0.0};    // and what nodes were given in it
-    MPMTraffic total;                        // that has entered, of all ranks
+    double newest = 0.0;    // largest ID of any point so far, including removed points
+    double acted = 0.0;     // 1: there was a last step
+    double velocity[3] = {0.0, 0.0, 0.0};    // that nodes had in the last step
+    MPMTraffic total;                        // of all points that have entered, on all ranks
   } past;
   static constexpr int NREAL = 15 + MPMTraffic::NREAL;
 
-  double flow[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};    // velocities of this step
+  double flow[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};    // of material, of mouth
   double speed = 0.0;                                    // along the flow, relative to the mouth
-  bigint motion_step = -1;                               // for which these are known
+  bigint motion_step = -1;                               // step for which these are known
   double impulse[3] = {0.0, 0.0, 0.0}, dt_last = 0.0;    // on the material in the last step
-  std::vector<int64_t> nodes;                            // that are held
+  std::vector<int64_t> nodes;                            // nodes of the mouth, which are held
 
   bool moves() const;
   void find_field();

@@ -25,11 +25,12 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 namespace LAMMPS_NS {
 class MPMField;
 
+/** Keywords of fix mpm/handshake. */
 struct MPMHandshakeOptions {
-  /** The weight of the atoms falls linearly from 1 to 0 between two planes. */
+  /** A zone in which the weight of the atoms falls linearly from 1 to 0 between two planes. */
   struct Zone {
     enum { X, Y, Z } axis;
-    double one, zero;    ///< positions of the planes
+    double one, zero;    ///< positions of the planes with weight 1 and 0
   };
   std::string field_name;
   std::vector<Zone> zones;
@@ -38,16 +39,16 @@ struct MPMHandshakeOptions {
   MPM_NS::Options declare();
 
  private:
-  Zone next = {Zone::X, 0.0, 0.0};    // to be read
+  Zone next = {Zone::X, 0.0, 0.0};    // the zone that is being read
 };
 
-/** Zone where atoms and material points describe the same material, each with a share of its energy
- *  and mass, and move with one velocity at the nodes of a field. */
+/** Zones where atoms and material points describe the same material. Each has a share of its energy and
+ *  mass, and both move with one velocity at the nodes of a field. */
 class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHandshakeOptions {
  public:
   FixMPMHandshake(class LAMMPS *, int, char **);
   ~FixMPMHandshake() override;
-  int setmask() override    // the rest is called by fix mpm
+  int setmask() override    // fix mpm calls the rest
   {
     return FixConst::PRE_NEIGHBOR | FixConst::POST_NEIGHBOR | FixConst::POST_FORCE;
   }
@@ -71,37 +72,37 @@ class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHan
   void act(double dt, Stage) override;
 
  private:
-  enum Role { UNKNOWN, APART, COUPLED, POINT, NEAR_POINT };    // near: at the nodes of the zone
+  enum Role { UNKNOWN, APART, COUPLED, POINT, NEAR_POINT };    // NEAR_POINT: near nodes of the zone
 
-  /** The style of embedded atoms, if there is one. */
+  /** Pair style eam, if it is used. */
   struct Embedded {
     class Pair *pair = nullptr;
-    double flaw = 0.0;    // 1: its single() has the embedding energy in the force
+    double flaw = 0.0;    // 1: its single() adds a term of the embedding energy to the force
     double share(int i, int type) const;
   };
-  /** The nodes that each of the members reaches, and sums at all nodes. */
+  /** The nodes that each member reaches, and sums at all nodes. */
   struct Reach {
-    int n = 0;                     // nodes of a member
+    int n = 0;                     // number of nodes of each member
     std::vector<int> nodes;        // [members][n]
-    std::vector<double> shares;    // [members][n] their weights
+    std::vector<double> shares;    // [members][n] weights of the nodes
     std::vector<double> sums;
     template <class Function> void each_node(std::size_t k, const Function &);
   };
 
   MPMField *field = nullptr;
   class NeighList *list = nullptr;
-  double *weight;    // [n] share of the mass and energy of an atom or point that counts
+  double *weight;    // [n] share of the mass and energy of an atom or point in the zone
   double *role;      // [n] a Role
   Embedded eam;
 
   // of the present step
 
   std::vector<int> members;      // local atoms that are coupled, then points near the zone
-  std::size_t natoms = 0;        // the former
-  std::vector<double> pushes;    // [natoms][3] their forces g by the gradient of the weight
+  std::size_t natoms = 0;        // number of atoms in members
+  std::vector<double> pushes;    // [natoms][3] forces g on atoms by the gradient of the weight
   Reach reach;
   struct {
-    double heat, lost;    // taken so far by damping, and in all, on this rank
+    double heat, lost;    // energy lost so far by damping, and in total, this rank's share
   } energy = {0.0, 0.0};
   double force_on_points[3] = {};
 

@@ -34,17 +34,18 @@ FixStyle(mpm/heat,FixMPMHeat);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/heat. */
 struct MPMHeatOptions {
   MPMHeatCondition conditions[MPMHeatFaces::NFACE];
   MPMHeatSurfaces::Conditions surfaces;
-  MPMHeatSurfaceCondition surface;    ///< the last one
+  MPMHeatSurfaceCondition surface;    ///< condition that is being read
   std::vector<MPMHeatPair> pairs;
-  MPMHeatPair pair;      ///< the last one
-  std::string source;    ///< variable, without v_; empty: none
+  MPMHeatPair pair;      ///< pair that is being read
+  std::string source;    ///< name of a variable, without v_; empty: none
   MPMHeatTransfer transfer;
   int most_stages = 32;
   static constexpr int AUTO = 0;
-  int every = AUTO;    // steps of fix mpm from one conduction to the next, or AUTO
+  int every = AUTO;    // steps of fix mpm per conduction, or AUTO
   MPMDiffusionOptions in_time;
   bool grains = false;
   bool penalty = false;
@@ -52,8 +53,8 @@ struct MPMHeatOptions {
   MPM_NS::Options declare(int dimension);
 };
 
-/** Conduction of heat in the points of materials with a part thermal conducting, heat through the faces of the
- *  box, surfaces of regions and free surfaces, and heat that bodies (fix mpm) exchange where they touch. */
+/** Conduction of heat in points of conducting materials (with a part thermal), heat through faces of the box,
+ *  surfaces of regions, and free surfaces, and heat exchange between bodies (fix mpm) in contact. */
 class FixMPMHeat :
     public FixMPMState,
     public MPMPhysics,
@@ -61,7 +62,7 @@ class FixMPMHeat :
     private MPMDiffusion {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
-  int setmask() override;    // conduction is called by fix mpm
+  int setmask() override;    // fix mpm calls conduction
   void init() override;
   void post_integrate() override { grain_heat->show(); }
   void post_force(int) override;
@@ -85,65 +86,64 @@ class FixMPMHeat :
   void account(double *values) const override;
   double energy_at_hand() const override;
 
+  /** Conduction in this field. */
   MPMConduction &of(const MPMField &) const;
 
-  /** Who else gives heat to nodes and points. */
+  /** Other sources of heat for nodes and points. */
   enum Giver { FRICTION, GRAINS, NGIVER };
-  /** Heat that nodes or points of this rank were given in this step [energy], before they conduct. */
+  /** Counts heat [energy] that a source gave to nodes or points of this rank in this step, before conduction. */
   void book(Giver giver, double heat) { past.booked[giver] += heat; }
 
  private:
   using Heats = MPMConduction::Heats;
 
   MPMRows gradients;    // [n][dim] of the temperature at points; not with transfer pic and xpic
-  MPMRows waiting;      // [n][1] heat that grains have given to points, see MPMGrainHeat
-  std::unique_ptr<MPMGrainHeat> grain_heat;    // null: not asked for
-  MPMRows rubbing;    // [n][1] power that points get by pair style mpm/penalty, in the coming step
-  std::vector<double> rubbed;                        // [n] heat of that
-  std::vector<class PairMPMPenalty *> rubbers;       // pair styles that make it
-  bool grains_said = false, penalty_said = false;    // are the keywords there?
-  bool rubs = false;                                 // is there a fix that gives heat of friction?
-  bool losses_known = false;                         // has warn_of_friction() been done?
+  MPMRows waiting;      // [n][1] heat that points got from grains, see MPMGrainHeat
+  std::unique_ptr<MPMGrainHeat> grain_heat;    // null: not requested
+  MPMRows rubbing;    // [n][1] power that points get by pair style mpm/penalty in the next step
+  std::vector<double> rubbed;                        // [n] heat by this power
+  std::vector<class PairMPMPenalty *> rubbers;       // pair styles that give this heat
+  bool grains_said = false, penalty_said = false;    // are the keywords given?
+  bool rubs = false;                                 // does a fix give heat of friction?
+  bool losses_known = false;                         // was warn_of_friction() called?
   std::vector<std::unique_ptr<MPMConduction>> fields;
-  bool told_of_layers = false;    // without means across interfaces
-  struct Past {                   // so far, this rank's share; in restart files that of all ranks
+  bool told_of_layers = false;    // was a warning printed about interfaces without means?
+  struct Past {                   // heat so far, this rank's share; in restart files of all ranks
     double through_faces, of_sources;
-    double got;                              // by points
-    double given[NGIVER], booked[NGIVER];    // up to the last conduction, and since
+    double got;                              // heat that points got
+    double given[NGIVER], booked[NGIVER];    // up to the last conduction; since then
   };
-  static constexpr int GIVERS = MPMHeatFaces::NFACE + 1;    // place in lists of heat
+  static constexpr int GIVERS = MPMHeatFaces::NFACE + 1;    // index of givers in lists of heat
 
   std::vector<std::unique_ptr<MPMHeatLevels>> refined;    // bodies on several lattices
   std::vector<std::unique_ptr<MPMHeatBody>> bodies;       // fields that have surfaces with heat
   std::vector<std::unique_ptr<MPMHeatContact>> contacts;
-  std::vector<std::unique_ptr<MPMHeatSurfaces>>
-      skins;             // surfaces of fields, if there are conditions
-  MPMHeatThin thin;      // bodies; entries: surfaces, then contacts
-  MPMSuperStep steps;    // of the temperatures of all fields together
-  // the same, implicit; null: explicit
+  std::vector<std::unique_ptr<MPMHeatSurfaces>> skins;    // surfaces of fields with conditions
+  MPMHeatThin thin;      // thin bodies; entries: surfaces, then contacts
+  MPMSuperStep steps;    // explicit stages for the temperatures of all fields together
+  // implicit solver for the same; null: explicit
   std::unique_ptr<MPMDiffusionSolver> solver;
-  std::vector<MPMConduction *> parts;    // of the solver, in this step
-  double fastest = 0.0;                  // bound of all rates, of exchange, too
+  std::vector<MPMConduction *> parts;    // fields of the solver in this step
+  double fastest = 0.0;                  // bound of all rates, including exchange
   enum { STEPS, NEWTON, LINEAR, NTOTAL };
   double iterations[NTOTAL] = {};    // of this run
   Past past = {};
-  // heat of the last conduction, and power in a stage of it, this rank's share: through faces, of sources, of givers, through
-  // surfaces, through contacts
+  // heat of the last conduction, and power in a stage of it, this rank's share; entries: faces, sources, givers,
+  // surfaces, contacts
   Heats in_step, present;
   Heats power;
   double dt_last = 0.0;
   struct {                 // in restart files
     double steps, time;    // since the last conduction
-    double
-        longest;    // with every auto: no conduction is for more time than this, but for one step
+    double longest;        // every auto: longest time of a conduction over more than one step
   } waited = {};
-  bool each_step = false;    // conduction cannot wait, with every auto
+  bool each_step = false;    // with every auto: conduction is needed in each step
   bool power_known = true;
-  bool leaks_known = false;     // has look_for_leaks() been done?
-  bool fronts_known = false;    // has warn_of_fronts() said what it had to?
+  bool leaks_known = false;     // was look_for_leaks() called?
+  bool fronts_known = false;    // did warn_of_fronts() print its warning?
   void warn_of_fronts();
   int source_index = -1;
-  std::vector<double> source_values;    // [n] of an atom-style variable
+  std::vector<double> source_values;    // [n] values of an atom-style variable
 
   double sigma() const;
   MPMHeatBody &body_of(const MPMField &);

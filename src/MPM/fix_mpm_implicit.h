@@ -24,8 +24,8 @@ FixStyle(mpm/implicit,FixMPMImplicit);
 
 namespace LAMMPS_NS {
 
-/** Implicit steps of a field, or of several that touch each other: in the place of the momentum equation, the velocities of nodes are solved for with the stress
- *  of the end of the step, with inertia or as a sequence of states of equilibrium. */
+/** Implicit steps of a field, or of several fields in contact. In place of the explicit momentum equation, it solves for
+ *  the velocities of nodes with the stress at the end of the step, with inertia or as a sequence of equilibrium states. */
 class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplicitOptions {
  public:
   FixMPMImplicit(class LAMMPS *, int, char **);
@@ -42,7 +42,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   bool looks_beyond_points() const override { return false; }
-  /** The mid-point rule keeps angular momentum with moving least squares. */
+  /** True except for the mid-point rule, which keeps angular momentum with moving least squares. */
   bool brings_to_rest() const override { return time != MIDPOINT; }
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
@@ -50,9 +50,9 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
  private:
   std::vector<MPMField *> fields;
   std::unique_ptr<MPMImplicit> solver;
-  MPMImplicit::Accelerations kept;    // of points, of methods that need those of the step before
+  MPMImplicit::Accelerations kept;    // of points, for methods that need those of the previous step
   enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, MADE, STUCK, NTOTAL };
-  double total[NTOTAL] = {};    // so far
+  double total[NTOTAL] = {};    // counts so far
   enum {
     LAST_NEWTON,
     LAST_LINEAR,
@@ -65,12 +65,12 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
     STABILIZING,
     NLAST
   };
-  double last[NLAST] = {};    // of the last step, also of a run before
+  double last[NLAST] = {};    // of the last step, also in a previous run
   double taken[2] =
-      {};    // static: kinetic energy that points had, and work in a step; this rank's share [energy]
-  double at_start[NTOTAL] = {};    // of this run
-  double seconds = 0.0;            // in this run
-  bool told_of_turns = false;      // that stress mls lets what has turned give way
+      {};    // static: kinetic energy taken from points, and work in a step; this rank's share [energy]
+  double at_start[NTOTAL] = {};    // total[] at the start of this run
+  double seconds = 0.0;            // time spent in the solver in this run
+  bool told_of_turns = false;      // was it reported that rotated bodies yield with stress mls?
 
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;

@@ -41,43 +41,44 @@ class MPMFlowTension;
 class MPMFlowViscosity;
 struct MPMFlowPoints;
 
+/** Keywords of fix mpm/incompressible. */
 struct MPMIncompressibleOptions {
   enum Transfer { AUTO, APIC, FLIP, AFLIP, PIC };
 
   double h = 0.0, density = 0.0;
   double viscosity = 0.0;
-  bool implicit = false;    ///< viscosity
+  bool implicit = false;    ///< implicit viscosity
   double tension = 0.0;
-  double angle = 90.0;    ///< between surfaces and walls, degrees
+  double angle = 90.0;    ///< contact angle between surfaces and walls [degrees]
   Transfer transfer = AUTO;
   bool transfer_is_given = false;
-  double flip = 0.0;       ///< share of FLIP, with AUTO that of this step
-  double reflect = 0.0;    ///< share of the change by the pressure that comes once more
-  bool sharp = false;      ///< paths of points
+  double flip = 0.0;       ///< share of FLIP; with AUTO, the share in this step
+  double reflect = 0.0;    ///< share of the change by the pressure that is applied again
+  bool sharp = false;      ///< sharp paths of points, see find_paths()
   double spread = 0.5;     ///< share of an excess of points that spreads in a step
   double tolerance = 1.0e-9;
   int most_iterations = 10000;
-  int64_t most_parts = 64;    ///< of a step, where implicit viscosity does not converge
+  int64_t most_parts = 64;    ///< most parts of a step if implicit viscosity does not converge
   bool parts_are_given = false;
   MPMFlowWall walls[3][2];
   std::vector<std::string> region_ids;
-  bool sticks = false;    ///< regions
+  bool sticks = false;    ///< no slip at regions
   struct Liquid {
     std::string group;
     double density;
   };
-  std::vector<Liquid> liquids;    ///< of other densities
+  std::vector<Liquid> liquids;    ///< groups of points with other densities
   std::vector<std::string> solid_groups;
   bool has_gas = false;
   MPMFlowGasLaw gas_law;
   bool outside_is_given = false;
-  bool open[3][2] = {};    ///< faces next to which is open air
+  bool open[3][2] = {};    ///< faces with open air next to them
   bool has_open = false;
 
   MPM_NS::Options declare(int dim);
 
  private:
-  int axis = 0, side = 0;    // of the last wall
+  int axis = 0, side = 0;    // of the wall that is being read
   MPMFlowWall wall;
   bool wall_is_twice = false;
   std::string region_id;
@@ -86,8 +87,8 @@ struct MPMIncompressibleOptions {
   int open_face = 0;
 };
 
-/** Flow of an incompressible fluid, with free surfaces: its points, on a staggered lattice of its own, with a pressure that
- *  makes velocities free of divergence. */
+/** Flow of an incompressible fluid with free surfaces: material points and a staggered lattice of its own, with a
+ *  pressure that makes the velocities divergence-free. */
 class FixMPMIncompressible :
     public FixMPMState,
     public MPMStepLimit,
@@ -110,15 +111,17 @@ class FixMPMIncompressible :
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  /** Time in which a point of this rank passes one spacing with the velocity and the acceleration that it has, or one half of
-   *  what viscosity allows; no less than that of points without motion. tag: that of the point, 0: viscosity. */
+  /** Stable time step of this rank: the time in which a point passes one node spacing with its present velocity and
+   *  acceleration, or a moving region or wall passes one, or the limit of explicit viscosity, of solids, or of surface
+   *  tension. tag: of the limiting point; 0: another limit. */
   double stable_dt(tagint &tag) const override;
-  /** Node spacing of a flow for which a region is solid; 0: it is not. */
+  /** Node spacing of this flow if the region is solid for it, else 0. */
   double spacing_around(const std::string &region) const;
+  /** Node spacing. */
   double spacing() const { return h; }
   MPMFlowSolids *solids_of() const { return solids.get(); }    ///< null: none
   double density_of_fluid() const { return density; }
-  /** An error of who has another density of the fluid. */
+  /** Stops with an error if the density of the fluid given by another fix differs. who: the start of the message. */
   void check_density(double of_fluid, const std::string &who) const;
 
  private:
@@ -130,42 +133,42 @@ class FixMPMIncompressible :
   std::unique_ptr<MPMFlowTension> curved;       // with surface tension; null: none
   std::unique_ptr<MPMFlowRegions> regions;      // null: none
   std::unique_ptr<MPMFlowStick> stick;          // regions without slip; null: none
-  std::unique_ptr<MPMFlowBodies> bodies;    // of regions; null: these move by themselves, or not
-  std::unique_ptr<MPMFlowGrains> grains;    // of fix mpm/immersed; null: none
-  std::unique_ptr<MPMFlowInflow> inflow;    // of fix mpm/emit; null: none
-  std::unique_ptr<MPMFlowSolids> solids;    // null: none
-  std::unique_ptr<MPMFlowGas> gas;          // in pockets; null: none
+  std::unique_ptr<MPMFlowBodies> bodies;        // rigid bodies of regions; null: none
+  std::unique_ptr<MPMFlowGrains> grains;        // of fix mpm/immersed; null: none
+  std::unique_ptr<MPMFlowInflow> inflow;        // of fix mpm/emit; null: none
+  std::unique_ptr<MPMFlowSolids> solids;        // null: none
+  std::unique_ptr<MPMFlowGas> gas;              // in pockets; null: none
   std::unique_ptr<MPMFlowGasRows> gas_rows;
   MPMRows gradient;    // [n][flow_slopes(dim)] of velocities of points, with apic
   std::vector<int> liquid_bits;
   std::vector<double> lightness,
-      face_volumes;               // of faces, see MPMFlowPressure; with several densities
+      face_volumes;               // of faces, see MPMFlowPressure; with several densities only
   std::vector<double> elastic;    // forces of solids at faces
-  bool several = false;           // densities
+  bool several = false;           // are there several densities?
   double least_density = 0.0;
-  bool stiffness_known = false;    // in this run
+  bool stiffness_known = false;    // was check_stiffness() done in this run?
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
       potentials, viscous_velocity, before_forces, mobility, without_hold, start_of_part,
       psi_of_parts;
 
   double dt_before = 0.0;    // duration of the last step; 0: none so far
   mutable double limit_before =
-      0.0;                      // last stable_dt() with forces, on restart of all ranks; 0: none
-  bool forces_known = false;    // they are cleared at the start of a run
+      0.0;    // last stable_dt() with forces; after a restart, of all ranks; 0: none
+  bool forces_known = false;    // false at the start of a run, when forces are cleared
   mutable bool told_of_bodies = false, told_of_walls = false;
   bool told_of_large = false, told_of_liquids = false;
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
-  double halvings = 0.0;            // of steps and their parts, so far
-  double energy_of_spread = 0.0;    // that spreading has added to points so far, of this rank
+  double halvings = 0.0;            // number of halvings of steps and their parts so far
+  double energy_of_spread = 0.0;    // energy that spreading has added to points of this rank so far
   std::vector<double> paths;        // [cell][dim] velocities that points move with, if sharp
-  double gone = 0.0;                // most that points have moved since neighbor lists were made
+  double gone = 0.0;    // largest distance that points have moved since neighbor lists were made
 
   struct {
     double iterations = 0.0, of_stress = 0.0, residual = 0.0, divergence = 0.0, wet = 0.0,
            filled = 0.0, parts = 0.0;
     double walls[3][2] = {};
     std::vector<double> regions = {};    // [3 regions]
-  } last;    // of the last step; filled, wet, walls, and regions of this rank
+  } last;    // results of the last step; filled, wet, walls, and regions for this rank only
 
   double acceleration_of_stress() const;
   void sum_last_step(bool valid, double *all) const;

@@ -40,41 +40,40 @@ class FixMPMMaterial : public FixMPMState {
   void restart(char *) override;
 
   std::unique_ptr<MPM_NS::Material> material;
-  int nhistory;                ///< columns of history
-  MPMRows history;             ///< [n][nhistory] or null when the law has none
-  int damage;                  ///< column of the damage, 1 in points that have failed; -1: none
+  int nhistory;                ///< number of columns of history
+  MPMRows history;             ///< [n][nhistory]; null if the law has none
+  int damage;                  ///< column of the damage, which is 1 in failed points; -1: none
   double work[8] = {};         ///< energy of each MPM_NS::Work kind so far, this rank's share
   double stress_work = 0.0;    ///< work of the stress so far, with a compute mpm/energy only
 
-  /** Stress and history of a batch at the end of the step, and what this has spent. heat: [n] from outside,
-   *  per reference volume, or null. */
+  /** Updates stress and history of a batch to the end of the step and adds to work. heat: [n] heat from other
+   *  sources per reference volume, or null. */
   void update_batch(MPM_NS::Batch &, const MPM_NS::BatchKernels &, const double *heat = nullptr);
 
-  /** mass = density * initial volume for the points of the group that have no mass yet. */
+  /** Sets mass = density * initial volume for the points of the group that have no mass yet. */
   void assign_mass();
 
-  /** Index of a history variable, -1 when the law has none of this name. */
+  /** Index of a history variable; -1 if the law has none of this name. */
   int find_history(const std::string &) const;
 
-  bool mass_varies = false;    ///< that of points follows the water in their pores
-  bool watching;               ///< is there a range of validity whose end was not reported yet?
+  bool mass_varies = false;    ///< the mass of points changes with the water in their pores
+  bool watching;               ///< is there a range of validity whose exit was not reported yet?
 
-  /** Notes whether points of an updated batch, whose first one has this local index, have left a
-   *  range of validity. */
+  /** Checks whether points of an updated batch have left a range of validity. first: local index of
+   *  its first point. */
   void watch_ranges(const MPM_NS::Batch &, int first);
 
   double density(int) const;    ///< reference density of a point
 
  private:
-  /** The first time that a point left a range: of all points in that step the one with the smallest
-   *  ID. */
+  /** The first point that left a range; of several points in the same step, that with the smallest ID. */
   struct Exit {
     bool reported;
     bigint step;    ///< MAXBIGINT: not yet
     tagint tag;
     double value;
   };
-  bool counts_stress = false;    // there is a compute mpm/energy
+  bool counts_stress = false;    // is there a compute mpm/energy?
   std::vector<Exit> exits;       ///< for each range of the material
   void report_exits();
   void check_surfaces() const;

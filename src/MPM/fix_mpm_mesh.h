@@ -40,26 +40,27 @@ class FixMPMMeshHeat;
 struct MPMMeshBodies;
 struct MPMPoints;
 
+/** Keywords of fix mpm/mesh. */
 struct MPMMeshOptions {
   enum Transfer { FLIP, APIC };
 
   std::string file, part;
   bool total = false;    ///< nodes belong to the reference configuration
-  bool musl = true;      ///< strain by velocities that were mapped back
+  bool musl = true;      ///< compute strain from velocities that were mapped back
   Transfer transfer = FLIP;
-  double flip = 0.99;    ///< share of FLIP, the rest is PIC
-  bool fbar = false;     ///< changes of volume and mean stress are means against locking
+  double flip = 0.99;    ///< share of FLIP; the rest is PIC
+  bool fbar = false;     ///< average volume changes and mean stress, against locking
   std::vector<MPMMeshCondition> conditions;
 
   MPM_NS::Options declare(int dim);
 
  private:
-  MPMMeshCondition next;
+  MPMMeshCondition next;    // being read
 };
 
 /** Material points on a mesh of linear elements of any shape (V.P. Nguyen, A. de Vaucorbeil, S. Bordas, The Material Point
- *  Method, Springer 2023, chapter 5), in place of the lattice of a fix mpm. The whole step is in initial_integrate(), as
- *  there. */
+ *  Method, Springer 2023, chapter 5), in place of the lattice of a fix mpm. As in fix mpm, initial_integrate() does the
+ *  whole step. */
 class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptions {
  public:
   FixMPMMesh(class LAMMPS *, int, char **);
@@ -77,15 +78,15 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   void restart(char *) override;
   double stable_dt(tagint &tag) const override;
 
-  /** The present state of its points of a group, see visit_point_batches(); also between runs. */
+  /** Visits the present state of its points in a group, see visit_point_batches(). Also valid between runs. */
   void visit_batches(int group_bits, const BatchVisitor &);
 
  private:
   /** Sums of points at a node. */
   struct Node {
-    double mass, momentum[3], force[3], load[3];    // load: those forces that are from outside
+    double mass, momentum[3], force[3], load[3];    // load: external part of the force
   };
-  static constexpr int WIDTH = 10;    // reals of these
+  static constexpr int WIDTH = 10;    // number of reals in a Node
 
   std::unique_ptr<MPM_NS::BackgroundMesh> mesh;
   MPMMeshRanks ranks;
@@ -94,13 +95,13 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
 
   // of points
 
-  double *cell = nullptr;    // number of its cell + 1, 0: not known
-  MPMRows X;                 // place in the reference configuration, in the total frame
+  double *cell = nullptr;    // number of its cell + 1; 0: unknown
+  MPMRows X;                 // position in the reference configuration; total frame only
   MPMRows C;                 // velocity gradient of APIC, row-major [9]
   std::vector<MPM_NS::BackgroundMesh::Place> places;
-  std::vector<int> order;    // of points of this rank: by ID
+  std::vector<int> order;    // points of this rank, sorted by ID
 
-  // of nodes; with contact, of the nodes of each body, one after the other
+  // of nodes; with contact, of the nodes of each body in turn
 
   FixMPMMeshContact *contact = nullptr;
   FixMPMMeshHeat *heat = nullptr;
@@ -108,20 +109,20 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   std::vector<Node> sums;
   std::vector<MPM_NS::MeshVector> before, after, mapped;    // velocities
 
-  // where nodes of the reference configuration have gone, for a pressure that follows, and for means: in any case, as either may come
-  // after a restart; updated frame: empty
+  // present positions of the nodes of the reference configuration, for a follower pressure and for means. They are always kept, as
+  // either may be added after a restart. Updated frame: empty
 
   std::vector<MPM_NS::MeshVector> positions;
-  std::vector<char> counts_cell;    // [cell] is this the first rank with points in it?
+  std::vector<char> counts_cell;    // [cell] is this the first rank with points in the cell?
 
-  /** Of a point, in this step, against locking. */
+  /** Data of a point in this step for the averages against locking. */
   struct Volumetric {
-    int group;        // of points whose means are of their own
-    double weight;    // in means of this step
+    int group;        // number of the group of points with means of their own
+    double weight;    // weight in the means of this step
     double stress;    // mean Kirchhoff stress for the force
     double own,
-        all;    // volume ratio at the start: of the motion of the point, and mean; updated frame: 1
-    double scale;    // of the motion in each direction
+        all;    // volume ratio at the start: by the motion of the point; mean; updated frame: 1
+    double scale;    // factor on the motion in each direction
   };
   std::unique_ptr<MPMMeshMeans> means;    // null: none
   std::vector<Volumetric> volumetric;
@@ -131,7 +132,7 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   const MPM_NS::BatchKernels *kernels = nullptr;
   std::unique_ptr<MPM_NS::Batch> batch;
   std::vector<double> history;    // [variable][BATCH]
-  double load_work = 0.0;         // of forces from outside, on nodes of this rank
+  double load_work = 0.0;         // work of external forces on nodes of this rank
   bigint steps = 0;
 
   bool is_point(int i) const;

@@ -28,25 +28,26 @@ namespace LAMMPS_NS {
 class MPMMeshRanks;
 struct MPMPoints;
 
+/** Keywords of fix mpm/mesh/contact. */
 struct MPMMeshContactOptions {
   enum Law { FRICTIONLESS, COULOMB, STICK };
 
   Law law = FRICTIONLESS;
   double kinetic_friction = 0.0;
-  double static_friction = -1.0;    ///< negative: the same
+  double static_friction = -1.0;    ///< negative: equal to kinetic_friction
 
   MPM_NS::Options declare();
 };
 
-/** What fix mpm/mesh shows to contact. Of several bodies, body b has the rows b * nodes + node of what is known of nodes. */
+/** Data of fix mpm/mesh for contact and heat. Data of nodes have the row b * nodes + node for body b of several bodies. */
 struct MPMMeshBodies {
   const MPM_NS::BackgroundMesh &mesh;
   MPMMeshRanks &ranks;
   MPMMeshForces &forces;
   const std::vector<int> &points;                              ///< of this rank
-  const std::vector<MPM_NS::BackgroundMesh::Place> &places;    ///< [point]
-  const double *mass;                                          ///< of the first row
-  std::size_t stride;                                          ///< from row to row
+  const std::vector<MPM_NS::BackgroundMesh::Place> &places;    ///< [point] place in the mesh
+  const double *mass;                                          ///< mass in the first row
+  std::size_t stride;                                          ///< distance from row to row
 };
 
 /** Contact of bodies, groups of points of one fix mpm/mesh, each with its own velocities at the nodes. */
@@ -63,14 +64,15 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
 
   /** ID of its fix mpm/mesh. */
   const std::string &of_mesh() const { return mesh_id; }
+  /** Number of bodies. */
   int count() const { return (int) groups.size(); }
-  /** The body of a point with this group mask; -1: none, -2: several. */
+  /** Body of a point with this group mask; -1: none, -2: several. */
   int body_of(int mask) const;
 
-  /** Start of a run. */
+  /** Prepares a run. */
   void begin_run(const MPM_NS::BackgroundMesh &);
-  /** Impulses between bodies at nodes where they touch, to velocities [row]. decided: those that were mapped back,
-   *  which are to be in contact where the others were in this step. Collective. */
+  /** Applies impulses between bodies to velocities [row] of nodes where they touch. decided: for velocities that were
+   *  mapped back, which are in contact at the same nodes as found earlier in this step. Collective. */
   void act(const MPMMeshBodies &, std::vector<MPM_NS::MeshVector> &velocities, bool decided);
 
   static constexpr int MAX_BODIES = 8;
@@ -82,7 +84,7 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
 
   struct Pair {    // two bodies that touch at a node
     int a, b;
-    double n[3];    // unit normal from a to b, in the directions that conditions leave free
+    double n[3];    // unit normal from a to b, within the directions that conditions leave free
     State state;
     double normal, tangential[3];    // impulses on b so far
   };
@@ -91,14 +93,14 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   };
   /** A point of one of two bodies in reach of a node that both have. */
   struct Near {
-    int row;    // of the node among these
+    int row;    // index of the node among the shared nodes
     bool of_b;
     double weight,
-        r[3];    // function of the node; from the node to the point, in sizes of the node
+        r[3];    // node function at the point; vector from the node to the point, in sizes of the node
     int point;
   };
   struct Account {        // of two bodies, this rank's share
-    double impulse[3];    // on the second one in the last step
+    double impulse[3];    // on the second body in the last step
     double count;         // nodes in contact
     double work;          // of friction so far
   };
@@ -106,20 +108,20 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   std::string mesh_id;
   std::vector<int> groups;    // bits
   MPMPoints *points = nullptr;
-  std::vector<double> sizes;    // [node] of the volume that belongs to it
+  std::vector<double> sizes;    // [node] size of the volume that belongs to it
   std::vector<Node> nodes;
-  std::vector<Pair> pairs, found;    // found: [place in found_at]
-  std::vector<int> found_at;         // nodes of these
-  double overlap = 0.0;              // deepest of this step, in sizes of points
-  bool look = true;                  // for it
+  std::vector<Pair> pairs, found;    // found: [index in found_at]
+  std::vector<int> found_at;         // nodes of found
+  double overlap = 0.0;              // largest overlap in this step, in sizes of points
+  bool look = true;                  // check for overlap
   double dt_last = 0.0;
   Account accounts[MAX_PAIRS] = {};
   double array[MAX_PAIRS][5] = {};
   bigint array_step = -1;
 
-  // of the pair of bodies that is looked at
+  // of the pair of bodies that is being treated
 
-  std::vector<int> row, of_row;    // [node] -1: not shared; and back
+  std::vector<int> row, of_row;    // [node] row, -1: not shared; [row] node
   std::vector<Near> near;
   std::vector<MPM_NS::HullDistance> hulls;
   std::vector<MPM_NS::MeshVector> normals;

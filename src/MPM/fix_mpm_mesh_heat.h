@@ -28,27 +28,28 @@ class FixMPMMaterial;
 struct MPMMeshBodies;
 struct MPMPoints;
 
-/** What a physical group of a mesh does to the heat of its nodes. */
+/** Thermal condition at the nodes of a physical group of a mesh. */
 struct MPMMeshHeatCondition {
   enum Kind {
-    TEMPERATURE,    ///< its nodes have this temperature
+    TEMPERATURE,    ///< prescribed temperature of its nodes
     FLUX,           ///< power per area of its sides, into the body
-    CONVECTION      ///< coefficient, and temperature of what is outside
+    CONVECTION      ///< coefficient; temperature outside
   } kind = TEMPERATURE;
   std::string group;
   MPM_NS::NumberOrVariable value[2];
 };
 
+/** Keywords of fix mpm/mesh/heat. */
 struct MPMMeshHeatOptions {
   std::vector<MPMMeshHeatCondition> conditions;
 
   MPM_NS::Options declare();
 
  private:
-  MPMMeshHeatCondition next;
+  MPMMeshHeatCondition next;    // being read
 };
 
-/** Conduction of heat between points on a mesh (fix mpm/mesh, frame total), with temperatures and heat at its physical groups. */
+/** Conduction of heat between points on a mesh (fix mpm/mesh, frame total), with conditions at its physical groups. */
 class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
  public:
   FixMPMMeshHeat(class LAMMPS *, int, char **);
@@ -62,19 +63,19 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
 
   /** ID of its fix mpm/mesh. */
   const std::string &of_mesh() const { return mesh_id; }
-  /** Start of a run. Throws std::runtime_error when there is no such group in the mesh. */
+  /** Prepares a run. Throws std::runtime_error if the mesh lacks a group of a condition. */
   void begin_run(const MPM_NS::BackgroundMesh &);
-  /** Conduct heat for a time step. Collective. */
+  /** Conducts heat for a time step. Collective. */
   void conduct(const MPMMeshBodies &, double dt);
 
  private:
-  /** A material that conducts, and where its points have their temperature. */
+  /** A conducting material, with the history columns of its points. */
   struct Thermal {
     const FixMPMMaterial *fix;
     int temperature, molten;    // columns of history
     bool varies;
     bool jumps;                // its conductivity depends on the temperature, and it melts
-    MPM_NS::Conduction all;    // or the mean
+    MPM_NS::Conduction all;    // conduction of all points, or its mean
   };
   struct Point {
     int i;
@@ -83,7 +84,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
     double k
         [9];    // conductivity for gradients in the reference configuration, times the volume, row-major
   };
-  /** Of a condition at a node. */
+  /** A condition at a node, with its area. */
   struct OfNode {
     int node, condition;
     double area;
@@ -91,8 +92,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   /** Means of the conductivities in a cell that an interface of materials cuts. */
   struct Cut {
     double across, along;
-    double normal
-        [3];    // of the interface, in the reference configuration; its length is of no account
+    double normal[3];    // of the interface, in the reference configuration, of any length
   };
 
   std::string mesh_id;
@@ -100,20 +100,20 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   MPMPoints *points = nullptr;
   std::vector<Thermal> thermals;
   std::vector<OfNode> of_nodes;
-  double largest = 0.0;    // height of a cell
-  double relaxed = 0.0;    // diffusivity at which points take the temperature of the nodes
+  double largest = 0.0;    // largest height of a cell
+  double relaxed = 0.0;    // diffusivity with which points relax to the temperature of the nodes
   std::vector<Point> conducting;
   std::vector<double> capacity, value, before, rate, sums;    // of nodes
-  std::vector<char> held;         // [node] has it a temperature that is prescribed?
+  std::vector<char> held;         // [node] is the temperature prescribed?
   std::vector<double> present;    // [condition][2] values of this step
   double got = 0.0;               // heat that points have taken so far, this rank's share
-  std::vector<double> heat;       // [condition] that came through it so far, this rank's share
-  std::vector<double> power;      // [condition] in the last step
+  std::vector<double> heat;       // [condition] heat through it so far, this rank's share
+  std::vector<double> power;      // [condition] power in the last step
 
   std::vector<Cut> cuts;
-  std::vector<int> cut_of;        // [cell] which of these, -1: none
-  bool layers_known = false;      // have they been found in this run?
-  bool told_of_layers = false;    // has a warning told of those that have none?
+  std::vector<int> cut_of;        // [cell] index in cuts; -1: none
+  bool layers_known = false;      // were the cuts found in this run?
+  bool told_of_layers = false;    // was a warning printed about interfaces without means?
 
   const Thermal *thermal(int i) const;
   void find_layers(const MPMMeshBodies &);

@@ -29,40 +29,42 @@ FixStyle(mpm/mixture,FixMPMMixture);
 namespace LAMMPS_NS {
 class MPMField;
 
+/** Keywords of fix mpm/mixture. */
 struct MPMMixtureOptions {
   enum Drag { NO_DRAG, DARCY, SPHERES };
 
   std::string soil_id, water_id;
-  double grain_density = 0.0, viscosity = 0.0;    ///< viscosity: in units of pressure, then of mass
+  double grain_density = 0.0, viscosity = 0.0;    ///< viscosity: read as pressure, kept as mass
   Drag drag = NO_DRAG;
   double permeability = 0.0;          ///< intrinsic [area]
-  double reference_porosity = 0.0;    ///< at which it is that; 0: at any
+  double reference_porosity = 0.0;    ///< porosity of that permeability; 0: it holds for any
   double diameter = 0.0;              ///< of the grains
   MPM_NS::SphereDrag::Law spheres = MPM_NS::SphereDrag::NONE;
 
   MPM_NS::Options declare();
 
-  /** Drag per volume of the soil and difference of the velocities [mass/(volume time)], which belongs to a
-   *  porosity here, not that of the soil at its end. */
+  /** Drag per volume of soil and velocity difference [mass/(volume time)]. porosity: of the soil; here: porosity at
+   *  the node, which differs at the end of the soil and belongs to the velocity difference. */
   double drag_coefficient(double porosity, double here, double water_density,
                           double difference) const;
-  /** Does it depend on the difference of the velocities? */
+  /** Is the drag coefficient independent of the velocity difference? */
   bool drag_is_linear() const;
 };
 
-/** What soil and water have of the volume at a node, by the volumes there of the grains, of the soil with its pores, and of the
- *  water. */
+/** Shares of soil and water in the volume at a node, from the volumes there of the grains, of the soil with its pores,
+ *  and of the water. */
 struct MPMMixtureShares {
   double here;        ///< porosity
-  double porosity;    ///< of the soil there, which may be more or less at the end of the soil
-  double filled;      ///< share of its pores
+  double porosity;    ///< porosity of the soil itself, which differs at its end
+  double filled;      ///< share of the pores that is filled with water
   double of_soil;     ///< share of the pressure that the soil bears
 
+  /** Volumes at a node. */
   MPMMixtureShares(double grains, double with_pores, double water);
 };
 
-/** Soil and water, each a field (fix mpm) with points and a velocity of its own, at the same place: they share the
- *  volume, the gradient of the pressure of the water, and, by drag, their momentum. */
+/** Soil and water at the same place, each a field (fix mpm) with its own points and velocity. They share the volume and
+ *  the gradient of the water pressure, and exchange momentum by drag. */
 class FixMPMMixture :
     public FixMPMState,
     public MPMPhysics,
@@ -78,7 +80,7 @@ class FixMPMMixture :
   void restart(char *) override;
   double memory_usage() override;
 
-  // both interfaces have these two
+  // of both MPMPhysics and MPMNodeAction
 
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
@@ -96,7 +98,7 @@ class FixMPMMixture :
   std::vector<Account> accounts() const override;
   void account(double *values) const override { values[0] += dissipated; }
 
-  /** Has one of these fields (IDs) the role that it has here, or the other one? */
+  /** Is this field (ID) the soil or the water? */
   bool has(const std::string &field) const { return field == soil_id || field == water_id; }
   const char *soil_field() const { return soil_id.c_str(); }    ///< its ID
   const char *water_field() const { return water_id.c_str(); }
@@ -107,33 +109,33 @@ class FixMPMMixture :
     MPMField *field = nullptr;
     MPMReach reach;
     std::vector<char>
-        reaches;    // [block] do its points reach nodes that the other phase may have, too?
+        reaches;    // [block] do its points reach nodes that the other phase may have?
     std::vector<double> volumes;    // [node][8] sums over points: see find_shares()
   };
-  struct Common {    // a block of nodes that both may have
+  struct Common {    // a block of nodes that both phases may have
     int slot_soil, slot_water;
     uint64_t canonical;
   };
-  struct Node {               // with soil near water
+  struct Node {               // a node with soil near water
     int64_t soil, water;      // water: -1 where there is none
-    double share;             // of the pressure that the soil bears
-    double here;              // porosity
-    double porosity;          // of the soil there, which may be more or less at the end of the soil
-    double filled;            // share of its pores
-    double volume;            // of this share of the soil
+    double share;             // share of the pressure that the soil bears
+    double here;              // porosity at the node
+    double porosity;          // porosity of the soil itself, see MPMMixtureShares
+    double filled;            // share of the pores that is filled
+    double volume;            // volume of the filled share of the soil
     double wet;               // volume of water
     double density;           // of the water
     double force[3];          // on the soil, by the pressure of the water [mass*acceleration]
-    double on_water[3];       // more than by its own volume
+    double on_water[3];       // force on the water in addition to that by its own volume
     double impulse[3];        // of drag on the soil
     double rate;              // coefficient of drag [mass/time]
-    double free_water[3];     // velocity by all but drag and walls
-    double after_water[3];    // before walls act
-    double held[3];           // change of it by walls
-    double seen[3];           // of the soil, before the next wall acts
+    double free_water[3];     // velocity of the water without drag and walls
+    double after_water[3];    // velocity of the water before walls act
+    double held[3];           // change of that velocity by walls
+    double seen[3];           // velocity of the soil before the next wall acts
     bool owned;
   };
-  struct Push {    // of a wall on the soil
+  struct Push {    // action of a wall on the soil
     std::size_t node;
     class FixMPMBoundary *wall;
     double change[3];    // of the velocity
@@ -145,18 +147,18 @@ class FixMPMMixture :
   std::vector<Push> pushes;      // of this step
   std::vector<double> stress;    // [soil node][8] mean stress of the water in filled pores
   std::vector<double> by_grains, by_water;    // [node][8] forces of the pressure in these volumes
-  std::vector<double> flux, lead;    // [node][8] U at those of soil, U - u at those of water
+  std::vector<double> flux, lead;    // [node][8] U at nodes of soil, U - u at nodes of water
   std::vector<double> rates;         // [n] div U at points of soil
   bool lists_valid = false;
-  bool boxes_meet = false;    // boxes around both overlap
-  bool may_meet = false;      // on any rank
-  bool meets = false;         // in this step
+  bool boxes_meet = false;    // do the boxes around both phases overlap?
+  bool may_meet = false;      // do both have a block in common on any rank?
+  bool meets = false;         // do soil and water meet in this step?
   double dt_last = 0.0;
-  bool slow_told = false;    // has warn_of_slow_flow() said what it had to?
+  bool slow_told = false;    // did warn_of_slow_flow() print its warning?
   void warn_of_slow_flow();
-  bool pores_known = false;    // has look_for_overfull_pores() looked?
+  bool pores_known = false;    // was look_for_overfull_pores() called?
   void look_for_overfull_pores();
-  double dissipated = 0.0;    // by drag so far, this rank's share
+  double dissipated = 0.0;    // energy dissipated by drag so far, this rank's share
 
   bool stale() const;
   void list_blocks();
@@ -174,7 +176,8 @@ class FixMPMMixture :
   void share_strain();
   void account_for_work();
   bool shares_points(const class FixMPMMaterial &) const;
-  /** Raises most and speed to those of points of this rank; returns the fastest one, -1: none is faster. */
+  /** Raises most (wave speed) and speed (of points) to the maxima on this rank. Returns the point with the fastest
+   *  wave, or -1 if none is faster than most. */
   int fastest_wave(const Phase &, double &most, double &speed) const;
 };
 

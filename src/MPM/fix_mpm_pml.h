@@ -24,21 +24,22 @@ FixStyle(mpm/pml,FixMPMPML);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/pml. */
 struct MPMPMLOptions {
   static constexpr int NFACE = 6;
 
   int cells[NFACE] = {0, 0, 0, 0, 0, 0};    ///< of the layer at each face of the box, xlo ... zhi
-  double reflection = 1.0e-4;    ///< of a wave along the normal, as a share of its amplitude
-  double exponent = 2.0;         ///< of the depth in the layer
-  double speed = 0.0;            ///< 0: of the fastest wave in the layers
-  double mix = 0.0;              ///< share of the damping of an axis that other axes have
+  double reflection = 1.0e-4;    ///< reflected share of the amplitude of a wave along the normal
+  double exponent = 2.0;         ///< exponent of the depth in the profile of damping
+  double speed = 0.0;            ///< wave speed; 0: of the fastest wave in the layers
+  double mix = 0.0;              ///< share of the damping of an axis that is added to other axes
 
   MPM_NS::Options declare(int dimension);
 };
 
-/** Perfectly matched layers next to faces of the box: points there see stretched coordinates in which waves decay, and waves
- *  that come in are not reflected at any angle (unsplit, after Basu and Chopra). The stress that the layers have at the start
- *  stays. */
+/** Perfectly matched layers next to faces of the box (unsplit, after Basu and Chopra). Points there see stretched
+ *  coordinates in which waves decay, and incoming waves are not reflected, at any angle. The initial stress of the layers
+ *  is kept. */
 class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
  public:
   FixMPMPML(class LAMMPS *, int, char **);
@@ -63,16 +64,16 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
   void account(double *values) const override;
 
  private:
-  // of a point; all are zero outside of the layers
+  // for each point; all are zero outside of the layers
   MPMRows rows;
   enum {
-    DAMPING,              // of the axes [1/time]
+    DAMPING,              // along each axis [1/time]
     TAU = DAMPING + 3,    // Kirchhoff stress at the start
-    START = TAU + 6,      // place at the start, without periodic images
-    G = START + 3,    // displacement gradient in stretched coordinates, as velocity gradients are
-    SUM = G + 9,      // integral of the change of stress over time, half a step ago
+    START = TAU + 6,      // position at the start, without periodic images
+    G = START + 3,        // displacement gradient in stretched coordinates, like velocity gradients
+    SUM = G + 9,          // integral of the change of stress over time, half a step ago
     WIDTH_2D = SUM + 6,
-    SUM_OF_SUM = WIDTH_2D,    // integral of this
+    SUM_OF_SUM = WIDTH_2D,    // integral of SUM over time
     WAY = SUM_OF_SUM + 6,     // integral of the displacement, half a step ago
     WIDTH_3D = WAY + 3
   };
@@ -80,7 +81,7 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
   struct Body {
     MPMField *field;
     MPM_NS::NodeField
-        *pushes;    // of a node: force, then impulse [3], damping of its mass [mass/time]
+        *pushes;    // [node] force, later impulse [3]; damping of its mass [mass/time]
     struct Point {
       int i, slot;
     };
@@ -88,10 +89,10 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
   };
   std::vector<Body> bodies;
   std::vector<char>
-      is_inside;    // [n] until the topology is renewed, which is when points move in memory
+      is_inside;    // [n] valid until the topology is renewed, when points move in memory
   bool defined = false;
-  double known = 0.0;                                  // points in the layers
-  double largest = 0.0;                                // damping along one axis
+  double known = 0.0;                                  // number of points in the layers
+  double largest = 0.0;                                // largest damping along one axis
   double work_of_nodes = 0.0, work_of_strain = 0.0;    // this rank's shares [energy]
   bool told = false;
 

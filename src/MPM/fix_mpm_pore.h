@@ -31,6 +31,7 @@ FixStyle(mpm/pore,FixMPMPore);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/pore. */
 struct MPMPoreOptions {
   enum Formulation { U_P, U_V_P };
 
@@ -38,31 +39,31 @@ struct MPMPoreOptions {
   MPMPoreWater water;
   std::vector<MPMPoreSoil> soils;
   MPMPoreSurface::Conditions conditions;
-  bool seals = false;              ///< do bodies close free surfaces that they touch?
-  std::string initial = "0.0";     ///< pressure of points, a number or v_name
-  bool geostatic = false;          ///< at rest under the weight at first
-  double K0 = 0.0, table = 0.0;    ///< with this ratio of stresses, and height of the water table
-  double most_suction = -1.0;      ///< at first, positive; negative: no limit
+  bool seals = false;              ///< do bodies seal free surfaces that they touch?
+  std::string initial = "0.0";     ///< initial pressure of points, a number or v_name
+  bool geostatic = false;          ///< initially at rest under the weight
+  double K0 = 0.0, table = 0.0;    ///< geostatic: ratio of stresses, and height of the water table
+  double most_suction = -1.0;      ///< largest initial suction, positive; negative: no limit
   double relax = 0.4;
   int most_stages = 64;
   static constexpr int AUTO = 0, NOT_GIVEN = -1;
-  int every = NOT_GIVEN;    ///< water flows in one of up to this many steps, or AUTO
+  int every = NOT_GIVEN;    ///< most steps per flow of water, or AUTO
 
   MPM_NS::Options declare(int dimension);
 
  private:
-  // while they are read
+  // values that are being read
   MPMPoreSoil next;
   std::pair<double, double> biot = {0.0, 0.0}, growth = {0.0, 0.0};
   bool biot_alone = false, forchheimer_alone = false, growth_alone = false;
   enum Forchheimer { NUMBER, ERGUN } forchheimer = NUMBER;
   double forchheimer_value = 0.0;
   MPMRetention retention;
-  std::string without_soil, without_retention;    // keywords that have come too early
+  std::string without_soil, without_retention;    // keywords that were given too early
 };
 
-/** Pore water in the points of soils, which move with the velocity of the soil: the flow of the water,
- *  without inertia of its own (u-p) or with it (u-v-p), and the pressure of the water in the forces. */
+/** Pore water in the points of soils, which move with the velocity of the soil. Treats the flow of the water,
+ *  without its own inertia (u-p) or with it (u-v-p), and the water pressure in the forces. */
 class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions {
  public:
   FixMPMPore(class LAMMPS *, int, char **);
@@ -109,6 +110,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
 
+  /** Is there soil with water in this field? */
   bool has_water(const MPMField &field) const { return of(field).has_water(); }
   /** See MPMPore. */
   void find_forces_below_surface(const MPMField &field, const std::vector<char> &near,
@@ -116,9 +118,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   {
     of(field).find_forces_below_surface(near, of_water, of_all);
   }
-  /** Has the water inertia of its own (formulation u-v-p)? */
+  /** Does the water have inertia of its own (formulation u-v-p)? */
   bool moves() const { return formulation == U_V_P; }
-  /** Has it water in the pores of this material (ID of a fix mpm/material)? */
+  /** Is there water in the pores of this material (ID of a fix mpm/material)? */
   bool has(const std::string &material) const
   {
     return std::any_of(soils.begin(), soils.end(), [&](const MPMPoreSoil &soil) {
@@ -127,64 +129,64 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   }
 
  private:
-  MPMRows pressure;    // [n][1+dim] with its gradient
+  MPMRows pressure;    // [n][1+dim] pressure and its gradient
   MPMRows inertia;     // [n][dim] flow with inertia, see MPMPoreMotion
   double *since =
-      nullptr;    // [n] J after the last flow, where water flows in one of several steps; 0: not known
-  double *warmth = nullptr;     // [n] temperature up to which grains and water have expanded
-  double *content = nullptr;    // [n] volume of water, where a soil can dry (MPMPoreSuction)
-  int initial_index = -1;       // of a variable
+      nullptr;    // [n] J after the last flow, if water does not flow in each step; 0: unknown
+  double *warmth = nullptr;     // [n] temperature at the last thermal expansion of grains and water
+  double *content = nullptr;    // [n] volume of water, if a soil can dry (MPMPoreSuction)
+  int initial_index = -1;       // index of a variable for initial pressures; -1: none
   double initial_value = 0.0;
-  bool gradients_known = true;    // not yet where pressures were given
+  bool gradients_known = true;    // false until gradients of given pressures are found
   struct {
     double steps = 0.0, time = 0.0;
-  } waited;                     // since the last flow
-  double crossing = 0.0;        // time in which waves by the stiffness of the water cross a cell
-  bool coarse = false;          // can points in between be as stiff as a lattice can be?
+  } waited;                     // steps and time since the last flow
+  double crossing = 0.0;        // time for waves by the stiffness of the water to cross a cell
+  bool coarse = false;          // can sparse points be as stiff as the lattice can be?
   bool step_flows = true;       // does water flow in this step?
-  bool shut_known = false;      // has a warning told of shut pores?
-  bool long_known = false;      // has one told of flows that take too much at once?
-  bool grains_known = false;    // has one told of grains that do not go with their soil?
+  bool shut_known = false;      // was a warning printed about shut pores?
+  bool long_known = false;      // was a warning printed about flows that take too much at once?
+  bool grains_known = false;    // was check_grains() done?
   double smoothed =
-      0.0;    // share of pressures that vary over some cells, see MPMPore::Smoothing, in these runs
-  bool smooth_known = false;    // has a warning told of it?
-  // of u-p since the first run, energies that the resistance to the flow would have taken by the acceleration that is left out, that it took, and
-  // that it would have taken without the weight of the water, and what kinetic energy has come and gone
+      0.0;    // lost share of pressures that vary over some cells, see MPMPore::Smoothing, in these runs
+  bool smooth_known = false;    // was a warning printed about it?
+  // u-p, since the first run: energies that the resistance to the flow would have taken by the neglected acceleration
+  // (left_out), has taken (flow), and would have taken without the weight of the water (gradient); sum of the magnitudes of
+  // changes of the kinetic energy (exchanged)
   struct {
     double left_out = 0.0, flow = 0.0, gradient = 0.0, exchanged = 0.0;
-    double most = 0.0;        // kinetic energy so far
-    MPMPore::Inertia last;    // of all ranks
-    double time = 0.0;        // of these
-    bigint points = -1;       // that they are of; -1: not known
-    bigint flows = 0;         // so far in this run
+    double most = 0.0;        // largest kinetic energy so far
+    MPMPore::Inertia last;    // last values, of all ranks
+    double time = 0.0;        // of the last values
+    bigint points = -1;       // number of points of the last values; -1: unknown
+    bigint flows = 0;         // number of flows in this run
   } watched;
-  bool watches_inertia = false;    // in this run
-  bool inertia_known = false;      // has a warning told of it?
-  bool leaks_known = false;        // has look_for_leaks() been done?
-  bool has_state = false;          // of an earlier run: what points have at first is behind them
+  bool watches_inertia = false;    // is watch_inertia() used in this run?
+  bool inertia_known = false;      // was a warning printed about it?
+  bool leaks_known = false;        // was look_for_leaks() called?
+  bool has_state = false;          // state of an earlier run: no initial state is set
   std::vector<std::unique_ptr<MPMPore>> fields;
-  std::vector<MPMPore *> wet;    // those that have soil with water
-  MPMSuperStep steps;            // of the pressures of all fields together
+  std::vector<MPMPore *> wet;    // fields that have soil with water
+  MPMSuperStep steps;            // for the pressures of all fields together
   double gravity[3];             // force per mass
   MPMGravity weight;
-  std::vector<const class FixMPMRigid *> rigid_bodies;    // that seal what they touch
-  std::vector<const class FixMPMBoundary *> walls;        // the same of regions
-  std::vector<double> formula_values;                     // [n] permeability by variables
+  std::vector<const class FixMPMRigid *> rigid_bodies;    // rigid bodies that seal what they touch
+  std::vector<const class FixMPMBoundary *> walls;    // walls of regions that seal what they touch
+  std::vector<double> formula_values;                 // [n] permeability from variables
 
-  // of each part of the surface volumes of water, and behind these its energy (pressure times volume), this
-  // rank's share: that has come in so far; that came in the last step, and comes in a stage of it for each
-  // time; the last step of all ranks for each time
+  // [part of the surface] volume of water that came in, followed by its energy (pressure times volume), this rank's
+  // share: came: so far; in_step: in the last step; present: rate in a stage of a step; flows: rate in the last step,
+  // of all ranks
   std::vector<double> came, in_step, present, flows;
   double dt_last = 0.0;
   bool flows_known = true;
 
   // greatest rates of the last step on all ranks [1/time], so that a run in two parts takes the steps of one
   double conducted = 0.0, exchanged = 0.0;
-  double thinned =
-      std::numeric_limits<double>::max();    // see find_thin_layers(); so much: not yet known
+  double thinned = std::numeric_limits<double>::max();    // see find_thin_layers(); max(): unknown
   bool rates_known = false;
 
-  bool is_implicit = false;                    // the pressure is solved for with the motion
+  bool is_implicit = false;                    // is the pressure solved for with the motion?
   bool sets_relax, sets_stages, sets_every;    // keywords that were given
 
   MPMPore &of(const MPMField &) const;
@@ -204,8 +206,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   void look_for_leaks();
   void look_for_shut_pores();
   bool is_time_to_flow() const;
+  /** May water flow in only one of several steps? */
   bool waits() const { return every != 1; }
-  /** Could it, with other conditions? */
+  /** Could the flow wait for several steps with this formulation and these soils? */
   bool can_wait() const { return formulation == U_P && !can_dry(); }
   bool needs_each_step() const;
   void end_wait();

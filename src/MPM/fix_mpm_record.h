@@ -24,6 +24,7 @@ FixStyle(mpm/record,FixMPMRecord);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/record. */
 struct MPMRecordOptions {
   double start = 0.0;
   bool hold = true;
@@ -31,7 +32,7 @@ struct MPMRecordOptions {
   MPM_NS::Options declare();
 };
 
-/** Values of a file at the present time, for variables: those of each column, and their integrals over time. */
+/** Values from a file at the present time, for use in variables: each column, and its integral over time. */
 class FixMPMRecord : public Fix, private MPMRecordOptions {
  public:
   FixMPMRecord(class LAMMPS *, int, char **);
@@ -41,8 +42,8 @@ class FixMPMRecord : public Fix, private MPMRecordOptions {
 
  private:
   std::vector<double> rows;         // time and values
-  std::vector<double> integrals;    // of the values, up to each row
-  int ncolumn;                      // of values
+  std::vector<double> integrals;    // integrals of the values up to each row
+  int ncolumn;                      // number of columns of values
 
   double at(std::size_t row, int column) const { return rows[row * (1 + ncolumn) + column]; }
   void read(const std::string &file);

@@ -28,8 +28,8 @@ namespace LAMMPS_NS {
 class FixMPMContact;
 class MPMTwoScale;
 
-/** Makes one body of the points of several fields (fix mpm), each on a lattice of half the node spacing of the one before:
- *  see MPMTwoScale for each pair of them. */
+/** Joins the points of several fields (fix mpm) to one body. Each field has half the node spacing of the previous one; see
+ *  MPMTwoScale for each pair of them. */
 class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
  public:
   FixMPMRefine(class LAMMPS *, int, char **);
@@ -37,20 +37,21 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   int setmask() override { return 0; }    // called by fix mpm
   void post_run() override;
 
-  /** The fields of this body that are finer than this one, of which it has the name; none if it is none of the body. */
+  /** Fields of this body that are finer than the one with this name (ID); empty if that field is not part of the body. */
   std::vector<MPMField *> finer_than(const std::string &name) const;
-  /** Activate what the finer fields of the body need of this one: also before others look at its blocks. */
+  /** Activates the blocks of this field that the finer fields of the body need; also called before others use its blocks. */
   void extend_for_finer(const MPMField &) const;
-  /** Is this a field of such a body that has contact with others? It may have no points then. */
+  /** Does this field belong to a refined body that has contact with other bodies? Then it may have no points. */
   static bool serves_contact(const MPMField &);
-  /** Pairs of its lattices, from the coarsest on; from init_action() on. */
+  /** Pairs of successive lattices, from the coarsest on. Valid after init_action(). */
   const std::vector<std::unique_ptr<MPMTwoScale>> &lattices() const { return pairs; }
+  /** Is the field with this name (ID) part of the body? */
   bool has(const std::string &name) const { return level(name) < (int) ids.size(); }
   void init() override;
   double compute_vector(int) override;
   double memory_usage() override;
 
-  // both interfaces have these three
+  // of both MPMPhysics and MPMNodeAction
 
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
@@ -68,11 +69,11 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   void add_stages(MPMPlan &, MPMPlan::Place) override;
 
  private:
-  std::vector<std::string> ids;    // of the fix mpm, from the coarsest on
+  std::vector<std::string> ids;    // IDs of the fixes mpm, from the coarsest on
   std::vector<MPMField *> fields;
-  std::vector<std::unique_ptr<MPMTwoScale>> pairs;    // of each of them and the next one
+  std::vector<std::unique_ptr<MPMTwoScale>> pairs;    // each field and the next finer one
   struct
-      Neighbor {    // a field of another body that may touch this one, on the lattice of a field that is not the finest
+      Neighbor {    // a field of another body that may touch this body, on the lattice of a field that is not the finest
     MPMField *field;
     int level;
     MPMReach reach;

@@ -21,16 +21,17 @@ FixStyle(mpm/relax,FixMPMRelax);
 
 namespace LAMMPS_NS {
 
+/** Keywords of fix mpm/relax. */
 struct MPMRelaxOptions {
-  double tolerance = 0.0;    ///< of the ratio of forces
+  double tolerance = 0.0;    ///< for the ratio of unbalanced to carried forces
   int64_t look_every = 10;
   bool stops = true;
 
   MPM_NS::Options declare();
 };
 
-/** Brings all material points to rest in equilibrium: dynamic relaxation with kinetic damping. Velocities are
- *  set to zero whenever the kinetic energy has passed a maximum, until forces on the nodes are balanced
+/** Brings all material points to rest in equilibrium by dynamic relaxation with kinetic damping: velocities are
+ *  set to zero whenever the kinetic energy has passed a maximum, until the forces on the nodes are balanced
  *  (P.A. Cundall, 1976; M.R. Barnes, Computers and Structures 30, 685-695, 1988). */
 class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
  public:
@@ -44,6 +45,7 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  /** Does the run end when equilibrium is reached? */
   bool ends_runs() const { return stops; }
 
   void init_physics(MPMPlan &) override;
@@ -60,23 +62,23 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
 
  private:
   enum { RUNNING, LAST_STEP, ENDED } state = RUNNING;
-  double kinetic = 0.0;       // of the nodes at the end of the last step, all ranks [energy]
-  double unbalanced = 0.0;    // sum of forces on nodes, all ranks [force]
-  double carried = 0.0;       // sum of what the stress of points gives to nodes [force]
-  double ratio = 0.0;         // of these; UNKNOWN before the first look
-  double nrests = 0.0;        // how often velocities were set to zero
-  double nsteps = 0.0;        // of the cycle
-  double rested = 0.0;        // at which of these was the last rest
-  double interval = 0.0;      // steps from the one before to this
-  double peak = 0.0;          // kinetic energy before it fell in this step; 0: it did not
-  double least;               // of those where rests come soon
-  double grows = 0.0;         // 1: they have grown
-  // energy so far, this rank's share, in restart files that of all ranks: kinetic, and work in a step
+  double kinetic = 0.0;       // of the nodes at the end of the last step, on all ranks [energy]
+  double unbalanced = 0.0;    // sum of forces on nodes, on all ranks [force]
+  double carried = 0.0;       // sum of forces on nodes by the stress of points [force]
+  double ratio = 0.0;         // unbalanced over carried; UNKNOWN before the first check
+  double nrests = 0.0;        // number of times that velocities were set to zero
+  double nsteps = 0.0;        // number of steps so far
+  double rested = 0.0;        // value of nsteps at the last rest
+  double interval = 0.0;      // steps between the last two rests
+  double peak = 0.0;          // kinetic energy before it fell in this step; 0: it did not fall
+  double least;               // smallest peak at rests that follow each other soon
+  double grows = 0.0;         // 1: these peaks have grown
+  // energies taken so far, this rank's share; in restart files of all ranks: kinetic energy, and work in a step
   double taken[2] = {0.0, 0.0};
-  bool falls = false;    // the kinetic energy, in this step
+  bool falls = false;    // does the kinetic energy fall in this step?
   std::vector<MPMField *> fields;
   bool may_start_by_half = false;
-  bool told_of_turns = false;    // that stress mls lets what has turned give way
+  bool told_of_turns = false;    // was it reported that rotated bodies yield with stress mls?
 
   void look();
   void rest();

@@ -33,15 +33,15 @@ class SurfaceMesh;
 namespace LAMMPS_NS {
 class MPMField;
 
-/** What restart files keep of a rigid body. */
+/** State of a rigid body, as kept in restart files. */
 struct MPMRigidMotion {
   double x[3], v[3], L[3];       ///< center, its velocity, angular momentum
-  double Q[3][3];                ///< from the frame of the mesh to space
+  double Q[3][3];                ///< rotation from the frame of the mesh to space
   double omega[3];               ///< angular velocity
   double impulse[6], dt_last;    ///< of the material on the body in the last step
 };
 
-/** Options; v and omega of the motion are read as those at the start. */
+/** Options; v and omega of MPMRigidMotion are the initial values. */
 struct MPMRigidOptions : MPMRigidMotion {
   enum Kind { STICK, SLIP, SEPARATE };
 
@@ -61,11 +61,11 @@ struct MPMRigidOptions : MPMRigidMotion {
 };
 
 /** A free rigid body with the shape of a region mpm/mesh, in contact with the material at the nodes
- *  inside of it. Body and nodes take opposite impulses, found together, so that light bodies are as
- *  stable as heavy ones, and momentum and angular momentum are kept to round-off.
+ *  inside of it. Body and nodes get opposite impulses, which are solved for together, so that light bodies
+ *  are as stable as heavy ones, and momentum and angular momentum are conserved to round-off.
  *
- *  In a flow of fix mpm/incompressible, for which its region is solid, it has the shape of any region that is bounded, also in 2d,
- *  and that fix moves it together with the pressure, see MPMFlowBodies. */
+ *  In a flow of fix mpm/incompressible for which its region is solid, any bounded region can be the shape, also in 2d.
+ *  That fix then moves the body together with the pressure, see MPMFlowBodies. */
 class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
@@ -83,50 +83,52 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
   bool decides_contact(const MPMField &) const override { return kind == SEPARATE; }
   void act(double dt, Stage) override;
 
-  /** Of a place from the surface, negative inside; far where it is more. Not of bodies in a flow. */
+  /** Signed distance of x from the surface, negative inside; far if it is larger. Not for bodies in a flow. */
   double distance(const double *x, double far) const;
-  /** Largest time step: no point of the body crosses a cell. */
+  /** Largest time step in which no point of the body crosses a cell. */
   double stable_dt() const;
 
   // for flows
 
+  /** Is the shape of the body the region with this ID? */
   bool has_region(const std::string &id) const { return id == region_id; }
-  /** Center, velocity, and angular velocity. */
+  /** Center [3], velocity [3], and angular velocity [3]. */
   void motion(double *center, double *velocity, double *angular) const;
-  /** Where the region, which is at rest, has a place of the body. */
+  /** Maps a place x of the body to its place in the region, which stays at rest. */
   void place_in_region(const double *x, double *place) const;
+  /** Rotates a vector n from the frame of the region to space. */
   void turn_to_space(const double *n, double *turned) const { MathExtra::matvec(Q, n, turned); }
-  /** Velocity and angular velocity u[6] after the loads of a duration; inverse: [6][6] what an impulse and its moment about the
-   *  center change of them. The body stays as it is. */
+  /** Finds velocity and angular velocity u[6] after loads of this duration, and inverse [6][6], their change by an impulse
+   *  and its moment about the center. Does not change the body. */
   void predict(double duration, double *u, double *inverse);
-  /** A step with its loads and this impulse [6] of the flow. */
+  /** Moves the body by a step with its loads and this impulse and moment [6] of the flow. */
   void go_on(double dt, const double *impulse_of_flow);
 
  private:
   struct Contact {    // a node inside of the body
     enum State { APART, SLIDES, STICKS };
     MPMField *field;
-    int place;         // of the field in the list of all
-    double *record;    // of the node: its velocity and mass
+    int place;         // index of the field in the list of all fields
+    double *record;    // node record: velocity and mass
     bool owned;
     State state;
     double r[3];              // from the center of the body
-    double n[3] = {};         // out of the body, where nodes do not just stick
-    double depth = 0.0;       // below its surface
-    double of_water = 0.0;    // share of the impulse along n that water in pores bears
-    double v[3];              // before the contact
+    double n[3] = {};         // normal out of the body, unless nodes just stick
+    double depth = 0.0;       // below the surface of the body
+    double of_water = 0.0;    // share of the impulse along n that pore water bears
+    double v[3];              // velocity before contact
     double pull[3] = {};      // impulse of friction on the node, for an impulse of 1 along n
 
-    /** Velocity of the body (u: its velocity and angular velocity) at the node, relative to v. */
+    /** Velocity w of the body at the node, relative to v. u: velocity and angular velocity of the body. */
     void relative_velocity(const double *u, double *w) const;
   };
 
   const MPM_NS::SurfaceMesh *mesh = nullptr;    // null: the region is of another style, in a flow
-  double first[3], farthest;                    // center in the region, and radius about it
+  double first[3], farthest;    // center of the body in the region; largest distance from it
   double mass;
   double body_inertia[3][3];    // about the center, in the frame of the region
   std::vector<Contact> contacts;
-  std::unique_ptr<MPMFrictionHeat> heating;    // null: not asked for
+  std::unique_ptr<MPMFrictionHeat> heating;    // null: not requested
 
   void load_impulse(double dt);
   void find_contacts();
