@@ -13,7 +13,7 @@
 
 namespace LAMMPS_NS {
 
-/** Numbers of the cells that a place reaches. */
+/** Numbers of the cells with indices base + 0, 1, 2 that a place reaches. */
 template <int dim> struct MPMFlowReach {
   const int *slots;
   int block[3][3], inside[3][3];
@@ -44,8 +44,8 @@ template <int dim> struct MPMFlowReach {
   }
 };
 
-/** Calls f(number, k) for all cells in the middle or faces of which are reached: of the last layers of two axes at a
- *  time there is nothing. */
+/** Calls f(number, k) for all cells with index base + k of which the middle or a lower face is reached. These are the cells
+ *  with k = 2 along at most one axis. */
 template <int dim, class F> void visit(const MPMFlowReach<dim> &reach, const F &f)
 {
   int k[3] = {0, 0, 0};
