@@ -202,8 +202,8 @@ class MPMConduction : protected Pointers {
   // has a warning been printed about interfaces without means? In the fix, as this object is made anew for each run
   bool *told = nullptr;
   double fastest_point = 0.0;    // largest rate in this step, without the factor of the functions
-  bool simple = false;           // do rates of points follow from capacities and volumes alone?
-  bool keeps = false;            // do nodes keep their temperatures of the start of the step?
+  // do rates of points follow from capacities and volumes alone; do nodes keep their temperatures of the start of the step?
+  bool simple = false, keeps = false;
   struct Range {
     double low, high;
   };

@@ -144,9 +144,9 @@ class MPMFlowLattice : protected Pointers {
     int low[3], high[3];
   };
   struct Image {
-    int number;
-    int of_face, of_cell;    // originals: of the normal component, and of all other values
-    int of_next;             // the cell behind of_cell
+    // of_face, of_cell: originals of the normal component, and of all other values
+    int number, of_face, of_cell;
+    int of_next;    // the cell behind of_cell
     int axis, side;
   };
   const int groupbit;
