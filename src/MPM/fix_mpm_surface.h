@@ -30,6 +30,7 @@ struct MPMSurfaceOptions {
   /** Groups: of the points with a radius, and of the grains that they meet; empty: not given. */
   std::string group_id, grains_id;
 
+  /** The declaration of the options; it refers to this object. */
   MPM_NS::Options declare();
 };
 

@@ -39,6 +39,7 @@ struct MPMTractionOptions {
   bool has_traction = false, has_pressure = false, has_moment = false;
   double spacing = 0.0, area = 0.0;    ///< 0: not given
 
+  /** The declaration of the options; it refers to this object. */
   MPM_NS::Options declare(int dimension);
 };
 
@@ -72,8 +73,8 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
-  /** Force per area before deformation on the surface at point i, with the deformation gradient F [9, row-major], by the
-   *  loads of this step. For searches for equilibrium. Its node forces are those of atom->f and add_stress(). */
+  /** load: [3] force per area before deformation on the surface at point i, by the loads of this step, with the deformation
+   *  gradient F [9, row-major]. For searches for equilibrium; its node forces are those of atom->f and add_stress(). */
   void load_on(int i, const double *F, double *load) const;
 
  private:

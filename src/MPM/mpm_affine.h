@@ -28,10 +28,12 @@ class MPMAffine : protected Pointers {
     uint64_t hash, known;    // without padding, as this is written to restart files
   } velocities = {0, 0};
 
+  /** Declares the arrays of points in the state. */
   MPMAffine(class LAMMPS *, MPMField &, MPMPointState &);
 
   /** The matrices of all points, [n][size()], as kernels read them. */
   double *rows() const { return &C[0][0]; }
+  /** Number of reals of a matrix. */
   int size() const { return field.lattice.dim * field.lattice.dim; }
 
   /** Note the velocities that the matrices belong to: at the end of a run, and for restart files. */

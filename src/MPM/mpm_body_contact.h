@@ -26,12 +26,14 @@ class MPMBodyContact : public MPMTrialContact {
  public:
   /** Sets the place of the first node of each body in vectors. To be called before begin_trials(). */
   virtual void place_bodies(const std::function<int64_t(const MPMField &)> &first) = 0;
+  /** Number of rows that this rank knows. */
   virtual std::size_t nrows() const = 0;
   /** Number of rows in a group; the rows of a group are on the same nodes. */
   virtual int rows_of_group() const = 0;
   /** Identifies a group, with the same value on all ranks. */
   using Key = std::array<int, 7>;
   virtual Key key_of(std::size_t group) const = 0;
+  /** Does a group count in sums on this rank? */
   virtual bool owns(std::size_t group) const = 0;
   /** Is this row active now? */
   virtual bool holds(std::size_t row) const = 0;

@@ -76,10 +76,7 @@ class MPMConduction : protected Pointers {
    *  returns the bound that follows [1/time]. Points conduct less where nodes with little capacity would exceed four times
    *  the bound of nodes inside of a body. Collective. */
   bool is_bounded_by_rows() const;
-  enum Left {
-    ALL,
-    AS_SHARES
-  };    // which part of the conductivities counts: all, or that of shares
+  enum Left { ALL, AS_SHARES };    // part of the conductivities that counts
   void add_rows(Left left = ALL);
   double most_of_rows() { return scalar.greatest_row(); }
   double bound_by_rows(double greatest_of_rank);
@@ -117,6 +114,7 @@ class MPMConduction : protected Pointers {
    *  To be called before points_to_nodes(). Collective. */
   void give(std::vector<double> &energy);
 
+  /** [nnodes] capacities [energy/temperature] and volumes of nodes. */
   const std::vector<double> &node_capacity() const { return scalar.capacity; }
   const std::vector<double> &node_volume() const { return scalar.volume; }
   /** [nnodes] temperatures of nodes and their rates, for MPMSuperStep. */
@@ -218,8 +216,7 @@ class MPMConduction : protected Pointers {
   double usual_rate = 0.0;     // bound of the rates of nodes inside of a body [1/time]
   std::vector<double> capacity_at_faces;
 
-  std::vector<signed char>
-      present;    // [materials of the field] has it points of the field on any rank?
+  std::vector<signed char> present;    // [materials of the field] has it points on any rank?
   const Thermal *thermal(const FixMPMMaterial *) const;
   std::size_t index_of(const FixMPMMaterial *) const;
   bool is_present(const Thermal &) const;

@@ -26,6 +26,7 @@ class MPMBoxes : protected Pointers {
 
   /** Find the sizes for this step. */
   void update();
+  /** Present half sizes of point i, in node spacings. */
   void size_of(int i, double size[3]) const;
   /** Is an undeformed point larger than a cell? */
   bool is_too_large(int i) const;
@@ -77,6 +78,7 @@ class MPMCpdi : protected Pointers {
   {
     return (edges.capacity() + corners_late.capacity()) * sizeof(double);
   }
+  /** Memory for each point, without the arrays that are declared in the state. */
   double bytes_per_point() const { return corners ? 0.0 : size() * sizeof(double); }
 
  private:

@@ -78,6 +78,7 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
       equations(equations), options(options)
   {
   }
+  /** Removes all parts and lists. */
   void clear();
   /** Adds a part; parts are numbered in the order of these calls. */
   void add(MPMField &, MPMNodeScalar &);

@@ -54,9 +54,8 @@ class MPMEnergyWatch : protected Pointers {
   struct Sums {
     double points, met, mass;    // met: points that pair styles may act on
     double kinetic, stored, spent;
-    double
-        elastic;    // part of the stored energy that is in the stress of points; the rest is heat
-    double work;    // done on the points, less the energy of deleted points
+    double elastic;    // part of the stored energy that is not heat: in the stress of points
+    double work;       // done on the points, less the energy of deleted points
     /** Energy that work does not explain, up to a constant. */
     double unexplained() const { return kinetic + stored + spent - work; }
   };

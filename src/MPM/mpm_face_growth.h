@@ -25,7 +25,7 @@ class MPMField;
  */
 class MPMFaceGrowth {
  public:
-  /** A point below the surface. */
+  /** A point that may be below the surface. */
   struct Member {
     int layer;    ///< number of its layer, from 0 on; negative: the point is not below the surface
     const double *moved;     ///< displacement since the surface was found [3, distance]

@@ -143,10 +143,13 @@ class MPMField : protected Pointers {
   /** Check that the lattice fits the box, which may have changed since the last run. */
   void check_box();
 
+  /** ID of the fix mpm. */
   const char *id() const;
+  /** Is atom i a material point of this field? */
   bool is_point(int i) const;
   /** Is atom i a node of finite elements, without stress and material of its own? */
   bool is_element_node(int i) const;
+  /** The material of atom i; null: it has none. */
   FixMPMMaterial *material_of(int i) const;
 
   /** Duration of a step of the cycle. */
@@ -155,6 +158,7 @@ class MPMField : protected Pointers {
   double step_dt_before() const { return last_dt > 0.0 ? last_dt : step_dt(); }
   /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
   int steps_to_next() const;
+  /** The arrays of points as transfers read them. */
   MPM_NS::PointRows rows() const;
   /** Rows for transfers of other values and weights, in which points do not move (the time step is zero). */
   MPM_NS::PointRows rows_at_rest(double *values, const double *weights);

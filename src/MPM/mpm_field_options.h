@@ -33,8 +33,7 @@ struct MPMFieldOptions {
   Series series = LUMPED;
   int order = 1;    ///< terms of the series
   Stress stress = DEFAULT_STRESS;
-  bool rests =
-      false;    ///< not an option: do bodies come to rest? Set by MPMField::choose_stress()
+  bool rests = false;    ///< no option: do bodies come to rest? By MPMField::choose_stress()
   Scheme scheme = USL;
   bool total = false;             ///< nodes are places of the reference configuration
   double most_distorted = 0.0;    ///< ratio of stretches at which a new reference is made, 0: never

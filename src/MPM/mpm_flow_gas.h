@@ -42,7 +42,7 @@ class MPMFlowGas : protected Pointers {
   /** Changes the volumes by velocities of faces [cell][dim] in the time dt. Collective. */
   void move(const double *velocity, double dt);
 
-  int n() const { return (int) states.size(); }
+  int n() const { return (int) states.size(); }    ///< number of pockets
   bool has_gas(int pocket) const { return states[pocket].amount > 0.0; }
   /** Pressure of a pocket with its present volume, above the pressure outside. */
   double over(int pocket) const { return pressure(states[pocket]) - law.outside; }
@@ -58,6 +58,7 @@ class MPMFlowGas : protected Pointers {
   /** Work of compression from the pressure p, less the work of the air outside [pressure*volume]. */
   double energy() const;
 
+  /** State for restart files. */
   std::vector<double> restart_data() const;
   /** Returns false if the n data belong to another lattice. */
   bool restart(const double *from, std::size_t n);

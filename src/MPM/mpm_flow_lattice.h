@@ -51,10 +51,9 @@ class MPMFlowLattice : protected Pointers {
   MPM_NS::Lattice &lattice;
   MPMFlowWall walls[3][2];
   std::vector<Run> runs;
-  std::vector<Cell> cells;    ///< owned by this rank, within walls
-  std::vector<int>
-      around;    ///< [cells][3^dim] numbers of the cells around each one and itself, with wants_around
-  bool wants_around = false;
+  std::vector<Cell> cells;      ///< owned by this rank, within walls
+  std::vector<int> around;      ///< [cells][3^dim] numbers of cells around each one and itself
+  bool wants_around = false;    ///< is this list needed?
   int wants_more = 0;    ///< more layers of cells around those in reach of points, for smoothing
   int overlap = 1;       ///< layers of cells that a rank has around those in reach of its points
   std::vector<int> visitors;    ///< atoms that are not points, around which cells are needed, too
@@ -64,11 +63,13 @@ class MPMFlowLattice : protected Pointers {
   /** Number of spacings that points may move in a step. Half of it must be in reach of a rank before it moves them. */
   static constexpr double MOST_MOTION = 2.0;
 
+  /** groupbit: of the group of the points. */
   MPMFlowLattice(class LAMMPS *, const MPM_NS::Lattice &, int groupbit);
 
   /** Finds the walls. Stops with an error if the lattice does not fit the box, for example if a length is not a multiple of
    *  the spacing. style: of the fix, for messages. */
   void check_box(const char *style);
+  /** Is atom i a point of the group? */
   bool is_point(int i) const;
   /** Puts points in the order of block, cell, and tag. */
   void sort();
@@ -133,6 +134,7 @@ class MPMFlowLattice : protected Pointers {
     }
   }
 
+  /** Number of cells of all blocks on this rank: the length of arrays [cell]. */
   int64_t size() const { return grid.nnodes(); }
   double memory_usage() const;
 

@@ -42,10 +42,11 @@ class MPMFlowPockets : protected Pointers {
   /** Finds the pockets for the cells that are wet now. Returns false if nothing has changed; else shares() relate them to the
    *  pockets before. Collective. */
   bool find(const MPMFlowPressure &);
-  int n() const { return (int) infos.size(); }
+  int n() const { return (int) infos.size(); }    ///< number of pockets
   bigint cells_of(int pocket) const { return infos[pocket].cells; }
   /** Volume of these cells that is not solid, in volumes of a cell. */
   double room_of(int pocket) const { return infos[pocket].room; }
+  /** Does a pocket reach an open face of the box? */
   bool is_open(int pocket) const { return infos[pocket].open; }
   /** Sum of the open shares of the cells of a pocket at a wall of the box. */
   double cells_at(int pocket, int axis, int side) const { return infos[pocket].at[axis][side]; }

@@ -29,6 +29,7 @@ class Region;
  *  Velocities are means over the step, and points are kept out of the place of regions at its end. */
 class MPMFlowRegions : protected Pointers {
  public:
+  /** ids: of the regions. */
   MPMFlowRegions(class LAMMPS *, const MPMFlowLattice &, const std::vector<std::string> &ids);
 
   /** Finds the regions of a run. Stops with an error, whose text begins with name, if one does not exist or cannot be used:
@@ -38,7 +39,7 @@ class MPMFlowRegions : protected Pointers {
   void start_run();
   /** Finds the motion of regions in this step, and open shares at its start. duration 0: no motion. */
   void find(double duration);
-  int n() const { return walls.size(); }
+  int n() const { return walls.size(); }    ///< number of regions
   bool any_move() const { return any_moves; }
 
   /** The rigid body whose shape is this region; null: none. */
@@ -111,6 +112,7 @@ class MPMFlowRegions : protected Pointers {
    *  before. Collective. */
   void extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const;
 
+  /** Largest flux() of the walls on this rank. */
   double largest_speed() const { return speed; }
   double memory_usage() const;
 
@@ -124,8 +126,8 @@ class MPMFlowRegions : protected Pointers {
     double before[4];    // shift and angle at the start of the step
     // velocity, and angular velocity about center
     double shift[3] = {}, spin[3] = {}, center[3] = {};
-    double last[9] = {},
-           older[9] = {};    // shift, spin, and center of this step, and of the one before it
+    // shift, spin, and center of this step, and of the one before it
+    double last[9] = {}, older[9] = {};
     bool has_last = false;
   };
   struct Cut {    // owned cell with a part of a wall
@@ -146,8 +148,7 @@ class MPMFlowRegions : protected Pointers {
   std::vector<Wall> walls;
   std::vector<double> shares, rooms, fluxes;
   std::vector<char> closed;
-  std::vector<int>
-      body_faces;    // with bodies: [cell][dim] wall of the body that closes a face, or -1
+  std::vector<int> body_faces;    // [cell][dim] wall of the body that closes a face, or -1
   std::vector<Cut> cuts;
   std::vector<Held> helds;
   bigint nbuild = -1;

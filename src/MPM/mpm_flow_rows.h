@@ -43,7 +43,7 @@ class MPMFlowRows {
   /** Number of the cell at a place, and its place in the order of add(). */
   int cell_at(int place) const { return number[row[place]]; }
   int row_at(int place) const { return row[place]; }
-  int sides() const { return nsides; }
+  int sides() const { return nsides; }    ///< number of neighbors of a cell, 2 dim
   /** Place of a neighbor of a cell at a place. */
   int near(int place, int side) const { return places[(std::size_t) place * nsides + side]; }
 

@@ -42,7 +42,9 @@ class MPMFlowSolids : protected Pointers {
   void init(const std::string &who);
   /** Stops with an error if a point of the groups has no law of an elastic solid. */
   void check_points() const;
+  /** Is atom i a point of a solid? */
   bool holds(int i) const { return (atom->mask[i] & bits) && atom->vfrac[i] > 0.0; }
+  /** Density of the law of point i. */
   double density_of(int i) const;
 
   /** Forces of the present stress at faces: [cell][dim] in force units. */

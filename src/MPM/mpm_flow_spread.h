@@ -38,8 +38,8 @@ class MPMFlowSpread {
  private:
   class LAMMPS *const lmp;
   MPMFlowRows &rows;
-  std::vector<double> root,
-      factor;    // one over the root of the diagonal; weights of the scaled equations
+  // one over the root of the diagonal; weights of the scaled equations
+  std::vector<double> root, factor;
   std::vector<double> right_side, solution, direction, changes, product, sums;
 
   void scale(const std::vector<double> &diagonal, const std::vector<double> &weight);

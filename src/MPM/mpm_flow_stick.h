@@ -40,6 +40,7 @@ class MPMFlowStick {
     /** To be added to the difference of velocities in the flow, in which those of faces in walls count as zero. */
     double wall;
   };
+  /** The difference is that of upper less lower. */
   Gap between(int64_t upper, int64_t lower) const;
 
   /** Sets velocities [cell][dim] of faces in walls, for points next to walls: extrapolated linearly, with the velocity of the

@@ -62,12 +62,11 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
 
  private:
   struct Face {
-    int64_t at;    // place in velocities
-    int64_t
-        from[6];    // places of stresses that act on it, in pairs of the upper and the lower one
+    int64_t at;          // place in velocities
+    int64_t from[6];     // places of the stresses on it, in pairs of the upper and the lower one
     double weight[6];    // volumes of these, negative for the lower ones
-    double inverse,
-        share;    // one over the sum of its mass and that of walls; share of its own mass in the sum
+    // one over the sum of its mass and the masses of walls; share of its own mass in the sum
+    double inverse, share;
     double wall;    // velocity of walls times their share
   };
   struct Normal {
@@ -94,9 +93,8 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   std::vector<Edge> edges;
   // place in stresses of each element of vectors: those of owned wet cells and edges, in ascending order
   std::vector<int64_t> unknowns;
-  std::vector<double> carried;    // [stress] contribution of walls to W E u; empty without regions
-  std::vector<double>
-      areas[2];    // [stress] areas, for both components on which a shear stress acts
+  std::vector<double> carried;     // [stress] contribution of walls to W E u; empty without regions
+  std::vector<double> areas[2];    // [stress] for both components on which a shear stress acts
   std::vector<double> length, inverse_mass, speed, stress;       // of the lattice
   std::vector<double> right_side, solution, inverse_diagonal;    // by unknowns
   std::vector<double> mine, of_ranks;                            // sums
