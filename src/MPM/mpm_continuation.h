@@ -27,7 +27,7 @@ class MPMContinuation : protected Pointers {
   std::string state() const;
   /** Sets the lines of the restart file from which the next run continues. */
   void expect(const std::string &lines) { expected = lines; }
-  /** Node spacing and origin of the run before, as text, if they gave another lattice; else empty. */
+  /** Text with the node spacing or origin of the run before, if it gave another lattice; else empty. */
   std::string other_lattice() const;
   /** Start of a run: warns of differences. first: this is the first of all fields. Collective. */
   void check(bool first);

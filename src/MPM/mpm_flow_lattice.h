@@ -40,10 +40,9 @@ class MPMFlowLattice : protected Pointers {
     int first, last, slot;
   };
   struct Cell {
-    int number;    ///< slot*64 + n
-    int near
-        [6];      ///< numbers of neighbors: lower and upper one of each axis; next to walls: images
-    int walls;    ///< bit 2 d + s: the lower (s = 0) or upper face along axis d is a wall
+    int number;     ///< slot*64 + n
+    int near[6];    ///< numbers of neighbors: lower and upper one of each axis; images at walls
+    int walls;      ///< bit 2 d + s: the lower (s = 0) or upper face along axis d is a wall
     int index[3];
   };
 

@@ -124,10 +124,9 @@ class MPMFlowPressure : protected Pointers {
 
  private:
   struct Wet {
-    int cell;       // in the list of cells
-    int near[6];    // numbers of wet neighbors; -1: dry, or a wall
-    double weight
-        [6];    // of the difference to the neighbor, about 1/h^2; next to air of that to the surface; walls: 0
+    int cell;            // in the list of cells
+    int near[6];         // numbers of wet neighbors; -1: dry, or a wall
+    double weight[6];    // of the difference to the neighbor, 1/h^2; dry: of psi itself; walls: 0
     double diagonal;
   };
   const MPMFlowLattice &cells;

@@ -20,8 +20,7 @@ namespace LAMMPS_NS {
 /** The faces and cells that a place between the middles of cells reaches, see lattice/staggered.h. They depend only on the
  *  base of the place. */
 template <int dim> struct MPMFlowStencil {
-  static constexpr int ROWS =
-      2 * (dim - 1);    ///< number of rows of three faces along c that are normal to c
+  static constexpr int ROWS = 2 * (dim - 1);    ///< rows of three faces along c, normal to c
   static constexpr int CELLS = 1 << dim;
 
   const int *slots;
