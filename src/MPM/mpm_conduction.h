@@ -142,7 +142,7 @@ class MPMConduction : protected Pointers {
   double heat_of_points() const;
   /** Rate at which heat crosses a cell in the material that conducts least [1/time]. */
   double crossing_rate() const;
-  double slowest_crossing = 0.0;    ///< lowest one of all lattices of a body; 0: use its own
+  double slowest_crossing = 0.0;    ///< lowest rate of the lattices of a body; 0: own
 
   double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
   /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. Collective. */

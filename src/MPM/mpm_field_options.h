@@ -39,7 +39,7 @@ struct MPMFieldOptions {
   double most_distorted = 0.0;    ///< ratio of stretches at which a new reference is made, 0: never
   bool axisymmetric = false;      ///< 2d: x is the distance from the axis y, points are rings
   Locking locking = NO_CURE;
-  double smooth = 0.0;    ///< share of rough volumes of fluids that is removed in h/c; 0: none
+  double smooth = 0.0;    ///< share of rough fluid volumes removed in the time h/c; 0: none
   bool heat = false;      ///< kinetic energy that transfers lose becomes heat
   double light = 0.0;     ///< nodes with less than this share of a full cell are light; 0: none
   double origin[3] = {0.0, 0.0, 0.0};    ///< if not given: the lower corner of the box
