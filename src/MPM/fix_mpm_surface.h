@@ -24,17 +24,19 @@ FixStyle(mpm/surface,FixMPMSurface);
 namespace LAMMPS_NS {
 
 struct MPMSurfaceOptions {
-  double scale = 1.0;    ///< of the radius
-  double grow = 1.2;     ///< its largest growth
-  double depth = 0.5;    ///< of what counts as surface [h]
+  double scale = 1.0;    ///< diameter over the edge of a cube (2d: square) of the volume
+  double grow = 1.2;     ///< largest diameter over that of an undeformed point
+  double depth = 0.5;    ///< depth below the surface of points with a radius [h]
+  /** Groups: of the points with a radius, and of the grains that they meet; empty: not given. */
   std::string group_id, grains_id;
 
+  /** The declaration of the options; it refers to this object. */
   MPM_NS::Options declare();
 };
 
-/** Gives a contact radius, that of their present volume, to the material points at the surface of
- *  bodies and to those that have failed, and none to the others, so that the pair styles of grains
- *  meet no points inside. */
+/** Gives a contact radius to the material points at the surface of bodies and to those that have
+ *  failed, and a radius of zero to all others, so that the pair styles of grains do not see points
+ *  inside of bodies. The radius is that of the present volume of the point. */
 class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
  public:
   FixMPMSurface(class LAMMPS *, int, char **);
@@ -47,7 +49,7 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
   void post_run() override { give_largest(); }    // the next run takes its cutoffs from the radii
   double compute_scalar() override;
 
-  /** Are points members of this group only if they have a radius? */
+  /** Does this fix decide which points are in this group (those with a radius)? */
   bool keeps_group(int group) const;
 
   double memory_usage() override;
@@ -56,10 +58,10 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
   void unpack_forward_comm(int, int, double *) override;
 
  private:
-  int surface_group = -1;       // that points with a radius are in, -1: none; of this run
-  bool known = false;           // radii are those of the surface, not the largest ones
-  double *at_surface;           // [n] 1: has a radius, 0: has not
-  std::vector<double> share;    // of the volume, at the points of a field
+  int surface_group = -1;       // group of the points with a radius in this run; -1: none
+  bool known = false;           // false: all points have their largest radius
+  double *at_surface;           // [n] 1: the point has a radius, 0: it has none
+  std::vector<double> share;    // share of space that is filled, at the points of a field
   struct MPMPoints *points;
 
   bool has_radius(int i) const;

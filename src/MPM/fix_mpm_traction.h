@@ -33,18 +33,19 @@ struct MPMTractionOptions {
   Surface surface = REGION;
   std::string region;
   double points_area = 0.0, points_normal[3] = {0.0, 0.0, 0.0};
-  MPM_NS::NumberOrVariable traction[3];    ///< dead, for each area before deformation
-  MPM_NS::NumberOrVariable pressure;       ///< following, positive: against the body
+  MPM_NS::NumberOrVariable traction[3];    ///< dead load per area before deformation
+  MPM_NS::NumberOrVariable pressure;       ///< follows the surface; positive: against the body
   MPM_NS::NumberOrVariable moment[3];      ///< on the surface as a whole
   bool has_traction = false, has_pressure = false, has_moment = false;
   double spacing = 0.0, area = 0.0;    ///< 0: not given
 
+  /** The declaration of the options; it refers to this object. */
   MPM_NS::Options declare(int dimension);
 };
 
-/** Forces per area on the surface of bodies: dead ones, which keep their direction and total, pressure, which stays normal
- *  to the surface and acts on its present area, and those of a moment (MPMMoment). They are forces on points (atom->f), or, of pressure on all of the surface
- *  of a body, a part of internal forces. */
+/** Forces per area on the surface of bodies: dead loads, which keep their direction and total, pressure, which stays
+ *  normal to the surface and acts on its present area, and the forces of a moment (MPMMoment). They are applied as forces
+ *  on points (atom->f). A pressure on all of the surface of a body is a part of the internal forces instead. */
 class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractionOptions {
  public:
   FixMPMTraction(class LAMMPS *, int, char **);
@@ -72,14 +73,14 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
-  /** Force [force/area before deformation] on the surface at point i, with the deformation gradient F [9, row-major], by the
-   *  loads of this step: for who looks for states of equilibrium. Its node forces are those of atom->f and add_stress(). */
+  /** load: [3] force per area before deformation on the surface at point i, by the loads of this step, with the deformation
+   *  gradient F [9, row-major]. For searches for equilibrium; its node forces are those of atom->f and add_stress(). */
   void load_on(int i, const double *F, double *load) const;
 
  private:
-  // Of a point, before deformation: area, share of the stress (MPMFace), normal [3], so that area times cof(F) times normal is
-  // that on the present surface; in the last step force over this
-  // area and place [3], J over the present area, and pressure
+  // Of a point. Before deformation: area, share of the stress (MPMFace), and normal [3]; area times cof(F) times normal is
+  // the area vector of the present surface. In the last step: force over this area [3], place [3], J over the present area,
+  // and pressure
   MPMRows rows;
   enum {
     AREA,
@@ -91,29 +92,31 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
     PRESSED,
     WIDTH
   };
-  // In the updated frame, of a point with pressure: present area over the size of cof(F) times normal, which is what points
-  // themselves know of it; layer (0: none, then from 1 on); displacement, and normal, since and when the surface was found
+  // Of a point with pressure, in the updated frame: present area over the norm of cof(F) times normal, which is the growth
+  // that the F of the point gives; layer (0: none, layers count from 1); displacement since the surface was found [3], and
+  // normal at that time [3]
   MPMRows growth;
   enum { RATIO, LAYER, MOVED, FACING = MOVED + 3, GROWTH_WIDTH = FACING + 3 };
   bool grows = false;    // are these kept?
   MPMFaceGrowth face_growth;
-  // of a point with pressure on all of the surface, in the last step: pressure, volume, force of its gradient [3], place [3]
+  // of a point, with pressure on all of the surface, in the last step: pressure, volume, force of the gradient of the
+  // pressure [3], place [3]
   MPMRows inside;
   enum { PRESSURE, VOLUME, PUSH, AT = PUSH + 3, INSIDE_WIDTH = AT + 3 };
-  bool defined = false;    // which points belong to the surface
-  double known = 0.0;      // how many they are
+  bool defined = false;    // have the points of the surface been found?
+  double known = 0.0;      // number of these points on all ranks
   std::vector<MPMField *> fields;
   static constexpr int NSUM = 7;                  // force [3], present area, torque [3]
-  double sums[NSUM] = {}, all_sums[NSUM] = {};    // of compute_vector(): this rank's share, and all
+  double sums[NSUM] = {}, all_sums[NSUM] = {};    // for compute_vector(): of this rank, of all
   bool sums_known = true;
-  bool told_of_nodes = false;    // of finite elements
-  double work[2] = {
-      0.0, 0.0};    // so far, of forces on points and of stress, this rank's share [energy]
+  bool told_of_nodes = false;    // warned of nodes of finite elements
+  // so far, by forces on points and by stress, this rank's share [energy]
+  double work[2] = {0.0, 0.0};
 
-  // loads of this step, in units of force over area: dead, and pressure
+  // a load in this step [force/area]
   struct Load {
     double value = 0.0;
-    std::vector<double> of_points;    // [n] of an atom-style variable, else empty
+    std::vector<double> of_points;    // [n] values of an atom-style variable, else empty
     double at(int i) const { return of_points.empty() ? value : of_points[i]; }
   };
   static constexpr int NLOAD = 7;    // traction, pressure, moment

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_BROADCAST_H
 #define LMP_MPM_BROADCAST_H
 
-// Data that one rank has read from a file, to all ranks.
+// Sends data that one rank has read from a file to all ranks.
 
 #include "lmptype.h"
 
@@ -18,7 +18,8 @@
 
 namespace LAMMPS_NS {
 
-/** Sends plain data of rank 0, in a vector or string of any length, to all ranks. */
+/** Sends a vector or string of plain data of rank 0 to all ranks, in pieces, as its length may be more than an int.
+ *  Collective. */
 template <class Data> void broadcast(Data &data, MPI_Comm world)
 {
   constexpr std::size_t SIZE = sizeof(typename Data::value_type);

@@ -26,141 +26,148 @@
 
 namespace LAMMPS_NS {
 
-/** How temperatures go from nodes to points. */
+/** How points get temperatures from nodes. */
 struct MPMHeatTransfer {
   enum Kind { RELAX, PIC, AFFINE, XPIC };
 
   Kind kind = RELAX;
-  int order = 1;    ///< terms of the inverse of the matrix of capacities, of XPIC
-  double relax =
-      1.0;    ///< how fast points take that of the nodes, in units of conduction over a cell
+  int order = 1;    ///< XPIC: terms of the series for the inverse of the capacity matrix
+  /** RELAX: rate at which points take the temperature of nodes, in units of MPMConduction::crossing_rate(). */
+  double relax = 1.0;
 
   /** Do points keep gradients of the temperature? */
   bool has_slopes() const { return kind == RELAX || kind == AFFINE; }
 };
 
-/** Conduction of heat between the points of one field: temperatures of the nodes, and their rates. The temperatures
- *  of all fields advance together (MPMSuperStep), as bodies may exchange heat. */
+/** Conduction of heat between the points of one field: temperatures of the nodes and their rates. The temperatures
+ *  of all fields advance together (MPMSuperStep), as bodies may exchange heat. Equations, transfers, and stability: see
+ *  the top of mpm_conduction.cpp. */
 class MPMConduction : protected Pointers {
  public:
   using Heats = MPMHeatFaces::Heats;
-  static constexpr int SOURCES = MPMHeatFaces::NFACE;    ///< place in Heats
+  static constexpr int SOURCES = MPMHeatFaces::NFACE;    ///< place of the sources in Heats
 
   MPMField &field;
   MPMHeatFaces faces;
   MPMNodeScalar scalar;    ///< the temperature
-  /** [nnodes] heat that nodes get from elsewhere in this step [energy], the same on all ranks that have the
+  /** [nnodes] heat that nodes get from other physics in this step [energy], the same on all ranks that have the
    *  node; empty: none. */
   std::vector<double> given;
-  double duration = 0.0;    ///< of the coming conduction [time]
+  double duration = 0.0;    ///< of the coming conduction step [time]
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
-  /** Start of a run. surfaces: heat comes through surfaces other than faces of the box, too. told_of_layers: has a warning told of
-   *  interfaces that have no means? */
+  /** Start of a run. surfaces: heat also comes through surfaces other than faces of the box. told_of_layers: set once a
+   *  warning about interfaces without mean conductivities has been printed. */
   void init(double sigma, bool surfaces, bool &told_of_layers);
 
-  /** A step, first part: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
-   *  the transfers pic and xpic. starts: the first call of find_rates() will be for these temperatures, but for those that faces hold.
-   *  Returns the bound of the rates of conduction of this rank [1/time]. */
+  /** First part of a step: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
+   *  the transfers pic and xpic. starts: the first call of find_rates() will be for these temperatures, except those that
+   *  faces prescribe. Returns the bound of the rates of conduction of this rank [1/time]. */
   double points_to_nodes(const MPMRows &gradients, bool starts);
-  /** The same of a field of a body on several lattices (MPMHeatLevels), in parts: sums of this rank's points; when tied nodes have given
-   *  theirs away, temperatures, and when tied nodes have theirs again, the bound. */
+  /** points_to_nodes() in parts, for a body on several lattices (MPMHeatLevels). add_points(): sums over the points of this
+   *  rank. sum_nodes(): temperatures, after tied nodes have given their sums to their parents. end_nodes(): the bound, after
+   *  tied nodes have got their temperatures. */
   void add_points(const MPMRows &gradients, bool starts);
   void sum_nodes() { scalar.sum_nodes(); }
   double end_nodes();
-  /** Functions that points alone do not bound (shape linear): rows of the matrix of rates, in the place of rates, and what follows from
-   *  them when they are those of all lattices: the bound. usual: that of nodes inside of a body. Collective. */
+  /** Shape functions for which points alone give no bound (shapes linear and bernstein): rate gets the sums of absolute
+   *  values of the rows of the matrix of rates, and when these have the contributions of all lattices, bound_by_rows()
+   *  returns the bound that follows [1/time]. Points conduct less where nodes with little capacity would exceed four times
+   *  the bound of nodes inside of a body. Collective. */
   bool is_bounded_by_rows() const;
-  enum Left { ALL, AS_SHARES };    // of conductivities
+  enum Left { ALL, AS_SHARES };    // part of the conductivities that counts
   void add_rows(Left left = ALL);
   double most_of_rows() { return scalar.greatest_row(); }
   double bound_by_rows(double greatest_of_rank);
-  /** The bound of the rates of conduction on all ranks. */
+  /** The bound of the rates of conduction on all ranks [1/time]. */
   void keep_rate(double conduction) { conducted = conduction; }
   double bound_of_rates() const { return conducted; }
-  /** What surfaces at edges may have at the most: that bound, without what nodes with little capacity add to it where these get no
-   *  heat through surfaces. */
+  /** Largest rate that surfaces at edges may have: the bound of rates; if nodes with little capacity get no heat through
+   *  surfaces, without their contribution to it. */
   double rate_at_edges() const { return has_idle() ? std::min(conducted, usual_rate) : conducted; }
   /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
-   *  Adds the power of sources. Then add_given(). */
+   *  Adds the power of sources to power. To be followed by add_given(). */
   void find_rates(const double *source, Heats &power);
-  /** Heat from elsewhere. */
+  /** Adds the rates by heat from other physics (given). */
   void add_given();
-  /** The same for small changes of the temperatures, by conduction alone: the changes of the rates. */
+  /** Temperatures are small changes: finds the changes of the rates by conduction alone. */
   void find_changes();
-  /** What each point of this rank adds to the matrix of conduction, see MPMDiffusion::Term. */
+  /** Calls the argument with the contribution of each point of this rank to the matrix of conduction, see MPMDiffusion::Term. */
   void each_term(const MPMDiffusion::Term &) const;
-  /** Last part: temperatures of points; returns the heat that they have got. */
+  /** Last part of a step: temperatures of points; returns the heat that they have got [energy]. */
   double nodes_to_points(const MPMRows &gradients);
-  /** Of points, each the greatest: what tells for how long conduction may wait. */
+  /** Largest values of points, which determine for how long conduction may wait. */
   struct Motion {
     static constexpr double NONE = -std::numeric_limits<double>::max();
-    double speed = 0.0, change = 0.0;      ///< change: of the temperature in the last conduction
+    double speed = 0.0, change = 0.0;    ///< change: of the temperature in the last conduction step
     double highest = NONE, less = NONE;    ///< temperature, and minus the temperature
   };
-  /** Adds what points of this rank have. */
+  /** Includes the points of this rank in these maxima. */
   void add_motion(Motion &) const;
 
-  /** In a step without conduction: heat that nodes were given goes to points; returns what this rank's have got. Collective. */
+  /** In a step without conduction: moves the heat in given to the points; returns the heat that the points of this rank
+   *  have got [energy]. Collective. */
   double keep_given();
 
-  /** Adds heat of points of this rank, [n] of energy, to that of their nodes, by the weights of the shape functions.
-   *  Collective; before points_to_nodes(). */
+  /** Adds heat of the points of this rank, [n] energy, to given at their nodes, by the weights of the shape functions.
+   *  To be called before points_to_nodes(). Collective. */
   void give(std::vector<double> &energy);
 
+  /** [nnodes] capacities [energy/temperature] and volumes of nodes. */
   const std::vector<double> &node_capacity() const { return scalar.capacity; }
   const std::vector<double> &node_volume() const { return scalar.volume; }
-  /** Of nodes, see MPMSuperStep. */
+  /** [nnodes] temperatures of nodes and their rates, for MPMSuperStep. */
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
-  /** Bernstein polynomials: the room of a point can be in a cell that the point is not in. */
+  /** Bernstein polynomials: the box of a point (MPMCutRooms) can reach into a cell that the point is not in. */
   bool looks_beyond_points() const;
   void extend_topology();
-  /** Bernstein polynomials: nodes with so little capacity that nothing flows there, and no heat may come in. */
+  /** Bernstein polynomials: idle nodes have so little capacity that nothing is conducted there, and no heat may come in. */
   bool has_idle() const { return !idle.empty(); }
   bool is_idle(int64_t node) const { return has_idle() && idle[node]; }
-  /** Capacities of nodes for heat through faces: none of these. */
+  /** Capacities of nodes for heat through faces: zero at idle nodes. */
   const std::vector<double> &face_capacity();
-  /** Of nodes next to faces, with Bernstein polynomials: sums of V grad N over parts of rooms, which are integrals; around an axis of
-   *  symmetry for each unit of length around it. Empty with other functions. */
+  /** [nnodes][3] with Bernstein polynomials, of nodes next to faces: sums of V grad N over the parts of boxes of points, which
+   *  are integrals; around an axis of symmetry per unit of length around it. Empty with other functions. */
   const std::vector<double> &face_gradient() const { return ends; }
 
-  /** A gradient of the temperature of a point counts with this [energy/temperature]: 0 where it does not conduct. */
+  /** Capacity of point i [energy/temperature], the weight of its temperature gradient; 0: it does not conduct. */
   double capacity_of(int i) const;
-  /** Has it a material that melts? The same on all ranks. */
+  /** Has the field a material that melts? The same on all ranks. */
   bool melts() const;
-  /** Points of this rank are partly molten: a front is on its way. */
+  /** Are points of this rank partly molten, so that a melting front is moving? */
   bool has_front() const;
-  /** Capacity times temperature of all points of this rank [energy]. */
+  /** Sum of capacity times absolute temperature over all points of this rank [energy]. */
   double heat_of_points() const;
-  /** The slowest at which heat crosses a cell [1/time]; that of all fields of a body, if it is one. */
+  /** Rate at which heat crosses a cell in the material that conducts least [1/time]. */
   double crossing_rate() const;
-  double slowest_crossing = 0.0;    ///< 0: its own
+  double slowest_crossing = 0.0;    ///< lowest rate of the lattices of a body; 0: own
 
   double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
   /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. Collective. */
   double greatest_rate_of_points(tagint &tag) const;
-  /** The points are known. Without any that conduct, on any rank, there is nothing to do if it may rest. Collective. */
+  /** To be called when the points are known. If no point on any rank conducts and may_rest, the field becomes inactive.
+   *  Collective. */
   void find_points(bool may_rest);
   /** Is there a material that conducts, whether or not the field has points of it now? */
   bool has_materials() const { return !thermals.empty(); }
-  /** A material of the field conducts. */
+  /** Is there anything to conduct, see find_points()? */
   bool conducts() const { return active; }
-  /** Points of the field, on any rank, are of a material that conducts, and others of one that does not. */
+  /** Has the field, on any rank, points of materials that conduct and of materials that do not? */
   bool conducts_in_part() const;
   double memory_usage() const;
 
  private:
   void find_ends();
-  /** A material that conducts, and where its points have their temperature. */
+  /** A material that conducts, and where its points keep their temperature. */
   struct Thermal {
     const FixMPMMaterial *fix;
     int temperature, molten;    // columns of history
-    bool varies;
-    bool jumps;                // its conductivity depends on the temperature, and it melts
-    MPM_NS::Conduction all;    // or the mean
-    /** Of a point, which may be in the room. */
+    bool varies;                // from point to point
+    bool jumps;                 // its conductivity depends on the temperature, and it melts
+    MPM_NS::Conduction all;     // of all points; if it varies, the mean
+    /** Values of point i. room: memory for these if they vary. */
     const MPM_NS::Conduction &at(int i, MPM_NS::Conduction &room) const
     {
       if (!varies) return all;
@@ -171,43 +178,44 @@ class MPMConduction : protected Pointers {
   const MPMHeatTransfer &transfer;
   std::vector<Thermal> thermals;
   bool wants_volumes = false;
-  double slowest = 0.0;    // smallest diffusivity of a material, by the ratio of capacities
-  double steepest =
-      0.0;    // of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: not bounded by points alone
-  double conducted = 0.0;    // limit of the last step
-  double change = 0.0;       // of a temperature of points in the last conduction, the greatest
+  // smallest diffusivity of a material, times the ratio of the least and the greatest capacity
+  double slowest = 0.0;
+  // largest sum of (dN/dx)^2/N of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: no bound by points alone
+  double steepest = 0.0;
+  double conducted = 0.0;    // bound of rates in the last step [1/time]
+  double change = 0.0;    // largest change of a temperature of points in the last conduction step
   bool total = false, active = false;
 
   std::vector<double> volumes;    // [n] of points in this step
-  std::vector<char> warmed;       // [blocks] nodes of it were given heat
-  std::vector<double> at_rest;    // [n][3] velocities of points that give heat, zero
-  // [n] their temperatures by the nodes at its start, if the first rates are those of these temperatures; otherwise nodes keep them
+  std::vector<char> warmed;       // [blocks] were nodes of the block given heat?
+  std::vector<double> at_rest;    // [n][3] zero velocities of points that give heat
+  // [n] temperatures of nodes at the points at the start of the step, if the first rates are found for these temperatures;
+  // otherwise nodes keep them
   std::vector<double> seen;
   enum { OF_NODES, TO_BE_SEEN, SEEN } at_start = OF_NODES;
-  std::unique_ptr<MPMLayerMean>
-      layers;               // of materials that conduct differently; null: points have their own
-  double greatest = 0.0;    // of all conductivities, with layers
-  bool *told =
-      nullptr;    // of interfaces without means: of the fix, as this is made anew for each run
-  double fastest_point =
-      0.0;    // of this step: the greatest rate, but for the factor of the functions
-  bool simple = false,
-       keeps = false;    // are rates those of capacities and volumes; before = value
+  // mean conductivities next to interfaces of materials that conduct differently; null: points have their own
+  std::unique_ptr<MPMLayerMean> layers;
+  double greatest = 0.0;    // largest of all conductivities, with layers
+  // has a warning been printed about interfaces without means? In the fix, as this object is made anew for each run
+  bool *told = nullptr;
+  double fastest_point = 0.0;    // largest rate in this step, without the factor of the functions
+  // do rates of points follow from capacities and volumes alone; do nodes keep their temperatures of the start of the step?
+  bool simple = false, keeps = false;
   struct Range {
     double low, high;
   };
-  // [n] temperatures of a node spacing around points of materials whose conductivity jumps, from the nodes' in a step to the
-  // points'; empty: there are none
+  // [n] in a step: range of the temperatures of nodes within a quarter of a node spacing of points of materials whose
+  // conductivity jumps; empty: there are none
   std::vector<Range> ranges;
-  std::vector<double>
-      shares;    // [n] of their conductivity that is left, see row_bound(); empty: all. None of points in parts
+  // [n] share of their conductivity that is left to points, see bound_by_rows(), zero for points in parts; empty: all
+  std::vector<double> shares;
   MPMCutRooms cuts;
   std::vector<double> ends;    // [nodes][3], see face_gradient()
-  std::vector<char> idle;      // [nodes], empty: none
-  double usual_rate = 0.0;     // bound of the rates of nodes inside of a body
+  std::vector<char> idle;      // [nodes] is the node idle? Empty: none is
+  double usual_rate = 0.0;     // bound of the rates of nodes inside of a body [1/time]
   std::vector<double> capacity_at_faces;
 
-  std::vector<signed char> present;    // [materials of the field]: has points here, on any rank
+  std::vector<signed char> present;    // [materials of the field] has it points on any rank?
   const Thermal *thermal(const FixMPMMaterial *) const;
   std::size_t index_of(const FixMPMMaterial *) const;
   bool is_present(const Thermal &) const;
@@ -228,8 +236,8 @@ class MPMConduction : protected Pointers {
   void find_unseen();
 };
 
-/** Conductivities of a material along the axes of a point with the deformation gradient F, which are the rows of n, unit
- *  vectors in space; all the same if the material is isotropic. */
+/** Principal conductivities k of a material at a point with the deformation gradient F [9, row-major]. The rows of n are
+ *  their axes, unit vectors in space. All k are the same if the material is isotropic. */
 void principal_conductivities(const MPM_NS::Conduction &, const double *F, double k[3],
                               double n[3][3]);
 

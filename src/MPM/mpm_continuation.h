@@ -16,20 +16,20 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** What the run that wrote a restart file had that is not in LAMMPS's part of the file, and of which an
- *  input that goes on from it may have forgotten something: fixes and exclusions from neighbor lists;
- *  and whether points and materials have changed since. */
+/** Checks of a run that continues from a restart file. Warns when the input lacks something that the run
+ *  before had and that LAMMPS does not keep in the file (fixes, exclusions from neighbor lists), and when
+ *  points or materials have changed since. */
 class MPMContinuation : protected Pointers {
  public:
   MPMContinuation(class LAMMPS *lmp, const MPMField &field) : Pointers(lmp), field(field) {}
 
-  /** Lines for the restart file; on all ranks together. */
+  /** The present state, as lines for the restart file. Collective. */
   std::string state() const;
-  /** Those of the file that the next run goes on from. */
+  /** Sets the lines of the restart file from which the next run continues. */
   void expect(const std::string &lines) { expected = lines; }
-  /** Node spacing and origin, if they give another lattice than they did. */
+  /** Text with the node spacing or origin of the run before, if it gave another lattice; else empty. */
   std::string other_lattice() const;
-  /** Start of a run, on all ranks together: warns of differences. first: of all fields. */
+  /** Start of a run: warns of differences. first: this is the first of all fields. Collective. */
   void check(bool first);
 
  private:

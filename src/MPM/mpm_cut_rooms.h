@@ -17,32 +17,33 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Rooms of points (boxes of their volume around them) that sides of cells divide, with Bernstein polynomials, whose gradients jump
- *  there: the parts in each cell. Sums of gradients over points that fill space are those of parts, which are integrals wherever
- *  points are; with the gradients where the points are, they depend on how many of these are in a cell. */
+/** The parts in each cell of the rooms of points (boxes of their volume around them) that are divided by sides of cells. For
+ *  Bernstein polynomials, whose gradients jump at these sides. Sums of gradients over parts are integrals wherever the points
+ *  are; with gradients at the points instead, sums depend on how many points are in a cell. */
 class MPMCutRooms {
  public:
   static constexpr int NODES = 3;    ///< along an axis
   struct Part {
     int point;
-    double volume;    ///< share of that of the point
-    double share;     ///< for the user
+    double volume;    ///< share of the volume of the point
+    double share;     ///< free for use by the caller
+    /** Functions and their derivatives along each axis in the middle of the part. */
     double w[3][NODES], slope[3][NODES];
-    int node[NODES * NODES * NODES];
+    int node[NODES * NODES * NODES];    ///< in 2d the first NODES^2
   };
 
   explicit MPMCutRooms(MPMField &field) : field(field) {}
 
-  /** Parts in cells all of whose nodes this rank has, of the points of wanted runs. */
+  /** Finds the parts of the points in wanted runs, in cells of which this rank has all nodes. */
   void find(const std::function<bool(const MPMPointMap::Run &)> &wanted);
   std::vector<Part> parts;
   bool any() const { return !parts.empty(); }
-  /** [n] A point that is in parts. */
+  /** [n] Is the room of a point divided into parts? */
   std::vector<char> is_cut;
   /** The room of a point that is not cut, as one part; false if this rank does not have all of its nodes. */
   bool make_whole(int point, const MPMPointMap::Run &, Part &) const;
 
-  /** Calls f(node, gradient of its function in the middle of the part). */
+  /** Calls f(node, gradient[3] of its function in the middle of the part). */
   template <class F> void each_node(const Part &part, const F &f) const
   {
     int n = 0;
@@ -56,8 +57,9 @@ class MPMCutRooms {
           f(part.node[n++], gradient);
         }
   }
+  /** Gradient of values at nodes in the middle of the part. */
   void gradient(const Part &, const std::vector<double> &values, double g[3]) const;
-  /** Adds q . grad N to the nodes. */
+  /** Adds q[3] . grad N to the values of the nodes of the part. */
   void add(const Part &, const double *q, std::vector<double> &nodes) const;
 
   double memory_usage() const { return parts.capacity() * sizeof(Part) + is_cut.capacity(); }

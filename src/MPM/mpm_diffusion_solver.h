@@ -25,48 +25,49 @@ namespace LAMMPS_NS {
 class MPMField;
 class MPMNodeScalar;
 
-/** Equations of diffusion C dy/dt = F(y) of scalars at nodes, such as temperatures, as their solver sees them. Values, rates,
- *  and capacities are those of MPMNodeScalar; all of them are the same on all ranks that have a node. */
+/** Equations of diffusion C dy/dt = F(y) of scalars at nodes, such as temperatures: the interface that the solver needs.
+ *  Values, rates, and capacities are those of MPMNodeScalar, with the same values on all ranks that have a node. */
 class MPMDiffusion {
  public:
-  /** What adds to the matrix -dF/dy: n nodes of this rank's grid, [n][ngrad] numbers by which their values make ngrad ones, and
-   *  [ngrad][ngrad] coefficients that turn these into what is conjugate to them. */
+  /** A contribution G K G^T to the matrix -dF/dy: n nodes of this rank's grid, gradient: G [n][ngrad], which turns the values
+   *  at the nodes into ngrad gradients, and stiffness: K [ngrad][ngrad], which turns gradients into their conjugate fluxes. */
   using Term = std::function<void(int n, const int64_t *nodes, int ngrad, const double *gradient,
                                   const double *stiffness)>;
 
-  /** Rates of all values, and of all lists that are integrated with them. Collective. */
+  /** Find the rates of all values, and of all lists that are integrated with them. Collective. */
   virtual void find_rates() = 0;
-  /** From here on changes are those around the present values. Are they symmetric in the norm of capacities, on all ranks?
-   *  Collective. */
+  /** Linearize around the present values, for find_changes(). Returns whether the linear equations are symmetric in the norm
+   *  of capacities, the same on all ranks. Collective. */
   virtual bool linearize() = 0;
-  /** Values are small changes: the changes of the rates. Collective. */
+  /** Values are small changes: find the changes of the rates. Collective. */
   virtual void find_changes() = 0;
-  /** Take from the changes of the values of a part what is prescribed: a projection that is orthogonal in the norm of capacities. */
+  /** Remove prescribed components from the changes of the values of a part: a projection that is orthogonal in the norm of
+   *  capacities. */
   virtual void project(int part, std::vector<double> &change) = 0;
-  /** Terms of a part from this rank, for a preconditioner; prescribed values as stiff ones. dt: of the implicit equations. */
+  /** Terms of a part from this rank, for a preconditioner; prescribed values are stiff. dt: of the implicit equations. */
   virtual void each_term(int part, double dt, const Term &) = 0;
 
  protected:
   ~MPMDiffusion() = default;    // owned and deleted as something else
 };
 
-/** How long steps of such equations are made. */
+/** Time integration of such equations. */
 struct MPMDiffusionOptions {
   enum Time { EXPLICIT, EULER, SDIRK2 };
   Time time = EXPLICIT;
-  double tolerance = 1.0e-6;    ///< of equations, of the change in the step
+  double tolerance = 1.0e-6;    ///< of the equations, relative to the change in the step
 };
 
 /** Implicit steps of equations of diffusion.
  *
  *    euler:  y1 = y0 + dt f(y1), backward Euler, of first order
- *    sdirk2: y1 = y0 + g dt f(y1), y2 = y0 + (1-g) dt f(y1) + g dt f(y2), g = 1 - 1/sqrt(2) (R. Alexander, SIAM J. Numer. Anal. 14
- *            (1977) 1006): of second order, and what is fast decays in a step as with Euler's method
+ *    sdirk2: y1 = y0 + g dt f(y1), y2 = y0 + (1-g) dt f(y1) + g dt f(y2), g = 1 - 1/sqrt(2) (R. Alexander, SIAM J. Numer.
+ *            Anal. 14 (1977) 1006), of second order; fast modes decay in a step as with Euler's method
  *
- *  y1 and y2 are found by Newton's method with conjugate gradients, or GMRES where the equations are not symmetric, and a multigrid
- *  preconditioner or, in steps in which hardly anything gets farther than a few nodes, the diagonal. Then the values of the
- *  end are the sum above with the rates of these, so that what rates conserve is conserved to round-off, however accurate
- *  the solution is, and so are the lists of integrals that go along. Nothing is kept from step to step. */
+ *  y1 and y2 are found by Newton's method with conjugate gradients, or with GMRES if the equations are not symmetric. The
+ *  preconditioner is multigrid or, in steps in which diffusion reaches only a few nodes, the diagonal. The values at the
+ *  end are then computed from the sums above with the rates at y1 and y2, and so are the lists of integrals. So all that
+ *  the rates conserve is conserved to round-off, however accurate the solution is. Nothing is kept from step to step. */
 class MPMDiffusionSolver : private MPM_NS::LinearSystem {
   using LinearSystem = MPM_NS::LinearSystem;
 
@@ -77,10 +78,11 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
       equations(equations), options(options)
   {
   }
+  /** Removes all parts and lists. */
   void clear();
-  /** A part, numbered in the order of these calls. */
+  /** Adds a part; parts are numbered in the order of these calls. */
   void add(MPMField &, MPMNodeScalar &);
-  /** A list that is integrated in time, of any length. */
+  /** Adds a list of any length that is integrated in time with its rates. */
   void add(std::vector<double> &integral, const std::vector<double> &rate);
 
   struct Report {
@@ -88,7 +90,7 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
     int newton = 0, linear = 0;    ///< iterations in the step
     std::string failure;
   };
-  /** A step. greatest, fastest: bounds of the rates of diffusion, and of all that there are [1/time]. Collective. */
+  /** A step. greatest, fastest: bounds of the rates of diffusion, and of all rates [1/time]. Collective. */
   const Report &advance(double dt, double greatest, double fastest);
   double memory_usage() const;
 
@@ -98,9 +100,9 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
     MPMNodeScalar &scalar;
     MPMLatticeRanks ranks;
     std::vector<double> capacity;    // also of images
-    std::vector<double> base, at;    // of the equations; the present values
+    std::vector<double> base, at;    // values from which the stage starts; present values
     std::vector<double> diagonal;
-    int64_t first = 0;    // place in vectors
+    int64_t first = 0;    // place of the part in vectors
     std::unique_ptr<LinearSystem> alone;
     std::unique_ptr<MPM_NS::SplineMultigrid> levels;
   };
@@ -118,8 +120,9 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
   MPM_NS::ConjugateGradients conjugate;
   MPM_NS::FlexibleGMRES general{40};
   Report now;
-  double implicit_dt = 0.0;                    // of the equations: g dt
-  bool prepared = false, by_levels = false;    // the preconditioner, in this step
+  double implicit_dt = 0.0;    // time step of the implicit equations: dt, or g dt
+  // of the preconditioner in this step: is it ready, and is it multigrid?
+  bool prepared = false, by_levels = false;
   std::vector<double> residual, correction, room, of_ranks;
 
   int64_t size() const override;
@@ -132,7 +135,7 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
   double find_residual();
   double size_of_values(bool of_change);
 
-  class OnePart;    // what the levels of a part see
+  class OnePart;    // the equations of one part, for its multigrid levels
 };
 
 }    // namespace LAMMPS_NS

@@ -16,8 +16,8 @@
 
 namespace MPM_NS {
 
-/** Drag on one sphere of many. In all laws it is K(w) times the superficial slip w (porosity times the difference
- *  of the velocities), and the gradient of the pressure along a bed is part of it. Sources: the page of fix
+/** Drag on one sphere of many. In all laws the drag is K(w) times the superficial slip w (porosity times the difference
+ *  of the velocities), and includes the force of the pressure gradient along a bed. Sources: see the page of fix
  *  mpm/immersed. */
 struct SphereDrag {
   enum Law { NONE, STOKES, SCHILLER, ERGUN, GIDASPOW, DIFELICE };
@@ -25,20 +25,20 @@ struct SphereDrag {
   Law law;
   double density, viscosity;    ///< of the fluid; viscosity: pressure * time in units of mass
 
-  /** Of a bed of packed spheres, by Ergun's law: what the gradient of the pressure has besides a linear term, per square of
+  /** Coefficient of the quadratic term of the pressure gradient in a bed of packed spheres, by Ergun's law: per square of
    *  the superficial velocity. */
   static double bed_inertia(double density, double diameter, double porosity)
   {
     return INERTIAL * density * (1.0 - porosity) / (diameter * porosity * porosity * porosity);
   }
 
-  /** Factor of the drag on a single sphere in a bed, where it does not depend on the slip. */
+  /** Factor for a sphere in a bed on the drag on a single sphere, in laws in which it does not depend on the slip. */
   double hindrance(double porosity) const
   {
     return law == GIDASPOW && porosity >= 0.8 ? std::pow(porosity, -4.65) : 1.0;
   }
 
-  /** K [mass/time] at a slip that is not negative. */
+  /** K [mass/time] at a superficial slip >= 0; hindrance: of hindrance(). */
   double on_sphere(double diameter, double slip, double porosity, double hindrance) const
   {
     constexpr double PI = 3.14159265358979323846;

@@ -27,15 +27,16 @@ class MPMEdges : protected Pointers {
 
   MPMEdges(class LAMMPS *lmp, const MPMField &field) : Pointers(lmp), field(field) {}
 
-  /** All fixed faces must be planes of nodes, or else the run stops. */
+  /** Stops with an error if a fixed face is not a plane of nodes. */
   void check() const;
-  /** Make the lists; without_outside: also of nodes whose neighbor outside does not exist. */
+  /** Makes the lists. without_outside: also with nodes whose neighbor outside does not exist. */
   void find(bool without_outside);
 
-  /** Functions that are modified at the faces: sums of this rank at nodes outside go to nodes inside,
-   *  before those of other ranks are added. */
+  /** For functions that are modified at the faces: moves the sums of this rank at nodes outside to the
+   *  nodes at the face and inside, before the sums of other ranks are added. nodes: [node][nreal], of which
+   *  the nlane reals from lane on. */
   void fold(double *nodes, int nreal, int lane, int nlane) const;
-  /** Values of nodes outside, for interpolation; where faces meet, the last axis has the last word. */
+  /** Sets the values of nodes outside, for interpolation. Where faces meet, the last axis overrides others. */
   void extend(double *nodes, int nreal, int lane, int nlane) const;
   double memory_usage() const;
 

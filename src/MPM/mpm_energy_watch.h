@@ -17,17 +17,18 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Tells when numerics add energy to the points (keyword gain of fix mpm).
+/** Detects when numerical errors add energy to the points (keyword gain of fix mpm).
  *
- *  What all points have and have spent may grow by the work that is done on them. That of moving
- *  walls, rigid bodies, atoms, and deleted points is always counted; what friction takes at walls and
- *  between bodies is not: where it holds material at rest, nodes have velocities that points do not
- *  have, and its work is mostly spurious. That of forces on points is estimated from a part of the
- *  points in each step, chosen by their IDs, so that it does not depend on their order and on which rank has them. What is left is the sum of the errors transfer, integration and residual of
- *  compute mpm/energy. It counts from its lowest value in a run, so that
- *  energy that a dissipative transfer took at first does not hide what is added later, and is
- *  compared with the energy in play: the largest sum so far of kinetic energy, stored energy, and
- *  energy spent in this run.
+ *  The energy that all points have and have spent may grow by the work that is done on them. The work of moving walls, rigid
+ *  bodies, atoms, and deleted points is always counted. The work of friction at walls and between bodies is not: where
+ *  friction holds material at rest, nodes have velocities that points do not have, and its work is mostly spurious. The work
+ *  of forces on points is estimated from a part of the points in each step, chosen by their IDs, so that it does not depend
+ *  on their order and on which rank has them.
+ *
+ *  The remaining growth is the sum of the errors transfer, integration, and residual of compute mpm/energy. It counts from
+ *  its lowest value in a run, so that energy that a dissipative transfer took at first does not hide energy that is added
+ *  later. It is compared with the energy in play: the largest sum so far of kinetic energy, stored energy, and energy spent
+ *  in this run.
  */
 class MPMEnergyWatch : protected Pointers {
  public:
@@ -40,11 +41,12 @@ class MPMEnergyWatch : protected Pointers {
   void start() { run = {}; }
   /** Start of a step of the cycle, where positions, velocities, and forces belong to one time. */
   void step();
-  /** In the same step: points have moved and have their new velocities, and still the forces and the places in memory of its start. */
+  /** Later in the same step: points have moved and have their new velocities, and still have the forces and the places in
+   *  memory of its start. */
   void moved();
   /** End of a run. */
   void finish();
-  /** A line about the energy of the run for its summary; empty where too little is known. */
+  /** A line about the energy of the run for its summary; empty if too little is known. */
   std::string report() const;
 
  private:
@@ -52,15 +54,15 @@ class MPMEnergyWatch : protected Pointers {
   struct Sums {
     double points, met, mass;    // met: points that pair styles may act on
     double kinetic, stored, spent;
-    double elastic;    // of the stored energy, what is in the stress of points; the rest is heat
-    double work;       // done on the points, less what deleted points had
-    /** Energy that work does not explain, from the same start. */
+    double elastic;    // part of the stored energy that is not heat: in the stress of points
+    double work;       // done on the points, less the energy of deleted points
+    /** Energy that work does not explain, up to a constant. */
     double unexplained() const { return kinetic + stored + spent - work; }
   };
 
   static constexpr int AHEAD = 16;
-  /** Points begin to end in memory, each with its turn in one of 2^bits steps, and where those are whose turn comes in
-   *  this one or one of the next. */
+  /** The points from begin to end in memory. Each is looked at in one of 2^bits steps (its turn). places: points whose turn
+   *  comes in this step or one of the next AHEAD - 1. */
   struct Part {
     int bits = 0;
     int begin = -1, end = -1, first = 0;    // first: turn of places[0]
@@ -74,7 +76,7 @@ class MPMEnergyWatch : protected Pointers {
   const std::vector<MPMField *> &fields;
   Part parts[2];
   std::vector<const double *> forces;    // [field] on points in this step
-  /** A point that this step looks at, each of so many steps, with its place and velocity before. */
+  /** A point that is looked at in this step, once in so many turns, with its place and velocity before. */
   struct Seen {
     int field, i, turns;
     double x[3], v[3];
@@ -84,13 +86,13 @@ class MPMEnergyWatch : protected Pointers {
     bigint steps;
     double force_work;    // of forces on points, this rank's share
     Sums start;
-    double lowest;     // energy that work does not explain
+    double lowest;     // least energy so far that work does not explain
     double in_play;    // largest energy so far
-    double gained;     // since it was lowest
-    Sums last;         // at the last look
+    double gained;     // unexplained energy above the lowest
+    Sums last;         // of the last check
     double elastic;    // at the start of the step that has noted it
     bigint noted;      // steps done by then, plus 1; 0: none
-    bool told;
+    bool told;         // has a warning been printed?
   } run = {};
 
   int number_met() const;

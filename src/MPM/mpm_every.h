@@ -16,29 +16,28 @@
 
 namespace LAMMPS_NS {
 
-/** Steps of LAMMPS between the steps of the cycle (keyword every). */
+/** Steps of the cycle that take several steps of LAMMPS (keyword every). */
 class MPMEvery : protected Pointers {
  public:
-  /** [n][3] on points since the last step of the cycle. */
+  /** [n][3] means over the time since the last step of the cycle, of points. */
   std::vector<double> mean_force, mean_torque;
 
-  /** What goes to restart files. */
+  /** Is written to restart files. */
   struct {
     int waited = 0;          ///< steps of LAMMPS since the last step of the cycle
-    double elapsed = 0.0;    ///< and their duration
+    double elapsed = 0.0;    ///< duration of these steps
   } progress;
 
   MPMEvery(class LAMMPS *, MPMField &, MPMPointState &);
 
-  /** Called once in each step of LAMMPS; true when it is not yet time for the cycle. */
+  /** Called once in each step of LAMMPS; true if it is not yet time for the cycle. */
   bool wait();
   /** End of a step of the cycle. */
   void finish();
-  /** Start of a run: a step of the cycle that an error has ended is not gone on with. */
+  /** Start of a run: drops a step of the cycle that an error has interrupted. */
   void forget_broken_step();
 
-  /** Duration of the present step of the cycle. All of them so far have ended when no step of LAMMPS
-   *  waits. */
+  /** Duration of the present step of the cycle; steps of LAMMPS still to come count with the present dt. */
   double step_dt() const
   {
     return progress.elapsed + (field.options.every - progress.waited) * update->dt;
@@ -49,13 +48,13 @@ class MPMEvery : protected Pointers {
     const int every = field.options.every;
     return progress.waited < every ? every - progress.waited : every;
   }
-  /** From the place of a point on the lattice to where it is, along axis d. */
+  /** Displacement of a point along axis d from its place on the lattice. */
   double displacement(int i, int d) const { return waiting[i][3 + d]; }
 
  private:
   MPMField &field;
-  // [n][6 or 9] impulse since the last step of the cycle, displacement from the place on the lattice,
-  // angular impulse if atoms have torques
+  // [n][6 or 9] impulse since the last step of the cycle [3], displacement from the place on the lattice
+  // [3], and, if atoms have torques, angular impulse [3]
   MPMRows waiting;
   int width() const { return atom->torque_flag ? 9 : 6; }
 };

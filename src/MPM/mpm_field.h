@@ -47,7 +47,7 @@ class MPMTransferHeat;
 class MPMRows;
 struct MPMPoints;
 
-/** One velocity field on one lattice: options, points, nodes, and an object for each thing that only
+/** One velocity field on one lattice: options, points, nodes, and an object for each feature that only
  *  some options need. */
 class MPMField : protected Pointers {
   MPMFieldOptions chosen;
@@ -63,7 +63,7 @@ class MPMField : protected Pointers {
   Fix &fix;    ///< the fix mpm: its ID, its group, its requests for new neighbor lists
   const Options &options = chosen;
   MPM_NS::Grid grid;    ///< records of momentum: velocity and mass after the momentum equation
-  MPM_NS::Lattice &lattice;    ///< that of the grid
+  MPM_NS::Lattice &lattice;    ///< of the grid
   MPMNodes nodes;
   MPMPoints *points;    ///< of the present Atom object, which replicate exchanges: set in init()
 
@@ -84,18 +84,18 @@ class MPMField : protected Pointers {
   /** The same until the blocks are renewed: set by its blocks_found(), followed by choose_kernels(). */
   bool keep_old_now = false;
   bool running = false;    ///< between the set-up and the end of a run
-  bool has_moved =
-      false;    ///< positions of the end of the step wait in work.xnew, see MPMStages::nodes_to_points()
+  /** Positions of the end of the step wait in work.xnew, see MPMStages::nodes_to_points(). */
+  bool has_moved = false;
   double last_dt = 0.0;    ///< duration of the last step of the cycle; 0: none so far
 
-  /** [n][dim] gradients on the lattice that other physics keeps for points; set by its init_physics(). */
+  /** [n][dim] gradients on the lattice that other physics keep for points; set by their init_physics(). */
   std::vector<const MPMRows *> slopes;
-  /** Physics that change how points strain: set by their init_physics(). */
+  /** Physics that change how points strain; set by their init_physics(). */
   std::vector<MPMPhysics *> stretching;
-  /** det F of points, for other physics: asked for by its topology_changed(). */
+  /** det F of points, for other physics, which ask for it in their topology_changed(). */
   MPMJacobians jacobians;
 
-  // what depends on the options; null: not with these
+  // objects that only some options need; null: not with the present options
 
   std::unique_ptr<MPMFrame> frame;    ///< never null
   std::unique_ptr<MPMPointMap> map;
@@ -114,11 +114,11 @@ class MPMField : protected Pointers {
   struct {
     std::vector<double> nodes;              ///< sums over points other than momentum
     std::vector<double> node_velocities;    ///< [node][3] before XPIC and FMPM add terms
-    std::vector<double> vectors;            ///< [n][3] what points give to these, or get of them
-    std::vector<double> weights;            ///< [n] with which weights
-    std::vector<double> places;             ///< [n][3] where transfers put points that stay
-    std::vector<double> stress;             ///< [n][6]
-    std::vector<double> no_volume;          ///< [n] zero
+    std::vector<double> vectors;      ///< [n][3] vectors that points give to nodes or get from them
+    std::vector<double> weights;      ///< [n] weights of the points for this
+    std::vector<double> places;       ///< [n][3] unused positions from transfers at rest
+    std::vector<double> stress;       ///< [n][6]
+    std::vector<double> no_volume;    ///< [n] zero
     std::vector<double> xnew;    ///< [n][3] positions of the end of the step, when points move late
     std::vector<double> history;    ///< [variable][BATCH]
   } work;
@@ -132,37 +132,41 @@ class MPMField : protected Pointers {
   /** The field of a fix mpm; null: the fix does not exist or has another style. */
   static MPMField *find(class LAMMPS *, const std::string &id);
 
-  /** Start of a run, before anything looks at the options: the form of the stress where the input leaves it open. */
+  /** Start of a run, before anything reads the options: choose the form of the stress if the input leaves it open. */
   void choose_stress(const std::vector<MPMPhysics *> &);
   /** Start of a run. */
   void init(MPMPlan *);
-  /** The materials that there are now; also between runs, where those of the last one may be gone. */
+  /** List the present materials; also between runs, when materials of the last run may be gone. */
   void find_materials();
   /** Choose the transfers of this run. */
   void choose_kernels();
-  /** The lattice must fit the box, which may have changed since the last run. */
+  /** Check that the lattice fits the box, which may have changed since the last run. */
   void check_box();
 
+  /** ID of the fix mpm. */
   const char *id() const;
+  /** Is atom i a material point of this field? */
   bool is_point(int i) const;
   /** Is atom i a node of finite elements, without stress and material of its own? */
   bool is_element_node(int i) const;
+  /** The material of atom i; null: it has none. */
   FixMPMMaterial *material_of(int i) const;
 
   /** Duration of a step of the cycle. */
   double step_dt() const;
-  /** Of the one before, which has brought the points to where they are; of this one, if there was none. */
+  /** Duration of the step before, which has moved the points to where they are; of this step, if there was none. */
   double step_dt_before() const { return last_dt > 0.0 ? last_dt : step_dt(); }
   /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
   int steps_to_next() const;
+  /** The arrays of points as transfers read them. */
   MPM_NS::PointRows rows() const;
-  /** Rows for transfers of other values and weights, in which points stay (the time step is zero). */
+  /** Rows for transfers of other values and weights, in which points do not move (the time step is zero). */
   MPM_NS::PointRows rows_at_rest(double *values, const double *weights);
-  /** With the duration of a step of the cycle, or another one. */
+  /** Data for transfers, with the duration of a step of the cycle or another one. */
   MPM_NS::TransferStep step_data() const { return step_data(step_dt()); }
   MPM_NS::TransferStep step_data(double dt) const;
 
-  /** Of the present run. */
+  /** Counts and time steps of the present run. */
   struct {
     bigint steps = 0;
     double point_steps = 0.0, dt_min = 0.0, dt_max = 0.0;

@@ -18,11 +18,11 @@ namespace LAMMPS_NS {
 struct MPMFieldOptions {
   enum Scheme { USL, USF, MUSL, USAVG };    ///< when stress is updated in a step
   enum Series { LUMPED, XPIC, FMPM };       ///< terms of the inverse of the mass matrix
-  /** What makes forces of stress, and velocity gradients of nodal velocities; by default what the
-   *  shape and the transfer have, or, where bodies come to rest in the updated frame, gradients. */
+  /** How forces follow from stress, and velocity gradients from nodal velocities. By default as the
+   *  shape and the transfer do it, or, if bodies come to rest in the updated frame, by gradients. */
   enum Stress { DEFAULT_STRESS, MLS_STRESS, GRADIENT_STRESS };
   enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
-  enum Policy { ERROR, WARN, DELETE };               ///< what to do with a point that goes bad
+  enum Policy { ERROR, WARN, DELETE };               ///< what to do with a bad point
   enum Gain { GAIN_ERROR, GAIN_WARN, GAIN_IGNORE };
 
   MPM_NS::Shape shape = MPM_NS::QUADRATIC;
@@ -33,26 +33,26 @@ struct MPMFieldOptions {
   Series series = LUMPED;
   int order = 1;    ///< terms of the series
   Stress stress = DEFAULT_STRESS;
-  bool rests = false;    ///< not an option: what bodies come to rest by, MPMField::choose_stress()
+  bool rests = false;    ///< no option: do bodies come to rest? By MPMField::choose_stress()
   Scheme scheme = USL;
   bool total = false;             ///< nodes are places of the reference configuration
-  double most_distorted = 0.0;    ///< ratio of stretches that asks for a new reference, 0: never
+  double most_distorted = 0.0;    ///< ratio of stretches at which a new reference is made, 0: never
   bool axisymmetric = false;      ///< 2d: x is the distance from the axis y, points are rings
   Locking locking = NO_CURE;
-  double smooth = 0.0;    ///< share of rough volumes of fluids that goes in the time h/c; 0: none
+  double smooth = 0.0;    ///< share of rough fluid volumes removed in the time h/c; 0: none
   bool heat = false;      ///< kinetic energy that transfers lose becomes heat
   double light = 0.0;     ///< nodes with less than this share of a full cell are light; 0: none
   double origin[3] = {0.0, 0.0, 0.0};    ///< if not given: the lower corner of the box
   Policy bad = ERROR;
   Gain gain = GAIN_WARN;          ///< what to do when numerical errors add energy
-  double most_gain = 0.02;        ///< from this share of the energy in play on
-  bool apart = true;              ///< tell when points under tension are too far apart
+  double most_gain = 0.02;        ///< largest allowed gain, as a share of the energy in play
+  bool apart = true;              ///< warn when points under tension are too far apart
   bool delete_failed = false;     ///< remove points whose damage is 1
-  bool modified_edges = false;    ///< functions next to fixed faces need no nodes outside
+  bool modified_edges = false;    ///< functions next to fixed faces are modified: no nodes outside
   int every = 1;                  ///< steps of LAMMPS in a step of the cycle
   bool dt_check = true;           ///< stop when the time step is above the stable limit
   bool plan = false;              ///< print the plan of the step with the cost of each stage
-  int kernels = 0;                ///< wanted instruction set, 0: the best
+  int kernels = 0;                ///< requested instruction set, 0: the best
 
   /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
   bool stress_before() const { return scheme == USF || scheme == USAVG; }
@@ -60,16 +60,16 @@ struct MPMFieldOptions {
   bool has_xpic() const { return series == XPIC; }
   bool has_fmpm() const { return series == FMPM; }
   bool has_light_nodes() const { return light > 0.0; }
-  /** What does the cure for locking average: changes of volume, pressures in the force? */
+  /** What does the cure for volumetric locking average: changes of volume, the pressure in forces? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
   bool smooths_volumes() const { return smooth > 0.0; }
   bool heats() const { return heat; }
-  /** Are averages those of volumes, which points keep, and not of their changes in a step? */
+  /** Are averages of volumes, which points keep, rather than of their changes in a step? */
   bool averages_volume() const { return locking == FBAR && !total; }
   /** In 2d: does F_zz change? */
   bool changes_thickness() const { return axisymmetric || (averages_strain() && !total); }
-  /** With scheme usl: is stress made while points move, or after that? Neither with light nodes. */
+  /** With scheme usl: is stress updated while points move, or after that? Neither with light nodes. */
   bool strains_while_moving() const { return !has_light_nodes() && !averages_strain(); }
   bool strains_after_motion() const { return !has_light_nodes() && averages_strain(); }
   /** May points move with the velocities that were mapped back, as they strain? */
@@ -79,14 +79,14 @@ struct MPMFieldOptions {
   {
     return stress_after() || has_light_nodes() || (averages_strain() && !stress_before());
   }
-  /** Do points have a size, by which they reach nodes? */
+  /** Do points have a size that determines which nodes they reach? */
   bool has_size() const
   {
     return shape == MPM_NS::GIMP || shape == MPM_NS::CPGIMP || MPM_NS::has_domain(shape);
   }
-  /** Can a point come to any place in a cell? Not where the reference configuration stays. */
+  /** Can a point move to any place in a cell? Not if the reference configuration stays. */
   bool changes_cells() const { return !total || most_distorted > 0.0; }
-  /** Forces and strains have the gradients of the shape functions, the affine matrix has not. */
+  /** Do forces and strains use the gradients of the shape functions, unlike the affine matrix? */
   bool strains_by_gradient() const
   {
     return MPM_NS::is_mls(shape, transfer) &&
@@ -95,10 +95,10 @@ struct MPMFieldOptions {
 
   bool watches_gain() const { return gain != GAIN_IGNORE; }
 
-  /** Can a body come apart because its points do? Domains with corners cover it. */
+  /** Can a body fracture only because its points are too far apart? Not if domains cover the body. */
   bool watches_fracture() const { return apart && !total && !MPM_NS::has_domain(shape); }
 
-  /** The declaration; refers to this object. */
+  /** The declaration of the options; it refers to this object. */
   MPM_NS::Options declare(int dimension);
 };
 

@@ -15,13 +15,13 @@
 
 namespace LAMMPS_NS {
 
-/** Velocities of faces in the air that points near the surface reach: those of the water go on into it, layer by layer,
- *  as means of what is known around. */
+/** Extends the velocities of the water to faces in the air that points near the surface reach: layer by layer, as means of
+ *  the known velocities around. */
 class MPMFlowAir {
  public:
   explicit MPMFlowAir(const MPMFlowLattice &cells) : cells(cells) {}
 
-  /** velocity, known: [cell][dim] of owned cells, the latter 1 or 0; afterwards of all cells. */
+  /** velocity, known (1 or 0): [cell][dim], of owned cells before and of all cells afterwards. Collective. */
   void extend(int layers, std::vector<double> &velocity, std::vector<double> &known);
   double memory_usage() const
   {
@@ -31,10 +31,10 @@ class MPMFlowAir {
 
  private:
   struct Face {
-    int cell, axis;    // in the list of cells
+    int cell, axis;    // cell: place in the list of cells
   };
   struct Found {
-    int64_t place;    // in all
+    int64_t place;    // in the array all
     double value;
   };
   const MPMFlowLattice &cells;

@@ -19,18 +19,18 @@ class FixMPMRigid;
 class MPMFlowPressure;
 class MPMFlowRegions;
 
-/** Rigid bodies (fix mpm/rigid) in a flow, whose motion is found together with the pressure: what the pressure changes of the
- *  velocities of a body, and what flows through its surface with it, is part of the equation for the pressure (C. Batty,
- *  F. Bertails, R. Bridson, ACM Trans. Graph. 26 (2007) 100). So bodies that are lighter than what they displace are as stable as
- *  heavy ones.
+/** Rigid bodies (fix mpm/rigid) in a flow, whose motion is found together with the pressure. The change of the velocities of a
+ *  body by the pressure, and the flux that moves with its surface, are part of the equation for the pressure (C. Batty,
+ *  F. Bertails, R. Bridson, ACM Trans. Graph. 26 (2007) 100). So bodies that are lighter than the water that they displace are
+ *  as stable as heavy ones.
  *
- *  A body b with the velocities U (of its center, and angular ones) gives a cell c the outflow w_c.U, where w_c are sums over the
- *  faces of the cell: closed share of the face times the velocity of the wall in its middle. Potentials psi = dt p/density of cells
- *  give it the impulse density h^(dim-1) sum w_c psi_c.
+ *  A body b with the velocities U (of its center, and angular ones) gives a cell c the outflow w_c.U, where w_c are sums over
+ *  the faces of the cell: closed share of the face times the velocity of the wall in its middle for unit velocities.
+ *  Potentials psi = dt p/density of cells give the body the impulse density h^(dim-1) sum w_c psi_c.
  *
- *  The pressure in the middle of a cell is not that at the wall, which for a flat one is the same error in all of its cells: half
- *  a spacing of water at the most. What the weight g of the water makes of this is known, dt g.r with r from the middle of the cell
- *  to the wall, and is part of the loads. */
+ *  The pressure in the middle of a cell differs from the pressure at the wall; for a flat wall the error is the same in all of
+ *  its cells, at most the weight of half a spacing of water. The part of the error by the acceleration g of the water is
+ *  known, dt g.r with r from the middle of the cell to the wall, and is included in the loads. */
 class MPMFlowBodies {
  public:
   MPMFlowBodies(class LAMMPS *lmp, const MPMFlowLattice &cells, MPMFlowRegions &regions,
@@ -40,18 +40,19 @@ class MPMFlowBodies {
   {
   }
 
-  /** Finds the bodies of a run, after MPMFlowRegions::init(). */
+  /** Finds the bodies of a run; to be called after MPMFlowRegions::init(). */
   void init();
   bool any() const { return !bodies.empty(); }
 
-  /** Velocities of bodies after the forces of a duration, but without pressure, which walls have then; wet cells are known.
-   *  gravity: acceleration of the water by its weight. */
+  /** Start of a step, when wet cells are known: finds the velocities of bodies after a duration with all forces except the
+   *  pressure, and gives them to the walls. gravity: [3] acceleration of the water by its weight. */
   void begin(double duration, const double *gravity, const MPMFlowPressure &);
-  /** y += what potentials x of all cells change of the outflow by the motion of bodies, over h; in owned cells. */
+  /** Adds to y, in owned cells, the change of the outflow over h by the motion of bodies that potentials x of all cells
+   *  cause. Collective. */
   void add(const double *x, double *y) const;
-  /** What potentials change of the velocities of bodies, which walls have then. */
+  /** Adds the effect of the potentials to the velocities of bodies and walls. Collective. */
   void end(const double *psi);
-  /** Bodies go on, with the velocities that they have now, to the end of the step. */
+  /** Moves bodies, with their present velocities, to the end of the step. */
   void move(double dt);
 
  private:
@@ -59,14 +60,14 @@ class MPMFlowBodies {
   struct Row {
     int cell;
     double to_wall[3];    // from the middle of the cell
-    Six w;
+    Six w;                // outflow of the cell for unit velocities of the body
   };
   struct Body {
     FixMPMRigid *fix;
     int wall;
-    std::vector<Row> rows;    // of wet cells that this rank owns
-    double u[6], inverse[36];
-    Six impulse;    // of this step
+    std::vector<Row> rows;       // of wet cells that this rank owns
+    double u[6], inverse[36];    // velocities; inverse matrix of masses
+    Six impulse;                 // of this step
   };
   class LAMMPS *const lmp;
   const MPMFlowLattice &cells;

@@ -15,17 +15,19 @@
 
 namespace LAMMPS_NS {
 
-/** Gas of which the pressure is p in the volume that it has at first, and p V^gamma does not change. */
+/** Law of a gas: its pressure is p in its initial volume V, and p V^gamma is constant. */
 struct MPMFlowGasLaw {
   double p = 0.0, gamma = 1.0;
-  double outside = 0.0;    ///< pressure of open air, from which pressures of the flow count
+  double outside = 0.0;    ///< pressure of open air, the zero of pressures of the flow
 };
 
-/** Gas in the pockets of a flow. It has no inertia: one pressure in each pocket.
+/** Gas in the pockets of a flow. It has no inertia, so that each pocket has one pressure.
  *
- *  A pocket has an amount, the volume that its gas has with the pressure p of the law, and a volume. That changes by what flows through its surface with velocities
- *  of the lattice, which is exact where points move with these, and does not jump when cells become wet or dry; it follows the volume that points
- *  leave slowly. Amounts and volumes of pockets that meet add up, those of one that splits are shared by cells. */
+ *  A pocket has an amount of gas, given as the volume that it has at the pressure p of the law, and a volume. The volume
+ *  changes by the flux of the velocities of the lattice through the surface of the pocket. This is exact if points move with
+ *  these velocities, and does not jump when cells become wet or dry. In addition, the volume slowly follows the volume that
+ *  points leave empty. Amounts and volumes of pockets that merge are added; those of a pocket that splits are shared in
+ *  proportion to the numbers of cells. */
 class MPMFlowGas : protected Pointers {
  public:
   MPMFlowPockets pockets;
@@ -33,30 +35,32 @@ class MPMFlowGas : protected Pointers {
   MPMFlowGas(class LAMMPS *, const MPMFlowLattice &, const MPMFlowPressure &,
              const MPMFlowGasLaw &);
 
-  /** Pockets of wet cells as they are now. share: of cells that points fill; velocity: of faces before the step, for pockets that are new. Collective. */
+  /** Finds the pockets for the cells that are wet now. share: [cell] share of cells that points fill; velocity: [cell][dim]
+   *  of faces before the step, for new pockets. Collective. */
   void find(const std::vector<double> &share, const double *velocity);
   bool known() const { return is_known; }    ///< has find() or restart() been called?
-  /** Volumes change in a time by velocities of faces. Collective. */
+  /** Changes the volumes by velocities of faces [cell][dim] in the time dt. Collective. */
   void move(const double *velocity, double dt);
 
-  int n() const { return (int) states.size(); }
+  int n() const { return (int) states.size(); }    ///< number of pockets
   bool has_gas(int pocket) const { return states[pocket].amount > 0.0; }
-  /** Above that outside, with the volume that a pocket has now. */
+  /** Pressure of a pocket with its present volume, above the pressure outside. */
   double over(int pocket) const { return pressure(states[pocket]) - law.outside; }
-  /** Minus the derivative of the pressure by the volume. */
+  /** Minus the derivative of the pressure with respect to the volume. */
   double stiffness(int pocket) const;
-  /** Change of its volume in a time, in the last step. */
+  /** Rate of change of the volume in the last step [volume/time]. */
   double rate(int pocket) const { return states[pocket].rate; }
 
-  int count() const;         ///< pockets with gas
-  double highest() const;    ///< pressure of these; zero: there are none
-  double lowest() const;
-  double volume() const;    ///< of all of these
-  /** Work that compression from the pressure p has taken, but for that of the air outside (pressure*volume). */
+  int count() const;         ///< number of pockets with gas
+  double highest() const;    ///< highest pressure in these; zero: there are none
+  double lowest() const;     ///< lowest pressure in these
+  double volume() const;     ///< of all of these
+  /** Work of compression from the pressure p, less the work of the air outside [pressure*volume]. */
   double energy() const;
 
+  /** State for restart files. */
   std::vector<double> restart_data() const;
-  /** False: of another lattice. */
+  /** Returns false if the n data belong to another lattice. */
   bool restart(const double *from, std::size_t n);
   double memory_usage() const;
 

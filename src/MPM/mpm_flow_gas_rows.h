@@ -16,19 +16,20 @@
 namespace LAMMPS_NS {
 class MPMFlowRows;
 
-/** Gas in the equations of the pressure of a flow: its pressure in a step is that of the volume in this very step, so that none is
- *  too stiff for a time step.
+/** Gas in the equations for the pressure of a flow. Its pressure is implicit: it belongs to the volume in the same step, so
+ *  that no gas is too stiff for a time step.
  *
  *  With psi = dt p/density of a pocket, and v the velocities out of wet cells through its surface,
  *
  *    psi = psi_0 + c (sum area v dt),  v = v* + h w (psi_cell - psi),
  *
- *  where w are weights of the equations at the surface and c is the stiffness of the gas. Without psi of the pocket, equations
- *  A psi = r become (A - f s s^T) psi = r + ..., where s_i are sums of w for a cell and f < 1/sum s: they stay symmetric and positive definite.
+ *  where w are weights of the equations at the surface and c is the stiffness of the gas. When psi of the pocket is
+ *  eliminated, the equations A psi = r become (A - f s s^T) psi = r + ..., where s_i are the sums of w of a cell and
+ *  f < 1/sum s: they stay symmetric and positive definite.
  *
- *  Where a pocket has grown by dV in the last step and grows by dV' in this one, its pressure is that of the volume now and of NOW dV' -
- *  BEFORE dV more. With 1/4 for both, an oscillation is stable with any step, of second order, and does not decay (N.M. Newmark, J. Eng. Mech.
- *  Div. 85 (1959) 67). The little that NOW is more takes what swings from step to step. */
+ *  If a pocket has grown by dV in the last step to the volume V, and grows by dV' in this one, its pressure is that of the
+ *  volume V + NOW dV' - BEFORE dV. With 1/4 for both, oscillations are stable for any step, of second order, and do not decay
+ *  (N.M. Newmark, J. Eng. Mech. Div. 85 (1959) 67). NOW is a little more, to damp what alternates from step to step. */
 class MPMFlowGasRows {
  public:
   MPMFlowGasRows(class LAMMPS *lmp, const MPMFlowLattice &cells, const MPMFlowPressure &water,
@@ -38,31 +39,33 @@ class MPMFlowGasRows {
   {
   }
 
-  /** A step in which pressures act for a duration. pressure_to_psi: duration/density, in units; tension: psi of surfaces without gas; null: zero. */
+  /** Start of a step in which pressures act for a duration. pressure_to_psi: duration/density, with conversion of units;
+   *  tension: [cell][dim] psi by surface tension, which is added; null: zero. */
   void begin(double duration, double pressure_to_psi, const std::vector<double> *tension);
-  /** psi at surfaces, see MPMFlowPressure: before the solve as it would be with the volumes now. */
+  /** [cell][dim] psi at surfaces, see MPMFlowPressure::project(). Before the solve it belongs to the present volumes. */
   const std::vector<double> &at_surface() const { return surface; }
 
-  /** psi of the pocket in which a cell is; zero: it is in none, or in air without gas. */
+  /** psi of the pocket that contains a cell; zero if the cell is in no pocket, or in air without gas. */
   double in_cell(int64_t number) const
   {
     const int pocket = gas.pockets.of(number);
     return pocket >= 0 ? psi[pocket] : 0.0;
   }
 
-  /** What gas adds to right sides of cells, with velocities before the solve, where the solution is psi - lift. Collective. */
+  /** Adds the terms of the gas to the right sides of cells. velocity: before the solve, whose solution is psi - lift.
+   *  Collective. */
   void load(const double *velocity, const std::vector<double> &lift,
             std::vector<double> &right_side);
-  /** Rows are there. */
+  /** Finds the places of cells in the rows, which must be arranged. */
   void arrange(const MPMFlowRows &);
   /** y -= f s (s.x), by places of rows. Collective. */
   void add(const double *x, double *y);
-  /** Solved. Collective. */
+  /** After the solve, with its solution x: psi of pockets and surfaces. Collective. */
   void end(const double *x);
 
-  /** Integral of psi over the walls that gas touches; the same on all ranks. */
+  /** Integral of psi over the part of a wall that gas touches; the same on all ranks. */
   double at_wall(int axis, int side) const;
-  /** Adds the integral of psi over the only region that there is, the share of this rank; positive into it. */
+  /** Adds this rank's share of the integral of psi over the surface of a region, if it is the only one; positive into it. */
   void add_to_region(double *force) const;
   double memory_usage() const;
 
@@ -83,8 +86,9 @@ class MPMFlowGasRows {
   const MPMFlowGas &gas;
   const std::vector<double> *tension = nullptr;
   double duration = 0.0;
-  std::vector<double> surface, psi;      // of faces, of pockets
-  std::vector<double> stiffness, all;    // NOW dpsi/dV; c, what it changes by s.x, and f
+  std::vector<double> surface, psi;    // of faces, of pockets
+  // of pockets: -NOW dpsi/dV; and [3]: change of psi without the solution, and f twice: the change of psi per s.x
+  std::vector<double> stiffness, all;
   std::vector<Entry> entries;
   std::vector<Place> places;
   std::vector<double> mine, sums, of_ranks;

@@ -18,38 +18,41 @@
 namespace LAMMPS_NS {
 class FixMPMImmersed;
 
-/** Grains smaller than a cell in an incompressible flow, with the laws of fix mpm/immersed: the flow is the flux of volume of
+/** Grains smaller than a cell in an incompressible flow, with the laws of fix mpm/immersed. The flow is the flux of volume of
  *  fluid and grains together, which has no divergence, and a grain feels the force F = K (U - v) + rho V (dU/dt - g).
  *
- *  This is solved for together with the pressure. A grain that no flow changes in the step feels F0, and with the velocity v of
- *  the end of the step F is linear in what the step changes of the flow,
+ *  The forces are found together with the pressure. F0 is the force if the flow does not change in the step. With the
+ *  velocity v at the end of the step, F is linear in the change of the flow in the step,
  *
  *    F = F0 + b sum_f W_f (U'_f - U_f),    sum_f W_f = 1,
  *
- *  with U at the start of the step, U' at its end, and faces f. A face gets -W_f [F0 + b (U'_f - U_f)], which is opposite to F in the sum
- *  over faces, whatever velocities do, and leaves each face an equation of its own: what the grains around it resist is a factor of
- *  the gradient of the pressure there (mobility). A step is as long as one likes, and a steady flow has the same forces for any step: the
- *  difference to a force that is shared by W_f alone is that of changes of the velocity in a step, around their mean at the grain.
+ *  with U at the start of the step, U' at its end, and faces f. A face gets the force -W_f [F0 + b (U'_f - U_f)]. The sum
+ *  over faces is opposite to F for any velocities, and each face has an equation of its own: the resistance of the grains
+ *  around it is a factor of the gradient of the pressure there (mobility). So a step may be of any length, and a steady flow
+ *  has the same forces for any step. The difference to sharing F by W_f alone is only due to changes of the velocity in a
+ *  step that differ from their mean at the grain.
  *
- *  W_f are the functions of the velocity, so that a grain sees the flow that points move with, times the share of the face that is
- *  filled, where this is less than a half. */
+ *  W_f are the shape functions of the velocity, so that a grain sees the flow with which points move, times the share of the
+ *  face that is filled, where this is less than a half. */
 class MPMFlowGrains : protected Pointers {
  public:
-  /** flow: ID of the fix of the fluid, of which this is the density. */
+  /** flow: ID of the fix of the fluid; density: of the fluid. */
   MPMFlowGrains(class LAMMPS *, MPMFlowLattice &, const std::string &flow, double density);
   bool any() const { return !fixes.empty(); }
-  /** Grains of this rank, around which there are to be cells; before these are found. */
+  /** Lists the grains of this rank, around which cells are needed. To be called before cells are found. */
   void list();
-  /** sums: of give_to_cells(). share: of cells that is filled. before: velocities at the start of the step. velocity: these
-   *  with viscosity and other forces; gets the force of the grains, as far as it does not depend on the pressure. */
+  /** Start of a step. sums: of give_to_cells(). share: [cell] share that is filled. before: [cell][dim] velocities at the
+   *  start of the step. velocity: the same after viscosity and other forces; gets the part of the force of the grains that
+   *  does not depend on the pressure. */
   void begin(double duration, const std::vector<double> &sums, const std::vector<double> &share,
              const std::vector<double> &before, std::vector<double> &velocity);
-  /** Share of the gradient of the pressure, as a change of the velocity, that accelerates a face [cell][dim]. */
+  /** [cell][dim] share of the gradient of the pressure, as a change of the velocity, that accelerates a face. */
   const std::vector<double> &mobility() const { return share_of_gradient; }
-  /** Velocities at the end of the step: grains get what is theirs. */
+  /** End of a step: applies the forces to the grains. velocity: [cell][dim] at the end of the step. */
   void end(const std::vector<double> &velocity);
-  /** Force of grains on the fluid that walls hold, outwards, in units of mass, less what of the force on the fluid next to these comes twice
-   *  into a pressure that goes on linearly to the wall; the share of this rank. velocity: at the end of the step. */
+  /** Force of grains on the faces in a wall of the box, positive outwards [mass velocity/time], less the part of the force on
+   *  the next faces that counts twice when the pressure is extrapolated linearly to the wall; the share of this rank.
+   *  before, velocity: at the start and end of the step. */
   double at_wall(int axis, int side, const std::vector<double> &before,
                  const std::vector<double> &velocity) const;
 
@@ -63,10 +66,10 @@ class MPMFlowGrains : protected Pointers {
   struct Grain {
     int i, kind, slot;
     MPM_NS::StaggeredWeights w;
-    double of_weights[3];    // their sums
+    double of_weights[3];    // sums of weights, by component
     double before[3];        // velocity of the flow at the start of the step
-    double immersed;         // share of it that is in the fluid
-    double mass;             // infinite: held
+    double immersed;         // share of the grain that is in the fluid
+    double mass;             // infinite: the grain is held
     double least[3];         // force F0
     double rate;             // b
     double displaced;        // mass of fluid

@@ -17,28 +17,30 @@ namespace LAMMPS_NS {
 class FixMPMEmit;
 class MPMFlowRegions;
 
-/** Fluid that comes into an incompressible flow through the mouths of fix mpm/emit, along an axis of the lattice.
+/** Fluid that enters an incompressible flow through the mouths of fix mpm/emit, along an axis of the lattice.
  *
- *  Faces across a mouth, from its upstream to its downstream end, carry what flows through the share of them that is in its section:
- *  they have this velocity, and no pressure changes it. The cell upstream of the first of them has a source of as much, so that it does not
- *  matter what is behind the mouth: a wall, air, or water. Points in the mouth move with the velocity of the flow as they are. So the volume
- *  that comes is that of the points, whatever the section is to the cells. */
+ *  Faces across a mouth, from its upstream to its downstream end, have the velocity of the mouth times the share of the face
+ *  that is in its section, and the pressure does not change it. The cell upstream of the first of these faces has a source of
+ *  the same flux, so that it does not matter what is behind the mouth: a wall, air, or water. Points in the mouth move
+ *  rigidly with the velocity of the mouth. So the volume that enters is that of the points, wherever the section is relative
+ *  to the cells. */
 class MPMFlowInflow : protected Pointers {
  public:
-  /** The mouths of points that belong to this flow. */
+  /** Takes the mouths of points that belong to this flow. */
   MPMFlowInflow(class LAMMPS *, const MPMFlowLattice &, const class Fix &flow);
-  /** In a viscous flow faces along mouths are held, too: stress must not bend or turn what is in a mouth. Its section is one of whole cells there, but with regions:
-   *  a part of a cell that is slower than the others would hold these back. */
+  /** For viscous flows: faces along mouths are held, too, as stress must not bend or turn the fluid in a mouth. Without
+   *  regions, the section then consists of whole cells: a partly filled cell would be slower and hold the others back. */
   bool clamps = false;
   bool any() const { return !mouths.empty(); }
-  /** Velocities of this step, and the faces that there are; collective. regions: that cut these, null: none. */
+  /** Finds the velocities of this step and the faces that are held. regions: those that cut faces; null: none. Stops with an
+   *  error if points do not come along an axis, or if the mouth ends in the first cell at a wall. */
   void find(const MPMFlowRegions *regions);
-  /** Velocities [cell][dim] of faces in mouths, and where those are not solved for, factor 0 of the gradient of the pressure, null: only
-   *  velocities. */
+  /** Sets velocities [cell][dim] of faces in mouths, and their mobility to 0, so that they are not solved for; mobility null:
+   *  only velocities. */
   void hold(std::vector<double> &velocity, std::vector<double> *mobility) const;
-  /** [cell] rate of its volume that comes, of all cells. */
+  /** [cell] volume that enters a cell per time, over its volume [1/time]; of all cells. */
   const std::vector<double> &sources() const { return source; }
-  /** Moves a point that is in a mouth, by a step; returns false where it is in none. */
+  /** Moves a point in a mouth by a step, and sets its velocity; returns false if it is in none. */
   bool carry(double *x, double *v, double dt) const;
 
   double memory_usage() const;
@@ -50,8 +52,8 @@ class MPMFlowInflow : protected Pointers {
   };
   struct Mouth {
     FixMPMEmit *fix;
-    int axis, side;     // the flow is towards this side: 1: upwards
-    int first, last;    // faces across it, first <= last
+    int axis, side;     // side to which the flow goes; 1: towards larger coordinates
+    int first, last;    // faces across the mouth, first <= last
     std::vector<Section> section;
     double velocity[3];
   };
@@ -61,7 +63,7 @@ class MPMFlowInflow : protected Pointers {
   };
   const MPMFlowLattice &cells;
   std::vector<Mouth> mouths;
-  bool found = false;    // sections
+  bool found = false;    // are sections known?
   std::vector<Held> held;
   std::vector<double> source;
 

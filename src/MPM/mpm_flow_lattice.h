@@ -17,19 +17,19 @@
 
 namespace LAMMPS_NS {
 
-/** What the fixed faces of the box are to a flow. */
+/** A face of the box as a wall of a flow. */
 struct MPMFlowWall {
-  bool is = false;                  ///< no periodic face
-  bool named = false;               ///< in the input
+  bool is = false;                  ///< is the face a wall (fixed)? Else it is periodic
+  bool named = false;               ///< is it named in the input?
   bool sticks = false;              ///< no slip
-  double v[3] = {0.0, 0.0, 0.0};    ///< velocity of one that sticks, along itself
+  double v[3] = {0.0, 0.0, 0.0};    ///< velocity of a wall without slip, along itself
 };
 
 /** The cells of a staggered lattice in reach of the points of a group: a Grid whose node i stands for the cell between nodes
  *  i and i + 1 of the lattice and for its lower faces, see lattice/staggered.h.
  *
- *  All ranks have all values in reach of their points, and in the layers around it that they want (overlap). Each cell is owned by one rank, which
- *  has its neighbors, too: values are made by owners, and publish() brings them to the others.
+ *  All ranks have all values in reach of their points, and in requested layers of cells around it (overlap). Each cell is
+ *  owned by one rank, which also has its neighbors. Owners compute values, and publish() sends them to the other ranks.
  *
  *  Beyond walls there is a layer of images of cells, so that velocities are of second order next to walls: normal components
  *  are odd, tangential ones even (slip) or odd about the velocity of the wall (stick). */
@@ -41,7 +41,7 @@ class MPMFlowLattice : protected Pointers {
   };
   struct Cell {
     int number;     ///< slot*64 + n
-    int near[6];    ///< neighbors: lower and upper one of each axis; images, next to walls
+    int near[6];    ///< numbers of neighbors: lower and upper one of each axis; images at walls
     int walls;      ///< bit 2 d + s: the lower (s = 0) or upper face along axis d is a wall
     int index[3];
   };
@@ -50,29 +50,31 @@ class MPMFlowLattice : protected Pointers {
   MPM_NS::Lattice &lattice;
   MPMFlowWall walls[3][2];
   std::vector<Run> runs;
-  std::vector<Cell> cells;    ///< owned by this rank, within walls
-  std::vector<int> around;    ///< [cells][3^dim] cells around each one and itself, if wanted
-  bool wants_around = false;
-  int wants_more =
-      0;    ///< layers of cells around those in reach of points, whose values smoothing reaches
-  int overlap = 1;              ///< layers of cells around its own ones that a rank has
-  std::vector<int> visitors;    ///< atoms that are no points, around which there are cells, too
-  bool valid = false;           ///< the blocks are those of the present points
-  bigint nbuild = 0;
+  std::vector<Cell> cells;      ///< owned by this rank, within walls
+  std::vector<int> around;      ///< [cells][3^dim] numbers of cells around each one and itself
+  bool wants_around = false;    ///< is this list needed?
+  int wants_more = 0;    ///< more layers of cells around those in reach of points, for smoothing
+  int overlap = 1;       ///< layers of cells that a rank has around those in reach of its points
+  std::vector<int> visitors;    ///< atoms that are not points, around which cells are needed, too
+  bool valid = false;           ///< do the blocks belong to the present points?
+  bigint nbuild = 0;            ///< how often the blocks have been found
 
-  /** Points may move so many spacings in a step: half of that has to be in reach of a rank before it moves them. */
+  /** Number of spacings that points may move in a step. Half of it must be in reach of a rank before it moves them. */
   static constexpr double MOST_MOTION = 2.0;
 
+  /** groupbit: of the group of the points. */
   MPMFlowLattice(class LAMMPS *, const MPM_NS::Lattice &, int groupbit);
 
-  /** The lattice must fit the box; finds the walls. */
+  /** Finds the walls. Stops with an error if the lattice does not fit the box, for example if a length is not a multiple of
+   *  the spacing. style: of the fix, for messages. */
   void check_box(const char *style);
+  /** Is atom i a point of the group? */
   bool is_point(int i) const;
-  /** Put points in the order of block, cell, and tag. */
+  /** Puts points in the order of block, cell, and tag. */
   void sort();
-  /** Blocks, cells, and lists; nothing while these are valid. */
+  /** Finds blocks, cells, and lists; does nothing while these are valid. */
   void find_cells();
-  /** Does a point with this base still have its cells in those of its run? */
+  /** Are the cells that a point with this base reaches still among those of its run? */
   template <int dim> bool in_reach(const Run &run, const int base[3]) const
   {
     const Range &r = ranges[run.slot];
@@ -82,32 +84,35 @@ class MPMFlowLattice : protected Pointers {
     return in;
   }
 
-  /** Do the visitors still have their cells? */
+  /** Are the cells that the visitors reach still among those that were found? */
   bool visitors_in_reach() const;
-  /** Slot of the block with the cell base of a place, which gets that; -1: there is none. */
+  /** Finds the cell base of a place; returns the slot of its block, -1: there is none. */
   int find_block(const double *x, int base[3]) const;
 
-  /** The values that points gave to images beyond walls go to cells within, width reals for each cell: the first dim of
-   *  them are momenta, the next ones masses, and then forces at faces; all others are plain sums. Then sums over periodic images and ranks. Not moving: walls are at rest. */
+  /** Moves the values that points gave to images beyond walls to the cells within, and adds up values of periodic images and
+   *  ranks. values: [cell][width], the first dim of a cell are momenta of its faces, the next dim masses, the next dim
+   *  forces; all others are plain sums. moving false: walls are at rest. Collective. */
   void sum(double *values, int width, bool moving = true) const;
-  /** Values that belong to no wall: sums over periodic images and ranks. */
+  /** Adds up values [cell][width] of periodic images and ranks, without walls. Collective. */
   void sum_freely(double *values, int width) const;
-  /** Values of owners to other ranks and periodic images; the values of all others must be zero. */
+  /** Sends values [cell][width] of owners to other ranks and periodic images; the values of all others must be zero.
+   *  Collective. */
   void publish(double *values, int width) const;
-  /** The same for values that all ranks have already, of which owners have changed some. */
+  /** As publish(), for values that all ranks have already and of which owners have changed some. */
   void renew(double *values, int width) const;
-  /** Who shares cells, for solves. */
+  /** The ranks that share cells, for solves. */
   MPMHalo &halo_of_cells() const { return halo; }
-  /** Zero for all cells that are not in the list. */
+  /** Sets the values [cell][width] of all cells to zero that are not in the list of owned cells. */
   void keep_owned(double *values, int width) const;
-  /** Velocities [cell][dim] at walls and beyond; moving: those of the walls count. */
+  /** Sets velocities [cell][dim] at walls and beyond; moving false: walls are at rest. */
   void reflect_velocities(double *values, bool moving = true) const;
-  /** Velocities that points move with [cell][dim], at walls and beyond: those normal to a wall without slip grow with the square of the
-   *  distance, so that they are even, and the face in the wall has what makes them zero there when interpolated. */
+  /** Sets the velocities [cell][dim] with which points move, at walls and beyond. Normal to a wall without slip, the velocity
+   *  grows with the square of the distance, so that it is even, and the face in the wall has the value for which the
+   *  interpolated velocity is zero there. */
   void reflect_paths(double *values) const;
-  /** Even images of values in the middle of cells. */
+  /** Sets values in the middle of images of cells to those of the cells. */
   void reflect_cells(double *values) const;
-  /** Images of values in the middle of cells, by f(cell that it is an image of, axis, side, value there). */
+  /** Sets values in the middle of images of cells to f(cell, axis, side, value of the cell). */
   template <class F> void fill_images(double *values, const F &f) const
   {
     for (auto image = images.rbegin(); image != images.rend(); ++image)
@@ -115,9 +120,10 @@ class MPMFlowLattice : protected Pointers {
   }
   /** Is a cell within walls? */
   bool is_inside(int64_t number) const;
-  /** Number of a cell or of what it is a periodic image of; -1: not of this rank. */
+  /** Number of a cell, or of the cell of which it is a periodic image; -1: this rank does not have it. */
   int canonical(const int index[3]) const;
-  /** Images of values in the middle of cells that go on linearly, where inside(number) is true of the last two cells. */
+  /** Sets values in the middle of images of cells by linear extrapolation if inside(number) is true for the last two cells,
+   *  else to those of the cells. */
   template <class F> void extrapolate_cells(double *values, const F &inside) const
   {
     for (auto image = images.rbegin(); image != images.rend(); ++image) {
@@ -127,19 +133,20 @@ class MPMFlowLattice : protected Pointers {
     }
   }
 
+  /** Number of cells of all blocks on this rank: the length of arrays [cell]. */
   int64_t size() const { return grid.nnodes(); }
   double memory_usage() const;
 
  private:
-  static constexpr int DRIFT = 1;    // of points since blocks were found, in cells
-  static constexpr int HALF = 1;     // and half of what they move in a step
+  static constexpr int DRIFT = 1;    // largest motion of points since blocks were found, in cells
+  static constexpr int HALF = 1;     // half of their largest motion in a step, in cells
 
   struct Range {
     int low[3], high[3];
   };
   struct Image {
-    int number, of_face,
-        of_cell;    // images about the wall: of the normal component, and of all else
+    // of_face, of_cell: originals of the normal component, and of all other values
+    int number, of_face, of_cell;
     int of_next;    // the cell behind of_cell
     int axis, side;
   };
@@ -151,11 +158,11 @@ class MPMFlowLattice : protected Pointers {
   std::vector<Image> images;         // by axis
   struct AtWall {
     int number, axis, side;
-    int inner;    // the next one within, if there is any, or -1
+    int inner;    // the next cell within; -1: there is none
   };
-  std::vector<AtWall> at_walls;    // cells whose lower face is one
+  std::vector<AtWall> at_walls;    // cells whose lower face is in a wall
 
-  std::vector<int> borrowed;    // cells of other ranks that this one has, too
+  std::vector<int> borrowed;    // cells of other ranks that this rank has, too
 
   void base_of(const double *x, int base[3]) const;
   int rank_around(int number) const;

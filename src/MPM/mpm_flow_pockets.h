@@ -19,41 +19,45 @@ namespace LAMMPS_NS {
 class MPMFlowPressure;
 class MPMFlowRegions;
 
-/** Pockets: what is empty between a flow and walls, by cells of the box that faces join. Most of them can be far from all points, where the
- *  lattice of the flow has no cells: here are all cells of the box, one number each, and the same on all ranks. Ranks tell each other one bit of each cell,
- *  and number pockets in the order of their first cells. */
+/** Pockets: connected sets of empty cells between a flow and walls; cells are connected through faces. Most of their cells can
+ *  be far from all points, where the lattice of the flow has no cells. So this object has all cells of the box, one number
+ *  each, the same on all ranks. Ranks exchange one bit for each cell, and number pockets in the order of their first cells. */
 class MPMFlowPockets : protected Pointers {
  public:
   static constexpr int NONE = -1;    ///< pocket of a wet or solid cell
 
-  /** Cells that a new pocket has of one before; where that has vanished, those of the nearest one next to it. */
+  /** Number of cells that a new pocket has in common with one before. If no pocket has cells in common with the one before,
+   *  the nearest ones take their place. */
   struct Share {
     int from, to;
     bigint cells;
   };
 
-  bool open[3][2] = {};    ///< faces of the box next to which is open air
+  bool open[3][2] = {};    ///< faces of the box next to which there is open air
 
+  /** Stops with an error if the box has more cells than a rank can have. */
   MPMFlowPockets(class LAMMPS *, const MPMFlowLattice &);
-  /** Cells of the box that are solid, by the middle of cells; null: none. */
+  /** Finds the cells of the box that are solid, those with their middle in a region; null: none. */
   void find_solid(const MPMFlowRegions *);
-  /** Pockets that wet cells leave now. False if nothing has changed; else shares() tell what became of those before. Collective. */
+  /** Finds the pockets for the cells that are wet now. Returns false if nothing has changed; else shares() relate them to the
+   *  pockets before. Collective. */
   bool find(const MPMFlowPressure &);
-  int n() const { return (int) infos.size(); }
+  int n() const { return (int) infos.size(); }    ///< number of pockets
   bigint cells_of(int pocket) const { return infos[pocket].cells; }
   /** Volume of these cells that is not solid, in volumes of a cell. */
   double room_of(int pocket) const { return infos[pocket].room; }
+  /** Does a pocket reach an open face of the box? */
   bool is_open(int pocket) const { return infos[pocket].open; }
-  /** Cells of a pocket at a wall of the box, by their open share. */
+  /** Sum of the open shares of the cells of a pocket at a wall of the box. */
   double cells_at(int pocket, int axis, int side) const { return infos[pocket].at[axis][side]; }
   const std::vector<Share> &shares() const { return of_before; }
 
-  /** Pocket of a cell of the lattice of the flow, images beyond walls, too. */
+  /** Pocket of a cell of the lattice of the flow; NONE: it is in none, or beyond a wall. */
   int of(int64_t number) const { return of_lattice[number]; }
 
-  /** For restart files: pairs of a number of a pocket and how many cells in a row have it. */
+  /** For restart files: pairs of the number of a pocket and the number of consecutive cells that have it. */
   std::vector<double> runs() const;
-  /** False: of another lattice. */
+  /** Takes n reals of runs(); returns false if they belong to another lattice. */
   bool set_runs(const double *from, std::size_t n);
 
   double memory_usage() const;

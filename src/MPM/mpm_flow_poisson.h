@@ -19,9 +19,9 @@ namespace LAMMPS_NS {
 class MPMFlowBodies;
 class MPMFlowGasRows;
 
-/** The equations of the pressure by places of rows, with a cycle of multigrid as their preconditioner. On the finest level it
- *  is CellMultigrid::precondition(), but where an odd period has two neighbors of the same half:
- *  after a sweep of Gauss-Seidel from zero odd cells have no residual, and of even ones it is what odd ones give. */
+/** The equations of the pressure by places of rows (MPMFlowRows), with a cycle of multigrid as their preconditioner. On the
+ *  finest level it is CellMultigrid::precondition(), except where an odd period has two neighbors of the same half. After a
+ *  sweep of Gauss-Seidel from zero, the residual of odd cells is zero, and that of even cells is the sum from odd ones. */
 class MPMFlowPoisson : public MPM_NS::LinearSystem {
  public:
   MPMFlowPoisson(class LAMMPS *lmp, const MPMFlowLattice &cells, MPMFlowRows &rows) :
@@ -34,7 +34,7 @@ class MPMFlowPoisson : public MPM_NS::LinearSystem {
   const MPMFlowBodies *bodies = nullptr;    ///< that the pressure moves; null: none
   MPMFlowGasRows *gas = nullptr;            ///< in pockets; null: none
 
-  void begin();    ///< all of these are there
+  void begin();    ///< to be called when all of these are set
 
   int64_t size() const override { return rows.size(); }
   void apply(const double *x, double *y) override;
@@ -47,7 +47,7 @@ class MPMFlowPoisson : public MPM_NS::LinearSystem {
   class LAMMPS *const lmp;
   const MPMFlowLattice &cells;
   MPMFlowRows &rows;
-  std::vector<int> part;    // [place] of multigrid
+  std::vector<int> part;    // [place] part of the multigrid, see CellMultigrid::part_of()
   std::vector<double> inverse, sum, parts, mine, of_ranks;
   std::vector<double> of_cells[2];    // on the lattice
 

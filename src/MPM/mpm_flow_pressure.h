@@ -26,15 +26,15 @@ class MPMFlowRegions;
 
 /** The pressure that makes a flow free of divergence: the Poisson equation on the cells that are wet.
  *
- *  Cells are wet where points fill more than one half of their surroundings, or less if water is all around: points that
- *  flow are not as even as they were, and what is left between them is no air. The surface is where they fill one half:
- *  a hat that has the depth s below a flat surface is filled by 1/2 + s - s^2/2 of points that are squares (cubes), which tells how far from the middle of a
- *  wet cell the pressure is zero (F. Gibou, R.P. Fedkiw, L.-T. Cheng, M. Kang, J. Comput. Phys. 176 (2002) 205).
+ *  Cells are wet if points fill more than one half of their surroundings, or less if water is all around: points in a flow
+ *  become uneven, and gaps between them are not air. The surface is where points fill one half: a hat at the depth s below a
+ *  flat surface is filled to 1/2 + s - s^2/2 by points that are squares (cubes). This gives the distance from the middle of a
+ *  wet cell at which the pressure is zero (F. Gibou, R.P. Fedkiw, L.-T. Cheng, M. Kang, J. Comput. Phys. 176 (2002) 205).
  *
- *  The unknown is the potential psi = dt p/density, whose gradient velocities lose, times that density over the one at the face where there
- *  are several. Its solve has a multigrid preconditioner,
- *  which is the faster one from the smallest flows on; that of points that spread reaches but a few cells, and the diagonal is enough
- *  (MPMFlowSpread). */
+ *  The unknown is the potential psi = dt p/density, whose gradient is subtracted from velocities; with several densities it
+ *  is first multiplied by this density over the density at the face. The solver has a multigrid preconditioner, which is
+ *  faster than others even for the smallest flows. The equations for spreading points reach only a few cells, and the
+ *  diagonal is enough for them (MPMFlowSpread). */
 class MPMFlowPressure : protected Pointers {
  public:
   MPMFlowPressure(class LAMMPS *lmp, const MPMFlowLattice &cells) :
@@ -48,19 +48,20 @@ class MPMFlowPressure : protected Pointers {
   const MPMFlowRegions *regions = nullptr;
   /** Rigid bodies that the pressure moves; null: none. */
   const MPMFlowBodies *bodies = nullptr;
-  /** [cell] rate of its volume that comes into a cell, of all cells; null: nothing comes. */
+  /** [cell] volume that enters a cell per time, over its volume [1/time], of all cells; null: none. */
   const std::vector<double> *sources = nullptr;
 
-  /** [cell][dim] density that psi is for over that at faces, of all cells; null: one density. */
+  /** [cell][dim] density in psi over the density at faces, of all cells; null: there is one density. */
   const std::vector<double> *lightness = nullptr;
 
-  /** share: [cell] of its surroundings that is filled, with periodic images, and those beyond walls. */
+  /** Finds the wet cells. share: [cell] share of its surroundings that is filled, also of periodic images and images beyond
+   *  walls. Must stay valid while this object is used. */
   void find_wet(const std::vector<double> &share);
-  /** Share of the gradient of psi that velocities of faces [cell][dim] lose, of all cells, if what is in the water resists its
-   *  motion; null: all of it. Counts until find_wet(). */
+  /** Sets the share of the gradient of psi that velocities of faces lose, [cell][dim] of all cells, if objects in the water
+   *  resist its motion; null: all of it. Holds until the next find_wet(). */
   void set_mobility(const std::vector<double> *);
   bool is_wet(int64_t number) const { return flag[number] > 0.0; }
-  /** Wet, and so are all neighbors. */
+  /** Is a cell wet, and are all neighbors, except behind walls? */
   bool is_deep(const MPMFlowLattice::Cell &) const;
 
   /** Is the lower face of a cell along an axis in a wall, or open next to a wet cell? */
@@ -72,43 +73,46 @@ class MPMFlowPressure : protected Pointers {
   /** Open share of the lower face of a cell along an axis. */
   double open(int64_t cell, int axis) const;
 
-  /** Nearest place of the surface to the middle of a cell that equations are made for, in spacings. Where surfaces have a
-   *  pressure, its difference to that in the cell loses as many digits as this has. */
+  /** Least distance of the surface from the middle of a cell in the equations, in spacings. If surfaces have a pressure, its
+   *  difference to the pressure in the cell loses as many digits as this has. */
   double nearest = 1.0e-8;
 
-  /** From the middle of a wet cell to the surface, towards a neighbor that is dry, in spacings. */
+  /** Distance from the middle of a wet cell to the surface, towards a neighbor that is dry, in spacings. */
   double distance(int64_t wet_cell, int64_t dry) const;
 
-  /** Takes the divergence from velocities [cell][dim] of faces next to wet cells. known: [cell][dim] in which these are
-   *  marked with 1, and others with 0. Both have values in owned cells only. surface: [cell][dim] psi of a free surface
-   *  between a cell and the one before it along an axis, of all cells; null: zero. gas: whose pressure is found with it, and that has surface; null: none. */
+  /** Removes the divergence from velocities [cell][dim] of faces next to wet cells. known: [cell][dim] is 1 for these faces,
+   *  and 0 for others. after and known have values in owned cells only. surface: [cell][dim] psi of a free surface between a
+   *  cell and its lower neighbor along an axis, of all cells; null: zero. gas: its pressure is found together with psi, and
+   *  surface is its at_surface(); null: none. Collective. */
   MPM_NS::SolveReport project(const double *before, double *after, double *known,
                               const MPM_NS::SolveGoal &,
                               const std::vector<double> *surface = nullptr,
                               MPMFlowGasRows *gas = nullptr);
-  /** Displacements of faces that take points from where they fill more than all of a cell to where they leave some of it
-   *  empty, and no surface is near: their divergence is rate (share - 1), but for what is farther than a few cells. As in
-   *  T. Kugelstadt, A. Longva, N. Thuerey, J. Bender, IEEE Trans. Vis. Comput. Graph. 27 (2021) 2731. */
+  /** Finds displacements of faces that move points from cells that they overfill to cells that they do not fill, away from
+   *  surfaces: their divergence is rate (share - 1), with an effect that is limited to a few cells. As in T. Kugelstadt,
+   *  A. Longva, N. Thuerey, J. Bender, IEEE Trans. Vis. Comput. Graph. 27 (2021) 2731. Collective. */
   MPM_NS::SolveReport spread(double rate, double *displacement, double *known,
                              const MPM_NS::SolveGoal &);
 
   std::vector<double> psi;    ///< of all cells, zero where there is no water
-  /** Largest |div v| of the wet cells of this rank [1/time]. */
+  /** Largest |div v| of the wet cells of this rank, less sources [1/time]. */
   double largest_divergence(const double *velocity) const;
-  /** What flows out of the wet cells of this rank and does not come into them, and what comes (volume/time, in 2d area). */
+  /** Adds the net outflow of the wet cells of this rank, less sources, to out, and the sources to in [volume/time, in 2d
+   *  area/time]. */
   void add_balance(const double *velocity, double *out, double *in) const;
-  int64_t nwet() const { return (int64_t) wet.size(); }    ///< of this rank
-  /** psi with values next to the surface that make it what it is there in between, zero or that of project(), and farther away that of
-   *  gas; of all cells. */
+  int64_t nwet() const { return (int64_t) wet.size(); }    ///< number of wet cells of this rank
+  /** Sets values to psi of all cells. Dry cells next to the surface get values for which linear interpolation gives psi at the
+   *  surface, zero or that of project(); cells farther away get psi of the gas. Collective. */
   void extend_into_air(std::vector<double> &values, const std::vector<double> *surface = nullptr,
                        const MPMFlowGasRows *gas = nullptr) const;
-  /** Integral of psi over the wall of an axis, the share of this rank. */
+  /** Integral of psi over a wall of the box, the share of this rank. */
   double at_wall(int axis, int side) const;
 
-  /** What flows through a side of a cell along its axis, per area, with what a wall in it carries along. Through a wall of the box goes but
-   *  what moves there of a region. */
+  /** Flux through a side of a cell, positive along its axis, per area, including the flux that a wall in it carries. Through a
+   *  wall of the box goes only the flux of regions that move there. */
   double flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell, int side) const;
-  /** Calls f(cell, side, weight) for all sides of wet cells of this rank that are free surfaces; weight: of psi there in the equation of the cell. */
+  /** Calls f(cell, side, weight) for all sides of wet cells of this rank that are free surfaces. weight: of psi at the surface
+   *  in the equation of the cell. */
   template <class F> void visit_surface(const F &f) const
   {
     for (const auto &one : wet)
@@ -121,13 +125,13 @@ class MPMFlowPressure : protected Pointers {
  private:
   struct Wet {
     int cell;            // in the list of cells
-    int near[6];         // numbers; of neighbors that are dry, the cell itself
-    double weight[6];    // of the difference to the neighbor, 1/h^2; of dry ones, of psi itself
+    int near[6];         // numbers of wet neighbors; -1: dry, or a wall
+    double weight[6];    // of the difference to the neighbor, 1/h^2; dry: of psi itself; walls: 0
     double diagonal;
   };
   const MPMFlowLattice &cells;
   MPMLatticeRanks ranks;
-  MPM_NS::CellOperator coefficients;    // as the multigrid preconditioner has them
+  MPM_NS::CellOperator coefficients;    // of the equations, for the multigrid preconditioner
   MPMFlowRows rows;                     // of the wet cells
   MPMFlowPoisson poisson;
   bool rows_are_there = false, levels_are_there = false;    // for the cells that are wet now
@@ -136,7 +140,7 @@ class MPMFlowPressure : protected Pointers {
   const double *share_of = nullptr;
   const std::vector<double> *mobility = nullptr;
   MPMFlowSpread equal_filling;
-  std::vector<double> diagonal, weight;    // of its rows
+  std::vector<double> diagonal, weight;    // of the rows of equal_filling
   MPM_NS::ConjugateGradients method;
 
   int64_t size() const { return cells.size(); }

@@ -20,69 +20,74 @@ namespace LAMMPS_NS {
 class FixMPMRigid;
 class Region;
 
-/** Regions whose inside is solid to a flow, fixed, with a rigid motion of their own, or with that of a fix mpm/rigid. Cells are cut: a face lets through what its
- *  open share is, and through the rest goes the wall (Y.T. Ng, C. Min, F. Gibou, J. Comput. Phys. 228 (2009) 8807). Shares are
- *  those of the linear functions of the distances at the corners of a cell, exact for planes.
+/** Regions whose inside is solid for a flow: fixed, with a rigid motion of their own, or with the motion of a fix mpm/rigid.
+ *  Cells are cut: fluid flows through the open share of a face, and the rest moves with the wall (Y.T. Ng, C. Min, F. Gibou,
+ *  J. Comput. Phys. 228 (2009) 8807). Shares follow from linear functions of the distances at the corners of a cell, which is
+ *  exact for planes.
  *
- *  Faces, cells, and forces are for the place that regions have at the start of a step, to which the places of points belong;
- *  velocities are the mean ones of the step, and points are kept out of where regions are at its end. */
+ *  Faces, cells, and forces are for the place of regions at the start of a step, to which the places of points belong.
+ *  Velocities are means over the step, and points are kept out of the place of regions at its end. */
 class MPMFlowRegions : protected Pointers {
  public:
+  /** ids: of the regions. */
   MPMFlowRegions(class LAMMPS *, const MPMFlowLattice &, const std::vector<std::string> &ids);
 
-  /** Finds the regions of a run. Errors, in words that begin with name, where there is none of these, or one that is not for flows. */
+  /** Finds the regions of a run. Stops with an error, whose text begins with name, if one does not exist or cannot be used:
+   *  with open faces, a shape that changes, or a union or intersection that moves. */
   void init(const std::string &name);
-  /** State at the start of a run. */
+  /** Notes the state of regions at the start of a run. */
   void start_run();
-  /** Motion in this step, and what is open where it begins. duration 0: without motion. */
+  /** Finds the motion of regions in this step, and open shares at its start. duration 0: no motion. */
   void find(double duration);
-  int n() const { return walls.size(); }
+  int n() const { return walls.size(); }    ///< number of regions
   bool any_move() const { return any_moves; }
 
-  /** The rigid body that has this region; null: none. */
+  /** The rigid body whose shape is this region; null: none. */
   FixMPMRigid *body(int wall) const { return walls[wall].body; }
-  /** Share of the lower face of a cell along an axis that is closed by a body, and its middle from the center of that body. */
+  /** Share of the lower face of a cell along an axis that a body closes. arm: [3] from the center of the body to the middle of
+   *  the face. */
   double closed_by(int wall, int64_t cell, int axis, double *arm) const;
-  /** From the middle of a cell to the surface of a wall. */
+  /** way: [3] vector from the middle of a cell to the surface of a wall. */
   void find_wall(int wall, const MPMFlowLattice::Cell &, double *way) const;
-  /** A body has this velocity and angular velocity now. */
+  /** Sets the present velocity and angular velocity u[6] of a body. */
   void set_velocity(int wall, const double *u);
 
   /** Open share of the lower face of a cell along an axis, 0 to 1. */
   double open(int64_t cell, int axis) const { return shares[cell * dim + axis]; }
-  /** Open share of the hat in the middle of a cell. */
+  /** Open share of the hat function of a cell. */
   double room(int64_t cell) const { return rooms[cell]; }
-  /** Is none of the faces of a cell open? */
+  /** Are all faces of a cell closed? */
   bool is_closed(int64_t cell) const { return closed[cell]; }
-  /** What the walls carry through a face, per area [velocity]: the closed share times their velocity. */
+  /** Flux of the walls through the lower face of a cell, per area [velocity]: closed share times velocity of the wall. */
   double flux(int64_t cell, int axis) const
   {
     return fluxes.empty() ? 0.0 : fluxes[cell * dim + axis];
   }
 
-  /** Shares that points fill of what is open, from those of whole cells; complete before and afterwards. Where next to nothing is open,
-   *  the cells around count. */
+  /** Converts shares of whole cells that points fill to shares of their open parts; of all cells before and afterwards. Where
+   *  next to nothing of a cell is open, the cells around count, too. Collective. */
   void normalize(std::vector<double> &share) const;
-  /** Distance of the middle of the lower face of a cell from walls, positive in the flow, at most far; velocity: component along
-   *  the axis of the nearest wall, as if it went on to there. */
+  /** Distance of the middle of the lower face of a cell from walls, positive in the flow, at most far. velocity: component
+   *  along the axis of the velocity of the nearest wall, extended rigidly to the face. */
   double level_of_face(int64_t cell, int axis, double far, double &velocity) const;
-  /** Distance of the middle of a cell from walls, positive in the flow, as far as it is looked at. */
+  /** Distance of the middle of a cell from walls, positive in the flow, at most a few spacings. */
   double level(int64_t cell) const { return levels[cell]; }
-  /** Depth of the middle of a cell in a region; out: the direction out of it. */
+  /** Depth of the middle of a cell in a region; out: [3] unit vector out of it. */
   double find_way_out(const MPMFlowLattice::Cell &cell, double *out) const;
-  /** Share of a cell that is open, by its faces. */
+  /** Open share of a cell: the mean of its faces. */
   double room_in(const MPMFlowLattice::Cell &) const;
 
-  /** Velocities [cell][dim] of closed faces near walls get the normal component of the wall, or none. Complete. */
+  /** Gives velocities [cell][dim] of closed faces near walls the normal component of the wall (moving), or none; of all cells
+   *  before and afterwards. Collective. */
   void hold(std::vector<double> &velocity, bool moving = true) const;
-  /** Takes a point that is in a wall out of it, with the velocity into the wall. */
+  /** Moves a point that is in a wall out of it, and removes its velocity into the wall. */
   void keep_outside(double *x, double *v) const;
-  /** Depth of a place in a wall, at most far. */
+  /** Depth of a place in a wall, positive inside, between -far and far. */
   double depth(const double *x, double far) const;
 
-  /** Adds the force of potentials psi of owned cells, those that wet(number) is true of, to force[3 n()]. Along a wall psi differs from
-   *  that in the middle of a cell by its slope, which is known there: push(cell, slope) is the velocity that forces give the water around a cell, and the
-   *  pressure takes what is not the change of the velocity of the wall, or a share of that. */
+  /** Adds the force of potentials psi of owned cells for which wet(number) is true to force[3 n()]. Along a wall, psi differs
+   *  from psi in the middle of a cell by its known slope: push(cell, slope) gives the velocity that forces give to the water
+   *  around a cell, and the pressure balances it, less share times the change of the velocity of the wall. */
   template <class Wet, class Push>
   void add_forces(const double *psi, const Wet &wet, const Push &push, double share,
                   double *force) const
@@ -100,12 +105,14 @@ class MPMFlowRegions : protected Pointers {
       }
     }
   }
-  /** Velocities of the walls in the last step, which their changes in the next one belong to, for restart files. */
+  /** Velocities of the walls in the last step, relative to which changes in the next step are found; for restart files. */
   std::vector<double> motion() const;
   void set_motion(const std::vector<double> &);
-  /** Psi in closed cells that points near walls reach, linearly from the wet cells around; psi is complete, and zero there. */
+  /** Extrapolates psi linearly from wet cells to closed cells that points near walls reach. psi: of all cells, zero in these
+   *  before. Collective. */
   void extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const;
 
+  /** Largest flux() of the walls on this rank. */
   double largest_speed() const { return speed; }
   double memory_usage() const;
 
@@ -114,19 +121,20 @@ class MPMFlowRegions : protected Pointers {
     std::string id;
     Region *region = nullptr;
     std::unique_ptr<MPMRegionSurface> surface;
-    FixMPMRigid *body = nullptr;    // that the region is the shape of; null: none
+    FixMPMRigid *body = nullptr;    // body whose shape is the region; null: none
     bool moves = false;
     double before[4];    // shift and angle at the start of the step
-    double shift[3] = {}, spin[3] = {},
-           center[3] = {};                 // velocity, angular velocity about a place
-    double last[9] = {}, older[9] = {};    // these, of the last step, and of the one before it
+    // velocity, and angular velocity about center
+    double shift[3] = {}, spin[3] = {}, center[3] = {};
+    // shift, spin, and center of this step, and of the one before it
+    double last[9] = {}, older[9] = {};
     bool has_last = false;
   };
   struct Cut {    // owned cell with a part of a wall
     int cell, wall;
-    double area[3];    // of the wall, into it
-    double moment
-        [3][3];    // integrals over it: component of the normal, place from the middle of the cell
+    double area[3];    // area vector of the wall, into it
+    // integrals over it of a component of the normal times the place from the middle of the cell
+    double moment[3][3];
     double change[3];    // of its velocity since the last step
   };
   struct Held {    // closed face near a wall
@@ -140,16 +148,15 @@ class MPMFlowRegions : protected Pointers {
   std::vector<Wall> walls;
   std::vector<double> shares, rooms, fluxes;
   std::vector<char> closed;
-  std::vector<int>
-      body_faces;    // [cell][dim] wall of the body that closes a face, or -1; with bodies
+  std::vector<int> body_faces;    // [cell][dim] wall of the body that closes a face, or -1
   std::vector<Cut> cuts;
   std::vector<Held> helds;
   bigint nbuild = -1;
   bool any_moves = false, any_bodies = false, known = false, told_of_thin = false;
-  std::vector<int>
-      met;    // [wall][7] has a body been seen in another region, or in one of the walls of the box?
+  // [wall][7] has a body been seen in another region, or in one of the 6 walls of the box?
+  std::vector<int> met;
   double speed = 0.0, duration_of_motion = 0.0;
-  std::vector<double> levels;    // distances in the middle of cells, at most far
+  std::vector<double> levels;    // distances of the middle of cells, at most FAR spacings
   mutable std::vector<double> changed, slopes, values;
 
   double distance(const double *x, double far, int &nearest) const;

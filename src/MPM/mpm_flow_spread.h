@@ -16,20 +16,20 @@
 
 namespace LAMMPS_NS {
 
-/** Solves equations of cells that are well conditioned, of which the diagonal is all that a preconditioner needs:
+/** Solves well conditioned equations of cells, for which the diagonal is a sufficient preconditioner:
  *
  *    diagonal_i x_i - sum over neighbors j of weight_ij x_j = load_i,
  *
- *  symmetric, with a diagonal that is greater than the sum of the weights. Every second unknown is known by those around it, and conjugate
- *  gradients for the other half, with a diagonal of one, take half as many
- *  iterations as those for all of them (J.K. Reid, SIAM J. Numer. Anal. 9 (1972) 325). Each has one sum over ranks
- *  (A.T. Chronopoulos, C.W. Gear, J. Comput. Appl. Math. 25 (1989) 153). */
+ *  symmetric, with a diagonal that is greater than the sum of the weights. Every second unknown follows from its neighbors.
+ *  Conjugate gradients for the other half, scaled to a diagonal of one, need half as many iterations as for all unknowns
+ *  (J.K. Reid, SIAM J. Numer. Anal. 9 (1972) 325). Each iteration has one sum over ranks (A.T. Chronopoulos, C.W. Gear,
+ *  J. Comput. Appl. Math. 25 (1989) 153). */
 class MPMFlowSpread {
  public:
   MPMFlowSpread(class LAMMPS *lmp, MPMFlowRows &rows) : lmp(lmp), rows(rows) {}
 
-  /** By places of the rows; weight: [place][side]. The residual is that of equations over the root of their
-   *  diagonal.  x may be load.  Collective. */
+  /** diagonal, load, x: by places of the rows; weight: [place][side]. The residual is that of the equations divided by the root
+   *  of their diagonal. x may be the same array as load. Collective. */
   MPM_NS::SolveReport solve(const std::vector<double> &diagonal, const std::vector<double> &weight,
                             const double *load, double *x, const MPM_NS::SolveGoal &);
 
@@ -38,7 +38,8 @@ class MPMFlowSpread {
  private:
   class LAMMPS *const lmp;
   MPMFlowRows &rows;
-  std::vector<double> root, factor;    // one over that of the diagonal; of the scaled equations
+  // one over the root of the diagonal; weights of the scaled equations
+  std::vector<double> root, factor;
   std::vector<double> right_side, solution, direction, changes, product, sums;
 
   void scale(const std::vector<double> &diagonal, const std::vector<double> &weight);

@@ -17,17 +17,18 @@
 
 namespace LAMMPS_NS {
 
-/** The faces and cells that a place between the middles of cells reaches, see lattice/staggered.h. They depend on its base alone. */
+/** The faces and cells that a place between the middles of cells reaches, see lattice/staggered.h. They depend only on the
+ *  base of the place. */
 template <int dim> struct MPMFlowStencil {
-  static constexpr int ROWS = 2 * (dim - 1);    ///< of three faces normal to an axis c along c
+  static constexpr int ROWS = 2 * (dim - 1);    ///< rows of three faces along c, normal to c
   static constexpr int CELLS = 1 << dim;
 
   const int *slots;
-  int block[3][4],
-      inside[3][4];    // parts of neighbor and of number in it, of indices base - 1 to base + 2
+  // for indices base - 1 to base + 2 along each axis: terms of the neighbor block, and of the number in the block
+  int block[3][4], inside[3][4];
 
   MPMFlowStencil() = default;
-  /** base: of a place in reach of this block of the grid. */
+  /** For places with this base, in reach of the block of. */
   MPMFlowStencil(const MPM_NS::Grid &grid, const MPM_NS::Grid::Block &of, const int base[3])
   {
     slots = of.slot;
@@ -43,7 +44,7 @@ template <int dim> struct MPMFlowStencil {
       step >>= grid.shift_bits;
     }
   }
-  /** Number of the cell, and its lower faces, with indices base + k; k: -1 to 2. */
+  /** Number of the cell (and of its lower faces) with indices base + k; k: -1 to 2. */
   int64_t number(int kx, int ky, int kz) const
   {
     int to = block[0][kx + 1] + block[1][ky + 1], n = inside[0][kx + 1] + inside[1][ky + 1];
@@ -63,7 +64,7 @@ template <int dim> struct MPMFlowStencil {
     if constexpr (dim == 2) return c == 0 ? number(k, kd, 0) : number(kd, k, 0);
     return c == 0 ? number(k, kd, ke) : c == 1 ? number(ke, k, kd) : number(kd, ke, k);
   }
-  /** Cells with k of 0 and 1, n: [(2 k_x + k_y) 2 + k_z], in 2d [2 k_x + k_y]. */
+  /** Number of the cell with k of 0 or 1; n: (2 k_x + k_y) 2 + k_z, in 2d 2 k_x + k_y. */
   int64_t cell(int n) const
   {
     if constexpr (dim == 2) return number(n >> 1, n & 1, 0);
@@ -71,7 +72,8 @@ template <int dim> struct MPMFlowStencil {
   }
 };
 
-/** Calls f(number, k) for all cells, with indices base + k, whose middle or lower faces a place with this base reaches: none has the last index along two axes. */
+/** Calls f(number, k) for all cells, with indices base + k, whose middle or lower faces a place with this base reaches.
+ *  None of these has the last index along two axes. */
 template <int dim, class F> inline void visit(const MPMFlowStencil<dim> &stencil, const F &f)
 {
   int k[3] = {0, 0, 0};
@@ -82,7 +84,7 @@ template <int dim, class F> inline void visit(const MPMFlowStencil<dim> &stencil
     }
 }
 
-/** Calls f(c) for each axis, c: as a constant. */
+/** Calls f(c) for each axis c, a std::integral_constant. */
 template <int dim, class F> inline void for_each_axis(const F &f)
 {
   f(std::integral_constant<int, 0>());
@@ -90,8 +92,8 @@ template <int dim, class F> inline void for_each_axis(const F &f)
   if constexpr (dim == 3) f(std::integral_constant<int, 2>());
 }
 
-/** Something that places with the same base have in common, made when the first of them comes. Points that are neighbors in memory have bases that
- *  differ by one at the most, or hardly more: there is one T for each parity of the indices. */
+/** Cache of objects T that places with the same base have in common. Bases of points that are neighbors in memory differ by
+ *  one at most, or hardly more: so there is one T for each parity of the indices. */
 template <int dim, class T> class MPMFlowNear {
  public:
   MPMFlowNear()
@@ -99,7 +101,7 @@ template <int dim, class T> class MPMFlowNear {
     for (auto &one : entries) one.base[0] = INT_MIN;
   }
 
-  /** The T of a base. Where it takes the place of another one, leave(T &) is called for that, and make(T &) for the new one. */
+  /** The T of a base. If it is not there, make(T &) is called for it, after leave(T &) for the one that it replaces, if any. */
   template <class Leave, class Make> T &at(const int base[3], const Leave &leave, const Make &make)
   {
     int k = 0;
@@ -113,7 +115,7 @@ template <int dim, class T> class MPMFlowNear {
     make(one.of);
     return one.of;
   }
-  /** For all that are there. */
+  /** Calls f(T &) for all objects that are there. */
   template <class F> void for_all(const F &f)
   {
     for (auto &one : entries)

@@ -16,9 +16,9 @@
 namespace LAMMPS_NS {
 class MPMFlowRegions;
 
-/** Regions without slip: where the faces of cells are to the walls, and what moves there. A face whose middle is in a wall has
- *  the velocity of the wall, and between it and a face in the flow the velocity is that of the wall where the wall is. Faces
- *  are numbers cell*dim + axis. */
+/** Regions without slip: distances of the faces of cells from walls, and velocities of walls there. A face whose middle is in
+ *  a wall has the velocity of the wall. Between it and a face in the flow, the velocity at the wall is that of the wall.
+ *  Faces are numbered cell*dim + axis. */
 class MPMFlowStick {
  public:
   MPMFlowStick(const MPMFlowLattice &cells, const MPMFlowRegions &regions) :
@@ -26,23 +26,25 @@ class MPMFlowStick {
   {
   }
 
-  /** For the places and velocities that regions have now, which have been found; again: at the start of a run. */
+  /** Finds distances and velocities for the present state of regions, after MPMFlowRegions::find(). again: at the start of a
+   *  run, even if nothing moves. */
   void find(bool again);
-  /** Is the middle of a face in a wall, or nothing of it open? */
+  /** Is the middle of a face in a wall, or the face closed? */
   bool is_wall(int64_t face) const { return !(level[face] > 0.0); }
-  /** Component of the velocity of the nearest wall, as if it went on to the middle of a face; 0 far from walls. */
+  /** Component of the velocity of the nearest wall, extended rigidly to the middle of a face; 0 far from walls. */
   double velocity(int64_t face) const { return carried[face]; }
-  /** What a wall in between makes of the difference of the velocities of two faces one spacing apart. */
+  /** Effect of a wall between two faces, one spacing apart, on the difference of their velocities. */
   struct Gap {
-    double
-        length;    ///< between what both are: from a face to the wall or to the other face [spacings]
-    double
-        wall;    ///< to be added to the difference of velocities in the flow, those of walls being zero
+    /** Distance over which the velocity changes: from a face to the wall, or to the other face [spacings]. */
+    double length;
+    /** To be added to the difference of velocities in the flow, in which those of faces in walls count as zero. */
+    double wall;
   };
+  /** The difference is that of upper less lower. */
   Gap between(int64_t upper, int64_t lower) const;
 
-  /** Velocities [cell][dim] of faces in walls, for points next to these: linear functions, with the velocity of the wall in the
-   *  wall. Complete before and afterwards. */
+  /** Sets velocities [cell][dim] of faces in walls, for points next to walls: extrapolated linearly, with the velocity of the
+   *  wall at its surface. Of all cells before and afterwards. Collective. */
   void hold(std::vector<double> &velocity);
 
   double memory_usage() const { return (level.capacity() + carried.capacity()) * sizeof(double); }
@@ -51,8 +53,8 @@ class MPMFlowStick {
   const MPMFlowLattice &cells;
   const MPMFlowRegions &regions;
   bigint nbuild = -1;
-  std::vector<double> level,
-      carried;    // distance of the middle of faces from walls; see velocity()
+  // [face] distance of the middle from walls, positive in the flow [spacings]; see velocity()
+  std::vector<double> level, carried;
   std::vector<double> known, other, other_known;
 };
 
