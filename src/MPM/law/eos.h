@@ -105,9 +105,9 @@ namespace {
     }
 
     double K, gamma, pmin;
-    double inv_a,
-        linear;    ///< factors of the power and, for gamma = 1, of the logarithm in the integral of J^-gamma
-    double logJc, Jc, Uc;    ///< volume ratio at the start of cavitation, and energy there
+    /** Factors, in the integral of J^-gamma, of the power and (for gamma = 1) of the logarithm. */
+    double inv_a, linear;
+    double logJc, Jc, Uc;    ///< start of cavitation: volume ratio and energy
 
     explicit EosTait(const LawParameters &p) :
         K(p.value[BULK]), gamma(p.value[GAMMA]), pmin(p.value[CUTOFF])

@@ -241,7 +241,7 @@ namespace {
     {
     }
 
-    /** 1 - S eta, limited. */
+    /** 1 - S eta, at least 0.05. */
     MPM_INLINE double gap(double eta) const { return max(1.0 - s * eta, 0.05); }
     MPM_INLINE double gamma(double) const { return gamma0; }
 
@@ -526,8 +526,8 @@ namespace {
 
     /** Temperature with a thermal part: that of the products is (E - cold energy)/(density_0 CP), which
      *  falls along an isentrope as J^-OMEGA; unburnt material keeps its own temperature. before, E: burn
-     *  fraction and internal energy at the start of the step. The heat of the step is subtracted because E
-     *  contains it and the thermal part adds it again. */
+     *  fraction and internal energy at the start of the step. The heat of the step is subtracted because the
+     *  new internal energy contains it and the thermal part adds it again. */
     static void find_temperature(const LawParameters &p, const EosJWL &eos, const double *before,
                                  const double *E, Batch &batch, History history)
     {

@@ -70,8 +70,8 @@ namespace {
    *      + sum_(a != b) [s_ab n_b^2 m_a^2 + (A_ab + s_ab - tau_b) n_a m_a n_b m_b],
    *    s_ab = (tau_a - tau_b) / (exp(2 (e_a - e_b)) - 1),
    *
-   *  a quadratic form in m. The largest eigenvalue of its matrix M, with absolute values of the
-   *  off-diagonal entries, is at most max_a (M v)_a / v_a for any positive v (L. Collatz, Math. Z. 48
+   *  a quadratic form in m. The largest eigenvalue of its matrix is at most max_a (M v)_a / v_a for any
+   *  positive v, where M has the absolute values of the off-diagonal entries (L. Collatz, Math. Z. 48
    *  (1942) 221). With v = |n|, this is a mean over n_b^2 of the entries computed below, whose maximum is
    *  thus a bound for all n. The bound is exact at small strain. */
   MPM_INLINE double largest_modulus(const PrincipalResponse &r, int i)
@@ -102,7 +102,7 @@ namespace {
     return equal ? limit : 0.5 * (r.tau[a][i] - r.tau[b][i]) * ratio;
   }
 
-  /** Adds the response of n points to zeros in r.tau and r.A. */
+  /** Computes the response of n points; r.tau and r.A must be zero on entry. */
   template <class Law> struct IsotropicHyperelastic : Hyperelastic<Law> {
     static void respond(const LawParameters &p, int n, PrincipalResponse &r)
     {

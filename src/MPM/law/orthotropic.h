@@ -86,7 +86,8 @@ namespace {
     }
 
     /** Largest density_0 c^2 of small waves in the unstrained material, or a slightly larger value: exact
-     *  for a wave along an axis and for an isotropic material. Derived as in largest_modulus(). */
+     *  if it belongs to a wave along an axis or if the material is isotropic. Derived as in
+     *  largest_modulus(). */
     double stiffest() const
     {
       const double a = max(C11, max(C22, C33));
@@ -229,7 +230,7 @@ namespace {
         const double *const a = p.value + AXIS;
         const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
         for (int k = 0; k < 3; k++) axis[0][k] = a[k] / length;
-        // two further axes, from the coordinate axis farthest in direction from the first
+        // two further axes, from the coordinate axis that is most nearly normal to the first
         int far = 0;
         for (int k = 1; k < 3; k++)
           if (std::fabs(axis[0][k]) < std::fabs(axis[0][far])) far = k;
