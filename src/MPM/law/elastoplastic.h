@@ -115,8 +115,10 @@ namespace {
   /** Return mapping along principal axes, for any isotropic law. In addition to its declaration, Law
    *  provides:
    *    Law(parameters)
-   *    stay_elastic(batch, history, strains): computes the stresses and returns true if all points certainly stay elastic
-   *    map(batch, history, states): returns the strains to the yield surface and computes the rest; history starts after be
+   *    stay_elastic(batch, history, strains): computes the stresses and returns true if all points
+   *      certainly stay elastic
+   *    map(batch, history, states): returns the strains to the yield surface and computes the rest;
+   *      history starts after be
    *    energy()
    *
    *  Most bodies yield in a few places only; batches that stay elastic do not need the principal axes. */

@@ -179,7 +179,8 @@ namespace {
       return nullptr;
     }
 
-    static constexpr double LEAST = 1e-15;    ///< lower limit of sin(phi), so that the apex exists
+    /** Lower limit of sin(phi). A material without any strength then bears no tension. */
+    static constexpr double LEAST = 1e-15;
     double phi, c, cr, phir, rate, sin_phi, c_cos_phi;
     MohrCoulombSurface surface;
 
