@@ -64,6 +64,7 @@ namespace {
     double gamma, dJ, pold,
         limited;    ///< limited: 1 + gamma dJ/2, but at least 0.1 (violent compression)
 
+    /** gamma: at the end of the step; dJ = J - J_old; pold: pressure at the start of the step. */
     MPM_INLINE EndOfStep(double gamma, double dJ, double pold) :
         gamma(gamma), dJ(dJ), pold(pold), limited(max(1.0 + 0.5 * gamma * dJ, 0.1))
     {
@@ -259,6 +260,7 @@ namespace {
       const double squeezed = dph * (1.0 - 0.5 * gamma0 * eta) - 0.5 * gamma0 * ph;
       return J < 1.0 ? squeezed : K / (J * J);
     }
+    /** -dp/dJ at constant E, also where 1 - S eta is limited. */
     MPM_INLINE double exact_slope(double J, double E) const
     {
       const double eta = 1.0 - J, g = gap(eta), free = slope(J, E);

@@ -32,6 +32,7 @@ namespace {
     return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.xz, s * a.yz};
   }
 
+  /** Sum of the diagonal components. */
   MPM_INLINE double trace(const Sym &a)
   {
     return a.xx + a.yy + a.zz;
@@ -43,6 +44,7 @@ namespace {
     return {a.xx + d, a.yy + d, a.zz + d, a.xy, a.xz, a.yz};
   }
 
+  /** a - tr(a)/3 I */
   MPM_INLINE Sym deviator(const Sym &a)
   {
     return add_diagonal(a, -(1.0 / 3.0) * trace(a));
@@ -74,6 +76,7 @@ namespace {
     return (a.xx * a.yy - a.xy * a.xy) + (a.xx * a.zz - a.xz * a.xz) + (a.yy * a.zz - a.yz * a.yz);
   }
 
+  /** Third invariant. */
   MPM_INLINE double determinant(const Sym &a)
   {
     return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
@@ -97,16 +100,19 @@ namespace {
     rows[5][i] = s.yz;
   }
 
+  /** Cauchy stress of point i. */
   MPM_INLINE Sym load_stress(const Batch &b, int i)
   {
     return load_rows(b.stress, i);
   }
 
+  /** Sets the Cauchy stress of point i. */
   MPM_INLINE void store_stress(Batch &b, int i, const Sym &s)
   {
     store_rows(b.stress, i, s);
   }
 
+  /** Subtracts a pressure, positive in compression, from the stress of point i. */
   MPM_INLINE void subtract_pressure(Batch &b, int i, double p)
   {
     b.stress[0][i] -= p;
@@ -168,6 +174,7 @@ namespace {
   struct Displacement {
     double xx, xy, xz, yx, yy, yz, zx, zy, zz;
 
+    /** Sum of the principal minors. */
     MPM_INLINE double minors() const
     {
       return (xx * yy - xy * yx) + (xx * zz - xz * zx) + (yy * zz - yz * zy);
@@ -294,6 +301,7 @@ namespace {
   struct DeviatorRoots {
     double first, half;
 
+    /** d: a deviator. */
     MPM_INLINE explicit DeviatorRoots(const Sym &d)
     {
       const double r = std::sqrt((1.0 / 6.0) * norm2(d)), r3 = r * r * r;

@@ -62,6 +62,7 @@ namespace {
     double k, f, s, tail;
   };
 
+  /** Parts of the logarithm of a normal positive number. */
   MPM_INLINE LogParts log_parts(double x)
   {
     constexpr uint64_t SQRT_HALF = 0x3fe6a09e667f3bcd;
@@ -108,6 +109,7 @@ namespace {
     double scale, rest, tail;
   };
 
+  /** Parts of the exponential. */
   MPM_INLINE ExpParts exp_parts(double x)
   {
     constexpr double ROUND = 6755399441055744.0;    // 1.5 * 2^52: adding it rounds to an integer

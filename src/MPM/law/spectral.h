@@ -44,14 +44,17 @@ namespace {
     double x, y, z;
   };
 
+  /** a . b */
   MPM_INLINE double product(const Direction &a, const Direction &b)
   {
     return a.x * b.x + a.y * b.y + a.z * b.z;
   }
+  /** a x b */
   MPM_INLINE Direction cross(const Direction &a, const Direction &b)
   {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
   }
+  /** s v */
   MPM_INLINE Direction product(const Sym &s, const Direction &v)
   {
     return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,

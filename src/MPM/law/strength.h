@@ -320,6 +320,7 @@ namespace {
     {
       return with_back_stress(flow.estimate(i, start, t, D), i, D);
     }
+    /** Adds the resistance of the back stress to a flow stress. */
     MPM_INLINE FlowStress with_back_stress(const FlowStress &f, int i, double D) const
     {
       double faded;

@@ -329,6 +329,7 @@ namespace {
       motion.add(p.value[J2_G], p.chi, of_step, b, t);
     }
 
+    /** Updates with or without a back stress, as the parameters select. */
     template <class Flow>
     static MPM_INLINE void choose_kinematic(const LawParameters &p, Batch &b, History history)
     {

@@ -175,6 +175,7 @@ namespace {
     {
       return max(1.0 + A * pressure * exp((1.0 / 3.0) * log(J)) - B * (T - tref), LEAST);
     }
+    /** Is the temperature T at or above the melting temperature? */
     MPM_INLINE bool molten(double J, double T) const
     {
       return T >= melt * exp(2.0 * a * (1.0 - J) + power * log(J));

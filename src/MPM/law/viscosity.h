@@ -123,8 +123,7 @@ namespace {
       b.work[VISCOUS] += viscous;
     }
 
-    /** Accounts for the linear term only. For the quadratic term, the safety factor of the time step is
-     *  relied on. */
+    /** Accounts for the linear term only; the safety factor of the time step covers the quadratic term. */
     static void raise_speed(const LawParameters &p, const Batch &b, History, double *c)
     {
       const double xi = p.value[1], factor = std::sqrt(1.0 + xi * xi) + xi;
