@@ -61,7 +61,7 @@ namespace {
       return 4.0 * G + ((4.0 / 3.0) * G + 4.0 * K) * sin_psi * sp;
     }
 
-    /** Returns a trial state t outside the surface. Derivatives are computed only with SLOPES. */
+    /** Projects a trial state t outside the surface onto it. Derivatives are computed only with SLOPES. */
     template <bool SLOPES>
     MPM_INLINE MohrCoulombReturn project(const Ordered &t, const MohrCoulombStrength &f) const
     {
