@@ -14,39 +14,42 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Before plastic flow: pressure and hardening variable, or functions of these. */
+  /** State before plastic flow: pressure and hardening variable, or functions of these. */
   struct CriticalTrial {
     double p, hard;
   };
 
-  /** What pressure and size of the yield surface become with plastic compression. */
+  /** Pressure and size of the yield surface after the plastic volume strain x (positive in compression). */
   struct Compressed {
-    double p, dp;      ///< pressure after plastic volume strain x (compression), and derivative
-    double p0, dp0;    ///< compressive strength, and derivative
+    double p, dp;      ///< pressure, and its derivative with respect to x
+    double p0, dp0;    ///< compressive strength, and its derivative
   };
 
-  /** Where the plastic volume strain is looked for; strong: positive
-   *  when some strength is left at the end. */
+  /** Bracket of the plastic volume strain x. strong: positive if some strength is left at the end. */
   struct CriticalBracket {
     double start, end, strong;
   };
 
-  /** Laws with an elliptic yield surface in pressure p and equivalent stress q that hardens with
-   *  plastic volume strain, and associated flow (K.H. Roscoe, J.B. Burland, in: Engineering
-   *  Plasticity, Cambridge, 1968, p. 535; with tensile strength BETA p0 as in J. Gaume et al., Nat.
-   *  Commun. 9 (2018) 3047):
+  /** Return mapping of laws with an elliptic yield surface in pressure p and equivalent stress q, which
+   *  hardens with plastic volume strain, and associated flow (K.H. Roscoe, J.B. Burland, in: Engineering
+   *  Plasticity, Cambridge, 1968, p. 535; with tensile strength BETA p0 as in J. Gaume et al., Nat. Commun.
+   *  9 (2018) 3047):
    *
    *    q^2 (1 + 2 BETA) + M^2 (p + BETA p0) (p - p0) <= 0
    *
-   *  With center p_m, half axes a and b = a M_b, M_b = M/sqrt(1 + 2 BETA), and u = (p - p_m)/a, flow
-   *  goes as (x, shear) = (u, sqrt(1 - u^2)/M_b). For a plastic volume strain x the flow rule gives
-   *  q/b = s = q_trial u/(b u + 3 G x/M_b), and the yield surface s^2 + u^2 = 1. x lies between 0 and
-   *  the value that makes u = 0; 1 - 1/sqrt(s^2 + u^2) is nearly linear in x, and Newton's
-   *  iteration within a bracket, a batch at a time, finds the root.
+   *  With center p_m, half axes a and b = a M_b, M_b = M/sqrt(1 + 2 BETA), and u = (p - p_m)/a, the
+   *  direction of flow is (x, shear) = (u, sqrt(1 - u^2)/M_b). For a plastic volume strain x the flow rule
+   *  gives q/b = s = q_trial u/(b u + 3 G x/M_b), and the yield surface is s^2 + u^2 = 1. x lies between 0
+   *  and the value at which u = 0. Because 1 - 1/sqrt(s^2 + u^2) is nearly linear in x, Newton's iteration
+   *  within a bracket finds the root, a batch at a time.
    *
-   *  Law has: Base; G, M_b, beta; begin(history, i, volume); compress(trial, x);
-   *  bracket(trial, p - p_m, p_m) of x;
-   *  finish(history, i, trial, x, increment of shear). */
+   *  Law provides, in addition to Base:
+   *    G, Mb (M_b), beta
+   *    begin(history, i, volume)
+   *    compress(trial, x)
+   *    bracket(trial, p - p_m, p_m), the bracket of x
+   *    finish(history, i, trial, x, increment of shear)
+   */
   template <class Law, class Base> struct CriticalStateReturn : Base {
     using Base::Base;
     static constexpr int MAX_ITERATIONS = 100;
@@ -70,13 +73,14 @@ namespace {
         const Compressed k = law.compress(state, 0.0);
         const double a = half_axis * k.p0, q = 3.0 * G * t.shear[i];
         const double up = k.p + beta * k.p0, down = k.p0 - k.p;    // a (1 + u), a (1 - u)
-        // conditions are signs of numbers: combinations of comparisons do not vectorize
+        // conditions are signs of numbers, because combinations of comparisons do not vectorize
         const double out = max(q * q - Mb * Mb * up * down, max(-up, -down));
         const double plastic = out > 0.0 ? 1.0 : 0.0, above = k.p - center * k.p0;
         const CriticalBracket at = law.bracket(state, above, center * k.p0);
-        // without strength x goes to the end, where there is no stress, unless shear alone made it yield
+        // without strength, x goes to the end, where the stress vanishes, unless the point yields in shear
+        // alone
         const double search = min(out, max(at.strong, min(-above, up))) > 0.0 ? 1.0 : 0.0;
-        // where the surface has no size at the start, the first guess is inside of the bracket
+        // where the surface has zero size at the start, the first guess lies inside the bracket
         const double guess = a > 0.0 ? at.start : 0.5 * (at.start + at.end);
         const double first = search > 0.0 ? guess : at.end;
         sign[i] = above > 0.0 ? 1.0 : -1.0;
@@ -142,16 +146,16 @@ namespace {
 
   enum { CC_G, CC_M, CC_LAMBDA, CC_KAPPA, CC_E0, CC_P0, CC_PC };
 
-  /** Modified Cam-Clay (K.H. Roscoe, J.B. Burland, in: Engineering Plasticity, Cambridge, 1968, p.
-   *  535) at finite strain (R.I. Borja, C. Tamagnini, Comput. Methods Appl. Mech. Eng. 155 (1998)
-   *  73): in Kirchhoff stress, with elastic volume strain v and kappa* = KAPPA/(1 + E0),
+  /** Modified Cam-Clay (K.H. Roscoe, J.B. Burland, in: Engineering Plasticity, Cambridge, 1968, p. 535) at
+   *  finite strain (R.I. Borja, C. Tamagnini, Comput. Methods Appl. Mech. Eng. 155 (1998) 73): in Kirchhoff
+   *  stress, with the elastic volume strain v and kappa* = KAPPA/(1 + E0),
    *
    *    q^2/M^2 + p (p - pc) <= 0,  p = P0 exp(-v/kappa*),  q = 3 G shear,
    *    ln pc grows by plastic compression over (lambda* - kappa*)
    *
-   *  so that lines of isotropic compression and swelling are straight in ln J over ln p (R.
-   *  Butterfield, Geotechnique 29 (1979) 469). P0 is the pressure of the material as it is created;
-   *  its energy there counts as zero. Flow is associated, see CriticalStateReturn. */
+   *  so that lines of isotropic compression and swelling are straight in ln J over ln p (R. Butterfield,
+   *  Geotechnique 29 (1979) 469). P0 is the pressure of the material when it is created; its energy in this
+   *  state is defined as zero. Flow is associated, see CriticalStateReturn. */
   struct LawCamClay : CriticalStateReturn<LawCamClay, InvariantReturn<LawCamClay>> {
     static constexpr const char *name = "camclay";
     static constexpr const char *meaning = "modified Cam-Clay";
@@ -186,6 +190,7 @@ namespace {
     {
     }
 
+    /** -v/kappa*, limited to the largest exponent. */
     MPM_INLINE double growth(double v) const { return max(min(-v * inv_kappa, LARGEST), -LARGEST); }
     MPM_INLINE double pressure(double v) const { return P0 * exp(growth(v)); }
     MPM_INLINE double volume_energy(double v) const { return P0 / inv_kappa * expm1(growth(v)); }
@@ -203,7 +208,7 @@ namespace {
       return {p, -inv_kappa * p, pc, inv_plastic * pc};
     }
 
-    /** p = pc/2 where x (1/kappa + 1/(lambda - kappa)) = ln(2 p/pc) */
+    /** p = pc/2 where x (1/kappa* + 1/(lambda* - kappa*)) = ln(2 p/pc). */
     MPM_INLINE CriticalBracket bracket(const CriticalTrial &s, double, double) const
     {
       return {0.0, swell * (s.p - s.hard + 0.69314718055994530942), 1.0};
@@ -229,15 +234,15 @@ namespace {
     }
   };
 
-  /** Cohesive Cam-Clay (J. Gaume, T. Gast, J. Teran, A. van Herwijnen, C. Jiang, Nat. Commun. 9
-   *  (2018) 3047; J. Wolper et al., ACM Trans. Graph. 38 (2019) 119): elliptic yield surface with
-   *  tensile strength BETA p0 and hardening
+  /** Cohesive Cam-Clay (J. Gaume, T. Gast, J. Teran, A. van Herwijnen, C. Jiang, Nat. Commun. 9 (2018)
+   *  3047; J. Wolper et al., ACM Trans. Graph. 38 (2019) 119): elliptic yield surface with tensile strength
+   *  BETA p0 and hardening
    *
    *    p0 = K sinh(XI max(-alpha, 0)),  alpha = ln of the plastic volume ratio
    *
-   *  Elasticity is Hencky's here, and the flow associated with an implicit return, see
-   *  CriticalStateReturn. For alpha >= 0 nothing of the strength is left: broken material is free of
-   *  stress until it has been compressed again to alpha < 0. */
+   *  Here the elasticity is Hencky's, and the flow is associated with an implicit return, see
+   *  CriticalStateReturn. For alpha >= 0 no strength is left: broken material is free of stress until it
+   *  has been compressed again to alpha < 0. */
   struct LawNacc : CriticalStateReturn<LawNacc, HenckyInvariantReturn<LawNacc>> {
     static constexpr const char *name = "nacc";
     static constexpr const char *meaning = "cohesive Cam-Clay: snow, wet sand, soft rock";

@@ -14,8 +14,8 @@
 namespace MPM_NS::law {
 namespace {
 
-// Parameters that all damages have at the end, and history variables that all have at the beginning,
-// in this order. These are macros, as lists of declarations cannot be joined.
+// Parameters that all damages have at the end, and history variables that all have at the beginning, in
+// this order. These are macros because lists of declarations cannot be joined.
 #define MPM_AFTER_PARAMETERS after_none, after_pressure, after_friction
 #define MPM_DAMAGE_HISTORY damaged, shear_energy, rest_energy
 
@@ -36,30 +36,34 @@ namespace {
       "rest_energy", ZERO, "pressure",
       "energy of the equation of state without tension, per volume"};
 
-  /** Undamaged stress at the end of a step: what a criterion works with. */
+  /** Undamaged stress at the end of a step, from which a law computes the damage. */
   struct Intact {
     Sym s;          ///< deviator
     double mean;    ///< mean stress of the equation of state, positive in tension
   };
 
-  /** Isotropic damage D (L.M. Kachanov 1958; J. Lemaitre, A Course on Damage Mechanics, 1996, ch. 1)
-   *  on top of any equation of state and strength, which see the undamaged stress. With tension of
-   *  the equation of state only,
+  /** Isotropic damage D (L.M. Kachanov 1958; J. Lemaitre, A Course on Damage Mechanics, 1996, ch. 1) on top
+   *  of any equation of state and strength, which see the undamaged stress. It reduces the deviator, and
+   *  the mean stress in tension only:
    *
    *    sigma = (1 - D) s + [(1 - D) max(m, 0) + min(m, 0)] I,   s, m: undamaged
    *    w = (1 - D) (w_s + w_t) + w_0
    *
-   *  w_s: energy of the strength; w_0: of the equation of state where its pressure was last zero or
-   *  positive, w_t: the rest of it. The energy (w_s + w_t) dD that is set free is the work FRACTURE;
-   *  plastic work and its heat are 1 - D of those of the undamaged material. Viscous stress is not
-   *  damaged. A failed point (D = 1) bears shear by friction only, sqrt(s:s/2) <= MU p.
+   *  w_s is the energy of the strength, w_0 that of the equation of state when its pressure was last zero
+   *  or positive, and w_t the rest of the energy of the equation of state. The released energy (w_s + w_t)
+   *  dD is counted as the work FRACTURE; plastic work and its heat are 1 - D times those of the undamaged
+   *  material. Viscous stress is not damaged. A failed point (D = 1) bears shear only by friction,
+   *  sqrt(s:s/2) <= MU p.
    *
-   *  Sums over a step use mean values of its two ends, so that the energy balance has an error of
-   *  third order in a step, and none for a step at whose end all is lost.
+   *  Sums over a step use mean values of its two ends: the energy balance has an error of third order in a
+   *  step, and none for a step at whose end everything is lost.
    *
-   *  Law has: Law(parameters, batch); grow(batch, history, i, intact), which returns the new D of a
-   *  point that has not failed (less than the old one: no change) and updates the law's own history;
-   *  the enum value AFTER, index of after_none in its parameters. */
+   *  Law provides:
+   *    Law(parameters, batch)
+   *    grow(batch, history, i, intact): returns the new D of a point that has not failed (a value below the old D
+   *      means no change) and updates the law's own history
+   *    AFTER, an enum value: the index of after_none in its parameters
+   */
   template <class Law> struct ScalarDamage : LawDefaults {
     static constexpr bool uses_F = false;
 
@@ -79,7 +83,7 @@ namespace {
     static void update(const LawParameters &p, Batch &b, History history)
     {
       const Law law(p, b);
-      // conditions are numbers, 0 or 1: combinations of comparisons do not vectorize
+      // conditions are numbers, 0 or 1, because combinations of comparisons do not vectorize
       const double none = p.value[Law::AFTER] > 0.0 ? 1.0 : 0.0;
       const double friction = p.value[Law::AFTER + 2];
       double less_plastic = 0.0, less_heat = 0.0, fracture = 0.0;
@@ -95,7 +99,7 @@ namespace {
         const double D = D0 < 1.0 ? min(max(grown, D0), 1.0) : 1.0;
         const double had_failed = D0 < 1.0 ? 0.0 : 1.0, failed = D < 1.0 ? 0.0 : 1.0;
 
-        // deviator: share kept before and after, and of its energy after
+        // deviator: share kept before and after, and share of its energy kept after
         const double tau = std::sqrt(0.5 * norm2(intact.s)), hold = friction * max(-mean, 0.0);
         const double slip = tau > hold ? hold / tau : 1.0;
         const double kept0 = b.kept[i], kept = failed > 0.0 ? slip : 1.0 - D;
@@ -104,13 +108,13 @@ namespace {
             (kept - stored) * ws + (kept0 - kept) * std::sqrt(ws * history[SHEAR_ENERGY][i]);
         history[SHEAR_ENERGY][i] = failed > 0.0 ? stored * ws : ws;
 
-        // tension: energy at the start follows from that of the end by the work of the step
+        // tension: its energy at the start follows from that at the end and the work of the step
         const double rest = mean > 0.0 ? min(history[REST_ENERGY][i], we) : we;
         const double wt = we - rest, dJ = b.J[i] - b.Jold[i];
         const double tension = (D - D0) * max(wt - 0.5 * max(mean, 0.0) * dJ, 0.0);
         history[REST_ENERGY][i] = rest;
 
-        // what is lost on top of that when nothing at all is left
+        // additional loss if a failed point bears no stress at all
         const double gone = none * failed, now = gone * (1.0 - had_failed);
         const double pressed = now > 0.0 ? rest - 0.5 * min(mean, 0.0) * dJ : 0.0;
         const double press = gone > 0.0 ? 0.0 : min(mean, 0.0);
@@ -145,7 +149,7 @@ namespace {
     }
   };
 
-  /** Largest principal stress. */
+  /** Largest principal undamaged stress. */
   MPM_INLINE double principal(const Intact &intact)
   {
     return intact.mean + largest_eigenvalue(intact.s);

@@ -14,8 +14,8 @@
 namespace MPM_NS::law {
 namespace {
 
-  // a ductile law measures how much of its ductility is used (row USED of its history, 1: all), and
-  // what follows from that for the stress is the same for all of them
+  // A ductile law measures the used share of its ductility (row USED of its history, 1: all). The effect of
+  // this share on the stress is the same for all ductile laws.
 
   constexpr Parameter soften_from = {
       "soften from",    "START", "1",
@@ -27,10 +27,11 @@ namespace {
   constexpr HistoryDeclaration ductility_used = {"used", ZERO, "1",
                                                  "share of the ductility that is used"};
 
-  /** Stress as a function of what is used: lost at once at 1; or linearly from START on; or, from 1
-   *  on, linearly with the plastic work of one cell, which adds up to GC per area: a crack is one
-   *  cell wide whatever the spacing h of the nodes (A. Hillerborg, M. Modeer, P.-E. Petersson, Cem.
-   *  Concr. Res. 6 (1976) 773; Z.P. Bazant, B.H. Oh, Mater. Struct. 16 (1983) 155). */
+  /** Stress as a function of the used share of the ductility. The stress is lost at once when the share
+   *  reaches 1; or linearly from START on; or, from 1 on, linearly with the plastic work of one cell, which
+   *  adds up to GC per area. The crack is one cell wide whatever the spacing h of the nodes (A. Hillerborg,
+   *  M. Modeer, P.-E. Petersson, Cem. Concr. Res. 6 (1976) 773; Z.P. Bazant, B.H. Oh, Mater. Struct. 16
+   *  (1983) 155). */
   struct Ductile {
     double start, inv_range, per_work;
 
@@ -40,7 +41,7 @@ namespace {
     {
     }
 
-    /** Adds to what is used; returns the damage. */
+    /** Adds more to the used share of the ductility; returns the damage. */
     MPM_INLINE double use(const Batch &b, History history, int i, double more) const
     {
       const double used = min(history[USED][i] + more, 1.0);
@@ -55,9 +56,9 @@ namespace {
    *
    *    used = sum de/e_f,   e_f = [D1 + D2 exp(D3 m/q)] [1 + D4 ln max(rate/EPSDOT0, 1)] [1 + D5 T*]
    *
-   *  of plastic strain e, undamaged mean stress m and equivalent stress q. The triaxiality m/q is not
-   *  taken above 1.5, where the citation says that the formula ends. An e_f of zero or below, which
-   *  fits of D1 < 0 have there, means EFMIN. */
+   *  with plastic strain e, undamaged mean stress m and equivalent stress q. The triaxiality m/q is limited
+   *  to 1.5, where according to the citation the formula ends. If e_f is below EFMIN, EFMIN is used in its
+   *  place; fits with D1 < 0 reach values of zero or below at high triaxiality. */
   struct DamageJohnsonCook : ScalarDamage<DamageJohnsonCook> {
     static constexpr const char *name = "johnson/cook";
     static constexpr const char *meaning = "Johnson-Cook failure strain";

@@ -20,9 +20,9 @@ namespace {
    *
    *    tau^J = 2 mu dev(D) + K tr(D) I,   the integral of tr(D) over a step being ln(J/J_old)
    *
-   *  The rate of tau, not of sigma, makes tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) a stored energy
-   *  whose change is the stress power on any path. Small strain: Hooke's law. Old stress is kept.
-   */
+   *  Because the rate is that of tau, not of sigma, tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) is a stored
+   *  energy whose change equals the stress power on any path. For small strain this is Hooke's law. The
+   *  update starts from the old stress. */
   struct LawLinear : LawDefaults, BulkAndShear {
     static constexpr bool uses_F = false;
     static constexpr const char *name = "linear";
@@ -58,8 +58,8 @@ namespace {
       add_mean(b.n, bulk, t);
     }
 
-    /** J d sigma_nn / d epsilon_nn = lambda + 2 mu - tau_nn; bound of -tau_nn over directions n. In
-     *  strong expansion it is negative: the law then has no waves at all. */
+    /** J d sigma_nn / d epsilon_nn = lambda + 2 mu - tau_nn, with a bound of -tau_nn over all directions n.
+     *  In strong expansion it is negative, and the law has no waves. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawLinear law(p);
@@ -109,7 +109,7 @@ namespace {
       }
     }
 
-    /** mu (l b + b l^T) + lambda tr(l) I */
+    /** Derivative of the Kirchhoff stress: mu (l b + b l^T) + lambda tr(l) I. */
     static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
     {
       const LawNeoHookean law(p);
@@ -124,7 +124,7 @@ namespace {
       add_mean(b.n, lambda, t);
     }
 
-    /** Acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the longest
+    /** From the acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the longest
      *  principal stretch. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
@@ -137,8 +137,8 @@ namespace {
                     least);
     }
 
-    /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H are
-     *  taken out of tr b - 3 - 2 ln J by hand: small strains keep full relative precision. */
+    /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H in tr b - 3 - 2
+     *  ln J are cancelled analytically, so that small strains keep full relative precision. */
     MPM_INLINE double stored(const Batch &b, int i) const
     {
       const Displacement H = displacement(b, i);
@@ -156,8 +156,8 @@ namespace {
    *
    *    w = lambda/2 tr^2(E) + mu E:E,   J sigma = F [lambda tr(E) I + 2 mu E] F^T
    *
-   *  with F E F^T = (b^2 - b)/2. It softens in compression, and under uniaxial compression below a
-   *  stretch of 1/sqrt(3) the stress falls. */
+   *  with F E F^T = (b^2 - b)/2. It softens in compression: under uniaxial compression the
+   *  stress falls below a stretch of 1/sqrt(3). */
   struct LawStVenantKirchhoff : IsotropicHyperelastic<LawStVenantKirchhoff>, LameModuli {
     static constexpr const char *name = "stvenant/kirchhoff";
     static constexpr const char *meaning = "hyperelastic, linear in Green-Lagrange strain";
@@ -179,7 +179,7 @@ namespace {
       return 0.5 * lambda * t * t + mu * norm2(e);
     }
 
-    /** l tau + tau l^T + lambda (b:d) b + 2 mu b d b with the symmetric part d of l. */
+    /** l tau + tau l^T + lambda (b:d) b + 2 mu b d b, where d is the symmetric part of l. */
     static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
     {
       const LawStVenantKirchhoff law(p);
@@ -224,9 +224,9 @@ namespace {
     }
   };
 
-  /** Hyperelastic solid that is linear in the engineering strains u = V - I, with the left stretch V = sqrt(b), but for its change of
-   *  volume (fixed corotated energy: A. Stomakhin, R. Howes, C. Schroeder, J. Teran, Proc. ACM SIGGRAPH/Eurographics Symp. Computer
-   *  Animation (2012) 25, eq. 7):
+  /** Hyperelastic solid that is linear in the engineering strains u = V - I, with the left stretch V =
+   *  sqrt(b), except in its change of volume (fixed corotated energy: A. Stomakhin, R. Howes, C. Schroeder,
+   *  J. Teran, Proc. ACM SIGGRAPH/Eurographics Symp. Computer Animation (2012) 25, eq. 7):
    *
    *    w = mu u:u + lambda/2 (J - 1)^2,   J sigma = 2 mu V u + lambda J (J - 1) I
    *
@@ -238,7 +238,7 @@ namespace {
 
     using LameModuli::LameModuli;
 
-    /** u of the points of a batch. */
+    /** Engineering strains u of the points of a batch. */
     static void engineering_strains(const Batch &b, Tensors &strain)
     {
       left_strains(b, strain);

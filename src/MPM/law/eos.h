@@ -9,20 +9,23 @@
 #ifndef MPM_LAW_EOS_H
 #define MPM_LAW_EOS_H
 
-// Equations of state without energy, and what all of them share.
+// Equations of state without an internal energy.
 
 #include "law/tangent.h"
 
 namespace MPM_NS::law {
 namespace {
 
+  /** Range of a lowest pressure: not positive. */
   constexpr Range TENSION{-UNBOUNDED, 0.0, true};
 
-  /** Loops of an equation of state p(J) without energy.
+  /** Kernels of an equation of state p(J) without an internal energy.
    *
-   *  Eos has, with the volume ratio J = density_0 / density: pressure(J), bulk(J) = -J^2 dp/dJ (the
-   *  reference density times the square of the sound speed), stored(J) = -integral of p dJ from 1. Where bulk() is not
-   *  that derivative, it also has slope(J), which is.
+   *  Eos provides, with the volume ratio J = density_0 / density:
+   *    pressure(J)
+   *    bulk(J) = -J^2 dp/dJ, the reference density times the square of the sound speed
+   *    stored(J) = -integral of p dJ from 1
+   *    slope(J), the exact derivative, only if bulk() is not -J^2 dp/dJ
    */
   template <class Eos> struct Barotropic : LawDefaults {
     static constexpr bool uses_F = false;
@@ -48,9 +51,10 @@ namespace {
       for (int i = 0; i < b.n; i++) w[i] += eos.stored(b.J[i]);
     }
 
+    /** -J^2 dp/dJ, for the tangent. */
     MPM_INLINE double slope(double J) const { return static_cast<const Eos *>(this)->bulk(J); }
 
-    /** -d(J p)/d ln J */
+    /** Derivative of the mean Kirchhoff stress: -d(J p)/d ln J. */
     static void tangent(const LawParameters &p, Batch &b, History, Tangent &t)
     {
       const Eos eos(p);
@@ -80,9 +84,10 @@ namespace {
     MPM_INLINE double stored(double J) const { return K * minus1_minus_log(J); }
   };
 
-  /** Tait-Murnaghan p = K/gamma (J^-gamma - 1), not below the cavitation pressure
-   *  (F.D. Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110
-   *  (1994) 399). Density_0 c^2 = K J^(1-gamma), also in the cavitated state: ready for closure. */
+  /** Tait-Murnaghan liquid: p = K/gamma (J^-gamma - 1), but not below the cavitation pressure (F.D.
+   *  Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110 (1994) 399).
+   *  Density_0 c^2 = K J^(1-gamma) also in the cavitated state, so that the time step is small enough when
+   *  the cavity closes. */
   struct EosTait : Barotropic<EosTait> {
     static constexpr const char *name = "tait";
     static constexpr const char *meaning = "Tait-Murnaghan liquid";
@@ -100,8 +105,9 @@ namespace {
     }
 
     double K, gamma, pmin;
-    double inv_a, linear;    ///< integral of J^-gamma: power, or logarithm for gamma = 1
-    double logJc, Jc, Uc;    ///< start of cavitation, with energy there
+    /** Factors, in the integral of J^-gamma, of the power and (for gamma = 1) of the logarithm. */
+    double inv_a, linear;
+    double logJc, Jc, Uc;    ///< start of cavitation: volume ratio and energy
 
     explicit EosTait(const LawParameters &p) :
         K(p.value[BULK]), gamma(p.value[GAMMA]), pmin(p.value[CUTOFF])
@@ -125,13 +131,14 @@ namespace {
       return x > logJc ? pmin : p;
     }
     MPM_INLINE double bulk(double J) const { return K * exp((1.0 - gamma) * log(J)); }
+    /** -J^2 dp/dJ: zero in the cavitated state. */
     MPM_INLINE double slope(double J) const
     {
       const double liquid = bulk(J);
       return log(J) > logJc ? 0.0 : liquid;
     }
 
-    /** -K/gamma [(J^(1-gamma) - 1)/(1-gamma) - (J - 1)] */
+    /** Energy without cavitation, -K/gamma [(J^(1-gamma) - 1)/(1-gamma) - (J - 1)]; x = ln J. */
     MPM_INLINE double liquid_energy(double J, double x) const
     {
       const double a = 1.0 - gamma;

@@ -16,19 +16,20 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** What equations of state with an internal energy E share: its declaration (initial: as in
-   *  HistoryDeclaration) and that of its dissipated part. */
+  /** Declaration of the internal energy E; initial: as in HistoryDeclaration. */
   constexpr HistoryDeclaration internal_energy(int initial)
   {
     return {"energy", initial, "pressure", "internal energy per reference volume"};
   }
+  /** Declaration of the dissipated part of the internal energy. */
   constexpr HistoryDeclaration dissipated = {"heat", ZERO, "pressure",
                                              "part of it that was dissipated"};
+  /** Base of the equations of state with an internal energy. */
   struct InternalEnergy : LawDefaults {
     static constexpr bool uses_F = false, expands = true;
     enum { ENERGY, HEATED };
 
-    /** Internal energy less the dissipated part, which counts as plastic and viscous work. */
+    /** Internal energy without the dissipated part, which is counted as plastic and viscous work. */
     static void energy(const LawParameters &, const Batch &b, History history, double *w)
     {
       MPM_SIMD
@@ -36,7 +37,8 @@ namespace {
     }
   };
 
-  /** Adds the derivative of -J p, from those of p with respect to J and to the heat of the step. */
+  /** Adds the derivative of -J p to the tangent. by_J, by_heat: derivatives of p with respect to J and to
+   *  the heat of the step. */
   inline void add_pressure(const Batch &b, const double *p, const double *by_J,
                            const double *by_heat, Tangent &t)
   {
@@ -56,28 +58,33 @@ namespace {
     }
   }
 
-  /** The energy at the end of a step with the pressure p = cold + gamma E there, by E = E_old - (p_old + p)/2 dJ + heat. */
+  /** Energy at the end of a step whose final pressure is p = cold + gamma E: E = E_old - (p_old + p)/2 dJ +
+   *  heat. */
   struct EndOfStep {
     double gamma, dJ, pold,
-        limited;    ///< limited: 1 + gamma dJ/2, but for compressions too violent
+        limited;    ///< limited: 1 + gamma dJ/2, but at least 0.1 (violent compression)
 
+    /** gamma: at the end of the step; dJ = J - J_old; pold: pressure at the start of the step. */
     MPM_INLINE EndOfStep(double gamma, double dJ, double pold) :
         gamma(gamma), dJ(dJ), pold(pold), limited(max(1.0 + 0.5 * gamma * dJ, 0.1))
     {
     }
+    /** E at the end of the step. */
     MPM_INLINE double energy(double cold, double Eold, double heat) const
     {
       return (Eold - 0.5 * (pold + cold) * dJ + heat) / limited;
     }
-    /** dp/dJ = -slope + gamma dE/dJ with dE/dJ = [-(p_old + p)/2 + slope dJ/2]/limited; slope: -dp/dJ at constant E. */
+    /** dp/dJ = -slope + gamma dE/dJ with dE/dJ = [-(p_old + p)/2 + slope dJ/2]/limited; slope: -dp/dJ at
+     *  constant E. */
     MPM_INLINE double by_J(double p, double slope) const
     {
       return gamma / limited * 0.5 * (slope * dJ - pold - p) - slope;
     }
+    /** Derivative of p with respect to the heat of the step. */
     MPM_INLINE double by_heat() const { return gamma / limited; }
   };
 
-  // options for the tension that an equation of state bears
+  // options that limit the tension of an equation of state
   constexpr Parameter limits[] = {
       {"cutoff", "PMIN", "pressure", TENSION, -UNBOUNDED, "lowest pressure, not positive"},
       {"spall", "PSPALL", "pressure", TENSION, -UNBOUNDED,
@@ -85,14 +92,14 @@ namespace {
   constexpr Parameter cutoff = limits[0], spall = limits[1];
   constexpr HistoryDeclaration spalled = {"spalled", ZERO, "1", "1 when the material has broken"};
 
-  /** Tension that an equation of state bears: all, a pressure of at least PMIN, or, when the
-   *  pressure has fallen below PMIN once, none (spall). */
+  /** Limit of the tension of an equation of state: no limit; a pressure of at least PMIN; or (spall) no
+   *  tension any more once the pressure has fallen below PSPALL. */
   struct Tension {
-    double pmin;     ///< lowest pressure, minus infinity without limit
-    double after;    ///< pressure instead of one that would be lower
+    double pmin;     ///< lowest pressure; minus infinity: no limit
+    double after;    ///< pressure that replaces a lower one
     bool spall;
 
-    /** Values of the options; minus infinity: not given. */
+    /** cutoff, spalls: values of the options; minus infinity: not given. */
     Tension(double cutoff, double spalls) :
         pmin(max(cutoff, spalls)), after(spalls > -UNBOUNDED ? 0.0 : cutoff),
         spall(spalls > -UNBOUNDED)
@@ -100,18 +107,23 @@ namespace {
     }
   };
 
-  /** Loops of an equation of state p = cold(J) + gamma(J) E, with the internal energy E per
-   *  reference volume.
+  /** Kernels of an equation of state p = cold(J) + gamma(J) E, with the internal energy E per reference
+   *  volume.
    *
-   *  Eos has cold(J), gamma(J), slope(J, E) = -dp/dJ at constant E, and least, the smallest
-   *  density_0 (sound speed)^2 that is believed; CUTOFF and SPALL are the indices of its parameters
-   *  cutoff and spall; where slope() is not that derivative, exact_slope() is. E follows from
+   *  Eos provides:
+   *    cold(J), gamma(J)
+   *    slope(J, E) = -dp/dJ at constant E
+   *    exact_slope(J, E), the exact derivative, only if slope() differs from it
+   *    least, the lower limit of density_0 (sound speed)^2
+   *    CUTOFF and SPALL, the indices of its parameters cutoff and spall
+   *
+   *  E follows from
    *
    *    E = E_old - (p_old + p)/2 (J - J_old) + heat
    *
-   *  solved together with p: second order in the strain increment, and one step from the reference
-   *  state lands exactly on the Hugoniot. A pressure that is limited by tension is the one that
-   *  does the work. History: internal_energy, dissipated, and with spall a mark, spalled. */
+   *  solved together with p. This is of second order in the strain increment, and one step from the
+   *  reference state ends exactly on the Hugoniot. If the tension limit changes the pressure, the limited
+   *  pressure does the work. History: internal_energy, dissipated, and, with spall, the flag spalled. */
   template <class Eos> struct LinearInEnergy : InternalEnergy {
     enum { SPALLED = HEATED + 1 };
     static constexpr int nhistory(const LawParameters &p)
@@ -171,6 +183,7 @@ namespace {
       }
     }
 
+    /** -dp/dJ at constant E, for the tangent. */
     MPM_INLINE double exact_slope(double J, double E) const
     {
       return static_cast<const Eos *>(this)->slope(J, E);
@@ -208,7 +221,7 @@ namespace {
    *    compression  p = p_H (1 - GAMMA0 eta / 2) + GAMMA0 E,   p_H = K eta / (1 - S eta)^2
    *    tension      p = K (1/J - 1) + GAMMA0 E
    *
-   *  1 - S eta is kept above 0.05, which is a pressure of hundreds of K. */
+   *  1 - S eta is kept at 0.05 or more, which corresponds to a pressure of hundreds of K. */
   struct EosShock : LinearInEnergy<EosShock> {
     static constexpr const char *name = "shock";
     static constexpr const char *meaning = "Mie-Gruneisen with linear shock Hugoniot";
@@ -229,6 +242,7 @@ namespace {
     {
     }
 
+    /** 1 - S eta, at least 0.05. */
     MPM_INLINE double gap(double eta) const { return max(1.0 - s * eta, 0.05); }
     MPM_INLINE double gamma(double) const { return gamma0; }
 
@@ -246,6 +260,7 @@ namespace {
       const double squeezed = dph * (1.0 - 0.5 * gamma0 * eta) - 0.5 * gamma0 * ph;
       return J < 1.0 ? squeezed : K / (J * J);
     }
+    /** -dp/dJ at constant E, also where 1 - S eta is limited. */
     MPM_INLINE double exact_slope(double J, double E) const
     {
       const double eta = 1.0 - J, g = gap(eta), free = slope(J, E);
@@ -255,7 +270,7 @@ namespace {
 
   /** Polynomial in mu = density/density_0 - 1, with the internal energy E per reference volume: the
    *  linear polynomial of hydrocodes (J.O. Hallquist, LS-DYNA Theory Manual, 2006, chapter on
-   *  equations of state) with coefficients of its own in tension, as in AUTODYN:
+   *  equations of state), with separate coefficients in tension as in AUTODYN:
    *
    *    compression  p = A1 mu + A2 mu^2 + A3 mu^3 + (B0 + B1 mu) E
    *    tension      p = T1 mu + T2 mu^2 + B0 E
@@ -309,22 +324,23 @@ namespace {
   struct Gas {
     double g;    ///< GAMMA - 1
     double pinf;
-    double pmin;    ///< lowest pressure, which does the work when it acts
+    double pmin;    ///< lowest pressure; where it applies, it does the work
 
-    /** Energy of the reference state at a pressure. */
+    /** Energy per reference volume of the reference state at this pressure. */
     double energy_at(double pressure) const { return (pressure + pinf) / g + pinf; }
 
+    /** Pressure at a volume ratio and an internal energy. */
     MPM_INLINE double pressure(double J, double E) const
     {
       return max(g * (E - pinf * J) / J - pinf, pmin);
     }
   };
 
-  /** Loops of a gas. Law has: gas(parameters).
+  /** Kernels of a gas. Law provides gas(parameters).
    *
-   *  Along an isentrope e ~ J^(1 - GAMMA), which the update follows exactly for any increment of J,
-   *  so that no expansion makes the energy negative. Half of the heat of a step comes before and
-   *  half of it after the change of volume: second order. */
+   *  Along an isentrope e ~ J^(1 - GAMMA). The update follows this exactly for any increment of J, so that
+   *  no expansion makes the energy negative. Half of the heat of a step is added before the change of
+   *  volume and half after it, which is of second order. */
   template <class Law> struct GasLaw : InternalEnergy {
     static constexpr HistoryDeclaration history[] = {internal_energy(INITIALIZED), dissipated};
 
@@ -346,7 +362,7 @@ namespace {
       }
     }
 
-    /** Of e at a given J, the half of the heat that comes last is not compressed. */
+    /** The half of the heat that is added last is not compressed. */
     static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
     {
       const Gas gas = Law::gas(p);
@@ -380,7 +396,7 @@ namespace {
 
   /** Ideal gas of constant specific heats, p = (GAMMA - 1) density e (for instance E.F. Toro,
    *  Riemann Solvers and Numerical Methods for Fluid Dynamics, 2009, ch. 1). The pressure is
-   *  absolute and positive from the start: points have the stress -P0 before the first step. */
+   *  absolute and positive from the start: points have the mean stress -P0 before the first step. */
   struct EosIdealGas : GasLaw<EosIdealGas> {
     static constexpr const char *name = "ideal/gas";
     static constexpr const char *meaning = "ideal gas";
@@ -431,17 +447,17 @@ namespace {
     }
   };
 
-  /** Detonation products after Jones, Wilkins and Lee (E.L. Lee, H.C. Hornig, J.W. Kury, UCRL-50422,
-   *  1968), with programmed burn (M.L. Wilkins, UCRL-7322, 1963; E.L. Giroux, HEMP User's Manual,
-   *  UCRL-51079, 1973). With the internal energy E per reference volume:
+  /** Detonation products after Jones, Wilkins and Lee (E.L. Lee, H.C. Hornig, J.W. Kury, UCRL-50422, 1968),
+   *  with programmed burn (M.L. Wilkins, UCRL-7322, 1963; E.L. Giroux, HEMP User's Manual, UCRL-51079,
+   *  1973). With the internal energy E per reference volume:
    *
    *    p = f [A (1 - OMEGA/(R1 J)) exp(-R1 J) + B (1 - OMEGA/(R2 J)) exp(-R2 J) + OMEGA E / J]
    *    f = D (t - t_light) / (WIDTH h) within 0 and 1, never decreasing
    *
-   *  The detonation reaches a point at t_light: the time of a detonation point plus the distance
-   *  from it over D, the earliest of all detonation points, at the position where the point is
-   *  made. Without detonation points all has burnt from the start. E is E0 from the start and
-   *  changes by the work of the pressure and by heat only: the chemical energy is released once. */
+   *  The detonation reaches a point at t_light: the minimum over all detonation points of the time of the
+   *  detonation point plus its distance over D, for the position at which the material point is created.
+   *  Without detonation points everything has burnt from the start. E starts from E0 and changes only by
+   *  the work of the pressure and by heat: the chemical energy is released once. */
   struct EosJWL : InternalEnergy {
     static constexpr const char *name = "jwl";
     static constexpr const char *meaning = "Jones-Wilkins-Lee detonation products";
@@ -469,6 +485,7 @@ namespace {
         {"burn", INITIALIZED, "1", "burn fraction"},
         {"lighting", INITIALIZED, "time", "time at which the detonation arrives"}};
     enum { BURN = HEATED + 1, LIGHTING };
+    /** Sets the time at which the detonation arrives, and the burn fraction. */
     static void initialize(const LawParameters &p, const double *x, double *history)
     {
       for (int k = 0; k < p.nterms; k++) {
@@ -488,12 +505,13 @@ namespace {
     {
     }
 
-    /** Pressure of the products at zero internal energy, and its slope -dp/dJ. */
+    /** Pressure of the products at zero internal energy. */
     MPM_INLINE double cold(double J) const
     {
       return a * (1.0 - omega / (r1 * J)) * exp(-r1 * J) +
           b * (1.0 - omega / (r2 * J)) * exp(-r2 * J);
     }
+    /** -d cold/dJ. */
     MPM_INLINE double slope(double J) const
     {
       const double w = omega / J;
@@ -501,15 +519,17 @@ namespace {
           b * (r2 - w - w / (r2 * J)) * exp(-r2 * J);
     }
 
-    /** Energy of the products at the temperature zero: the integral of A exp(-R1 J) + B exp(-R2 J) from J on. */
+    /** Energy of the products at zero temperature: integral of A exp(-R1 J) + B exp(-R2 J) from J to
+     *  infinity. */
     MPM_INLINE double cold_energy(double J) const
     {
       return a / r1 * exp(-r1 * J) + b / r2 * exp(-r2 * J);
     }
 
-    /** Temperature with a thermal part: the products have (E - cold energy)/(density_0 CP), which falls along an
-     *  isentrope as J^-OMEGA, and what has not burnt keeps its own. before, E: at the start of the step. The
-     *  heat of the step, which E has, is that which the thermal part adds. */
+    /** Temperature with a thermal part: that of the products is (E - cold energy)/(density_0 CP), which
+     *  falls along an isentrope as J^-OMEGA; unburnt material keeps its own temperature. before, E: burn
+     *  fraction and internal energy at the start of the step. The heat of the step is subtracted because the
+     *  new internal energy contains it and the thermal part adds it again. */
     static void find_temperature(const LawParameters &p, const EosJWL &eos, const double *before,
                                  const double *E, Batch &batch, History history)
     {
@@ -551,7 +571,7 @@ namespace {
       if (warms) find_temperature(p, eos, was, energy, batch, history);
     }
 
-    /** As that of LinearInEnergy. */
+    /** As in LinearInEnergy. */
     static void tangent(const LawParameters &p, Batch &batch, History history, Tangent &t)
     {
       const EosJWL eos(p);
@@ -575,8 +595,8 @@ namespace {
       add_pressure(batch, pressure, by_J, by_heat, t);
     }
 
-    /** Isentropic -J^2 dp/dJ. While the explosive burns at least density_0 D^2: the front is no
-     *  slower, and the pressure still has to come. */
+    /** Isentropic -J^2 dp/dJ. While the explosive burns, at least density_0 D^2: the wave is not slower
+     *  than the detonation front, and the pressure is still to rise. */
     static void modulus(const LawParameters &p, const Batch &batch, History history, double *k)
     {
       const EosJWL eos(p);

@@ -9,27 +9,25 @@
 #ifndef MPM_LAW_GRANULAR_H
 #define MPM_LAW_GRANULAR_H
 
-// Sand and snow.
+// Laws of sand, granular flow, and snow.
 
 #include "law/elastoplastic.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  /** Elastic-perfectly plastic solid with friction and cohesion (D.C. Drucker, W. Prager, Q. Appl.
-   *  Math. 10 (1952) 157), in Kirchhoff stress with pressure p and equivalent stress q:
+  /** Elastic-perfectly plastic solid with friction and cohesion (D.C. Drucker, W. Prager, Q. Appl. Math. 10
+   *  (1952) 157), in Kirchhoff stress with pressure p and equivalent stress q:
    *
    *    q <= M p + k,  -p <= TENSION,  flow (volume, shear) = (M_psi, 1) on the cone
    *
-   *  M and k are those of a Mohr-Coulomb material: M = 6 sin(phi)/(3 - sin(phi)) and
-   *  k = 6 c cos(phi)/(3 - sin(phi)) make the strengths in triaxial compression equal; with "plane",
-   *  those in plane strain are equal for any dilatancy angle: with s = sin(phi), t = sin(psi),
-   *  M = sqrt(3) s r and k = sqrt(3) c cos(phi) r, and for the flow M_psi = sqrt(3) t / sqrt(1 +
-   *  t^2/3), where r = sqrt(1 + t^2/3) / (1 + s t/3) (below).
+   *  M and k are those of a Mohr-Coulomb material. With M = 6 sin(phi)/(3 - sin(phi)) and k = 6 c
+   *  cos(phi)/(3 - sin(phi)), the strengths in triaxial compression are equal. With "plane", those in plane
+   *  strain are equal for any dilatancy angle: with s = sin(phi), t = sin(psi), and r = sqrt(1 + t^2/3) /
+   *  (1 + s t/3), M = sqrt(3) s r, k = sqrt(3) c cos(phi) r, and M_psi = sqrt(3) t / sqrt(1 + t^2/3).
    *
-   *  Return mapping in closed form: cone, tension plane, their intersection. Volume strain
-   *  that opens at the tension plane is kept as "gap", see close_gap().
-   */
+   *  The return mapping is in closed form: to the cone, the tension plane, or their intersection. Volume
+   *  strain that opens at the tension plane is stored as "gap", see close_gap(). */
   struct LawDruckerPrager : HenckyInvariantReturn<LawDruckerPrager> {
     static constexpr const char *name = "drucker/prager";
     static constexpr const char *meaning = "Drucker-Prager plasticity: sand, soil, concrete";
@@ -94,17 +92,17 @@ namespace {
     }
   };
 
-  /** Dense flow of grains with the friction coefficient mu(I) (P. Jop, Y. Forterre, O. Pouliquen,
-   *  Nature 441 (2006) 727), elastic below yield (S. Dunatunga, K. Kamrin, J. Fluid Mech. 779 (2015)
-   *  483): with the shear stress t = q/sqrt(3) and the plastic shear rate g = sqrt(2 D:D),
+  /** Dense granular flow with the friction coefficient mu(I) (P. Jop, Y. Forterre, O. Pouliquen, Nature 441
+   *  (2006) 727), elastic below yield (S. Dunatunga, K. Kamrin, J. Fluid Mech. 779 (2015) 483). With the
+   *  shear stress t = q/sqrt(3) and the plastic shear rate g = sqrt(2 D:D),
    *
    *    t <= mu(I) p,  mu(I) = mu_s + (mu_2 - mu_s) I/(I0 + I),  I = g d / sqrt(p/rho_s)
    *
-   *  at constant volume; rho_s = density/FRACTION is the density of the grains. No tension: grains
+   *  at constant volume; rho_s = density/FRACTION is the density of the grains. There is no tension: grains
    *  that separate are free of stress and close up again, see close_gap().
    *
-   *  Return: with x = G dt g the difference of trial and final t, (trial - x - mu_s p) (x + A) =
-   *  (mu_2 - mu_s) p x, where A = G dt I0 sqrt(p/rho_s)/d, is a quadratic equation. */
+   *  Return mapping: for x = G dt g, the difference of trial and final t, (trial - x - mu_s p) (x + A) =
+   *  (mu_2 - mu_s) p x with A = G dt I0 sqrt(p/rho_s)/d is a quadratic equation. */
   struct LawMuI : HenckyInvariantReturn<LawMuI> {
     static constexpr const char *name = "mui";
     static constexpr const char *meaning = "mu(I) rheology of dense granular flow";
@@ -163,16 +161,16 @@ namespace {
   };
 
   /** Snow (A. Stomakhin, C. Schroeder, L. Chai, J. Teran, A. Selle, ACM Trans. Graph. 32 (2013) 102):
-   *  principal elastic stretches s_a stay between 1 - THETAC and 1 + THETAS, the rest of the motion
-   *  is plastic; with JE the product of s_a and JP = J/JE,
+   *  principal elastic stretches s_a stay between 1 - THETAC and 1 + THETAS, and the rest of the motion is
+   *  plastic. With JE the product of s_a and JP = J/JE,
    *
    *    w = h [mu sum (s_a - 1)^2 + lambda/2 (JE - 1)^2],  h = exp(XI (1 - JP))
    *    tau_a = h [2 mu s_a (s_a - 1) + lambda JE (JE - 1)]
    *
-   *  Elastic energy that hardening adds to the strain that is there is taken from the plastic work.
-   *  The box of stretches is no yield surface with associated flow: the plastic work is negative
-   *  where snow at THETAS is drawn out under compression from its sides. Clamping the work would
-   *  not close the balance of energy, another direction of flow would be another law (nacc). */
+   *  Elastic energy that hardening adds at the present strain is taken from the plastic work. The box of
+   *  stretches is not a yield surface with associated flow: the plastic work is negative where snow at
+   *  THETAS is drawn out under compression from its sides. Limiting the work to positive values would
+   *  violate the balance of energy; another direction of flow would be another law (nacc). */
   struct LawSnow : PrincipalReturn<LawSnow>, LameModuli {
     static constexpr const char *name = "snow";
     static constexpr const char *meaning = "snow with critical compression and stretch";
@@ -194,14 +192,16 @@ namespace {
     {
     }
 
+    /** Hardening factor h. */
     MPM_INLINE double hardening(double JP) const { return exp(xi * (1.0 - JP)); }
 
-    /** Energy for h = 1, from the stretches and their product less one. */
+    /** Energy for h = 1. s0, s1, s2, dJ: stretches minus one and their product minus one. */
     MPM_INLINE double elastic(double s0, double s1, double s2, double dJ) const
     {
       return mu * (s0 * s0 + s1 * s1 + s2 * s2) + 0.5 * lambda * dJ * dJ;
     }
 
+    /** 2 mu s_a (s_a - 1) for ds = s_a - 1. */
     MPM_INLINE double shear_part(double ds) const { return 2.0 * mu * (1.0 + ds) * ds; }
 
     MPM_INLINE bool stay_elastic(Batch &b, History history, const Tensors &strain) const
@@ -214,7 +214,7 @@ namespace {
         outside += max(mean + bound - high, low - (mean - bound)) < 0.0 ? 0.0 : 1.0;
       }
       if (outside > 0.0) return false;
-      Tensors stretch;    // less identity
+      Tensors stretch;    // minus identity
       exp_minus_identity(b.n, strain.row, stretch.row);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
@@ -237,7 +237,7 @@ namespace {
         const double volume = flow0 + flow1 + flow2, m = (1.0 / 3.0) * volume;
         const double JP = history[0][i], JPnew = JP * exp(volume);
         const double h0 = hardening(JP), h = hardening(JPnew);
-        // stretches less one; Kirchhoff stresses for h = 1 at start and end
+        // stretches minus one; Kirchhoff stresses for h = 1 at start and end
         const double x0 = expm1(s.before[0][i]), x1 = expm1(s.before[1][i]);
         const double x2 = expm1(s.before[2][i]), y0 = expm1(e0), y1 = expm1(e1), y2 = expm1(e2);
         const double dJ = expm1(s.before[0][i] + s.before[1][i] + s.before[2][i]);
@@ -276,7 +276,7 @@ namespace {
       }
     }
 
-    /** sqrt(1 + c) - 1 */
+    /** sqrt(1 + c) - 1 without cancellation. */
     static MPM_INLINE double root_minus_1(double c)
     {
       return c / (1.0 + std::sqrt(max(1.0 + c, 0.0)));

@@ -14,27 +14,28 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Ductile metal with voids (A.L. Gurson, J. Eng. Mater. Technol. 99 (1977) 2; V. Tvergaard,
-   *  A. Needleman, Acta Metall. 32 (1984) 157): with the Cauchy mean stress m, equivalent stress q,
-   *  porosity f, and the flow stress y = SIGMAY (1 + e/E0)^N of the matrix at its plastic strain e,
+  /** Ductile metal with voids (A.L. Gurson, J. Eng. Mater. Technol. 99 (1977) 2; V. Tvergaard, A.
+   *  Needleman, Acta Metall. 32 (1984) 157). With the Cauchy mean stress m, equivalent stress q, porosity
+   *  f, and the flow stress y = SIGMAY (1 + e/E0)^N of the matrix at its plastic strain e,
    *
    *    (q/y)^2 + 2 Q1 f* cosh(3/2 Q2 m/y) - 1 - (Q1 f*)^2 = 0
    *    f* = f up to FC, then linear to 1/Q1 at FF, where all stress is lost
    *    df = (1 - f) dv + A(e) de,  A = FN/(SN sqrt(2 pi)) exp[-((e - EN)/SN)^2/2] in tension
    *    (1 - f) y de = plastic work per volume
    *
-   *  with associated flow, v: plastic volume strain. Elasticity: Hencky, in Kirchhoff stress.
+   *  with associated flow; v is the plastic volume strain. The elasticity is Hencky's, in Kirchhoff stress.
    *
-   *  Return mapping (N. Aravas, Int. J. Numer. Meth. Eng. 24 (1987) 1395), implicit in all
-   *  variables: Newton's method from a guess, the flow of where the way from the old stress to the
-   *  trial stress meets the surface; in large steps, the stress of there. Where that fails (large
-   *  steps, points close to failure, voids that vanish), a search: for given y and nucleation the
-   *  unknown is z = log(f/f0), from which follow v (1 - f = (1 - f0) exp(-v)), m, and two values of
-   *  q, by the yield surface and by the direction of flow. Their difference S changes sign between
-   *  no volume flow and no mean stress: bracketed first, then followed by chords while y and
-   *  nucleation are found by secants of the strain of the matrix.
+   *  Return mapping (N. Aravas, Int. J. Numer. Meth. Eng. 24 (1987) 1395), implicit in all variables:
+   *  Newton's method from a first guess. The guess is the flow at the point where the path from the old
+   *  stress to the trial stress meets the surface, or, in large steps, the stress at that point.
    *
-   *  A point that has failed bears pressure only, after the volume that opened ("gap") closed. */
+   *  Where Newton's method fails (large steps, points close to failure, voids that vanish), a search
+   *  follows. For given y and nucleation the unknown is z = log(f/f0). From z follow v (1 - f = (1 - f0)
+   *  exp(-v)), m, and two values of q: by the yield surface and by the direction of flow. Their difference
+   *  S changes sign between no volume flow and no mean stress. The root is first bracketed and then
+   *  followed by chords, while y and nucleation are found by secants of the strain of the matrix.
+   *
+   *  A point that has failed bears pressure only, and only after the volume that opened ("gap") has closed. */
   struct LawGurson : HenckyInvariantReturn<LawGurson> {
     static constexpr const char *name = "gurson";
     static constexpr const char *meaning = "Gurson-Tvergaard-Needleman: ductile metal with voids";
@@ -73,7 +74,7 @@ namespace {
     }
 
     static constexpr double LEAST = 1e-12;    ///< porosity of a solid without voids
-    static constexpr double CLOSE = 1e-2;     ///< S over y at which a bracket is close enough
+    static constexpr double CLOSE = 1e-2;     ///< |S|/y at which the first bracket ends
     double sigmay, inv_e0, n, q1, q2, fn, en, inv_sn, fc, slope, limit;
 
     explicit LawGurson(const LawParameters &p) :
@@ -84,32 +85,37 @@ namespace {
       if (p.value[FF] > 0.0) slope = (limit - fc) / (p.value[FF] - fc);
     }
 
+    /** Flow stress y of the matrix at the plastic strain e. */
     MPM_INLINE double flow_stress(double e) const
     {
       return sigmay * exp(n * log(1.0 + e * inv_e0));
     }
-    /** A condition as a number: loops vectorize when conditions are joined as numbers. */
+    /** A condition as a number, 1 or 0: loops vectorize if conditions are combined as numbers. */
     MPM_INLINE double flag(bool x) const { return x ? 1.0 : 0.0; }
+    /** Effective porosity f*. */
     MPM_INLINE double effective(double f) const
     {
       return min(f > fc ? fc + slope * (f - fc) : f, limit);
     }
-    /** Nucleation A at the strain EN + t SN; that of a step is taken at its middle. */
+    /** Nucleation rate A at the strain EN + t SN. For a step it is evaluated at the middle of the strain
+     *  increment. */
     MPM_INLINE double nucleation(double t) const
     {
       return fn * inv_sn * 0.39894228040143267794 * exp(-0.5 * t * t);
     }
 
-    /** The yield surface at a porosity and a mean stress M, over the flow stress. */
+    /** The yield surface at a porosity and a mean stress, in units of the flow stress. */
     struct Surface {
-      double q2;        ///< square of q/y; negative where the mean stress is too large
+      double q2;        ///< (q/y)^2 on the surface; negative if the mean stress is too large
       double a_sinh;    ///< half the derivative of the yield function by m/y
-      double by_f;      ///< its derivative by the porosity
+      double by_f;      ///< derivative of the yield function by the porosity
     };
+    /** f: porosity, M: m/y. */
     MPM_INLINE Surface surface(double f, double M) const
     {
       const double fs = effective(f), b = 1.5 * q2;
-      // of the magnitude: 1 + less has lost its digits where the mean stress is far below zero
+      // from the magnitude of x, because 1 + less has no digits left where the mean stress is far below
+      // zero
       const double x = b * M, less = expm1(min(max(x, -x), 300.0)), inv = 1.0 / (1.0 + less);
       const double size = 0.5 * (less + less * inv), cosh1 = 0.5 * less * less * inv;
       const double sinh = x < 0.0 ? -size : size;
@@ -118,16 +124,17 @@ namespace {
               2.0 * q1 * (f > fc ? slope : 1.0) * (1.0 - q1 * fs + cosh1)};
     }
 
-    /** A point on its way: known are trial stresses mt, qt, the porosity f0 with nucleation, y. */
+    /** State of a point for a trial value of z. */
     struct Guess {
-      double f, v, m, q, S;    ///< S: difference of the squares of q by surface and flow, over y
+      double f, v, m, q, S;    ///< S: difference of q^2 by surface and by flow, over y
     };
+    /** mt, qt: trial stresses; f0: porosity with nucleation; y: flow stress (Kirchhoff). */
     MPM_INLINE Guess guess(double z, double mt, double qt, double f0, double y) const
     {
       Guess g;
       const double grown = f0 * expm1(z);
       g.f = f0 *
-          exp(z);    // f0 + grown has no digits where voids vanish, and cosh is as large as f is small
+          exp(z);    // f0 + grown has no digits where voids vanish, while cosh is as large as f is small
       const double v = log1p(grown / (1.0 - g.f)), vmax = mt / K;
       g.v = mt > 0.0 ? min(max(v, 0.0), vmax) : max(min(v, 0.0), vmax);
       g.m = mt - K * g.v;
@@ -189,19 +196,19 @@ namespace {
         const double q0 = inv * std::sqrt(square);
         const Surface start = surface(old, m0);
 
-        // where the surface is met on the way from the old stress to the trial stress
+        // where the path from the old stress to the trial stress meets the surface
         const double in = max(start.q2 - q0 * q0, 0.0), t = in / (in + max(out, 1e-300));
         const double Q = q0 + t * (qn - q0), M = m0 + t * (mn - m0);
         const double a = start.a_sinh + t * (an - start.a_sinh);
 
-        // a small step: flow as there, with derivatives of the start
+        // a small step: the flow at that point, with derivatives at the start
         const double strain = (M * a + Q * Q) / (1.0 - old), h = n * inv_e0 / (1.0 + e * inv_e0);
         const double born = mt[i] > 0.0 ? nucleation((e - en) * inv_sn) * strain : 0.0;
         const double falls = stiff * (3.0 * G * Q * (Q + qn) + K * a * (a + an));
         const double hardens = 2.0 * h * (Q * Q + a * M) * strain;
         const double weakens = start.by_f * ((1.0 - old) * a + born);
         const double flows = out / max(falls + hardens - weakens, 0.5 * falls);
-        // a large one: the stress of there
+        // a large step: the stress at that point
         const double most = inv_K * mt[i], all = inv_G3 * qt[i], large = out < 4.0 ? 0.0 : 1.0;
         const double v1 = large > 0.0 ? most - inv_K * y * M : flows * a;
         const double D1 = large > 0.0 ? all - inv_G3 * y * Q : flows * Q;
@@ -233,14 +240,13 @@ namespace {
     }
 
    private:
-    /** Newton's method for the plastic volume strain v, the plastic shear strain D and the
-     *  increment w of the matrix strain: with M = m/y, Q = q/y and a, half the derivative of the
-     *  yield function by M,
+    /** Newton's method for the plastic volume strain v, the plastic shear strain D, and the increment w of
+     *  the matrix strain. With M = m/y, Q = q/y, and a, half the derivative of the yield function by M,
      *
      *    Q^2 - surface(f, M) = 0,   D a - v Q = 0,   (1 - f) w - M v - Q D = 0
      *
-     *  In: v, D, w are a first guess. Out: the solution, and open where there is none that is sure;
-     *  returns the number of these points. */
+     *  In: v, D, w are a first guess. Out: the solution with m, q, f; open is 1 for points without a
+     *  reliable solution. Returns the number of these points. */
     [[gnu::noinline]] double newton(const Batch &b, History history, const double *mt,
                                     const double *qt, const double *active, double *v, double *D,
                                     double *w, double *m, double *q, double *f, double *open) const
@@ -296,7 +302,7 @@ namespace {
           const double dv = r * R3w * (A12 * B2 - B1 * A22), dD = r * R3w * (A21 * B1 - A11 * B2);
           const double dw = -r * det * (R3 + R3v * dv + R3D * dD);
 
-          // what the step leaves is of the order of the square of these
+          // the remaining error of the step is of the order of the squares of these
           const double size2 = g * g * Di * Di + k * k * vi * vi;
           const double miss = R1 * R1, flow2 = Di * Di * a * a + vi * vi * Q * Q;
           const double off1 = max(miss - 1e-12, miss * miss - max(1e-18 * size2, 1e-300));
@@ -334,7 +340,7 @@ namespace {
       return left;
     }
 
-    /** The slow and sure way for the points that are open, see the description of the law. */
+    /** The slow but safe search for the points that are open, see the description of the law. */
     [[gnu::noinline]] void search(const Batch &b, History history, const double *mt,
                                   const double *qt, double *open, double *m, double *q, double *f,
                                   double *more) const
@@ -345,7 +351,7 @@ namespace {
       for (int i = 0; i < b.n; i++) {
         f0[i] = max(history[POROSITY][i], LEAST);
         y[i] = b.J[i] * flow_stress(history[EPLASTIC][i]);
-        active[i] = open[i];    // a point that is done stays as it is, whatever the others need
+        active[i] = open[i];    // a finished point stays as it is while others iterate
         z[i] = w[i] = chord[i] = last[i] = missed[i] = 0.0;
       }
       bracket(b, mt, qt, f0, y, open, z, chord, end, CLOSE);
@@ -363,7 +369,7 @@ namespace {
                                                                                : chord[i];
           const double way = slope * chord[i] > 0.0 ? slope : chord[i], rest = g.S * way;
 
-          // increment of the matrix strain by the plastic work, less the one that y stands for
+          // increment of the matrix strain from the plastic work, compared with the one used for y
           const double D = (qt[i] - g.q) / (3.0 * G);
           const double work = max((g.m * g.v + g.q * D) / ((1.0 - g.f) * y[i]), 0.0);
           const double r = w[i] - work, change = w[i] - last[i];
@@ -387,7 +393,7 @@ namespace {
           busy += open[i];
         }
       }
-      // after large steps, y and nucleation of the points that are left stay as they are
+      // after large steps, y and nucleation of the remaining points are kept as they are
       if (busy > 0.0) bracket(b, mt, qt, f0, y, open, z, chord, end, 1e-13);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
@@ -400,8 +406,9 @@ namespace {
       }
     }
 
-    /** z at which S vanishes, between no volume flow (S < 0) and no mean stress (S > 0), until
-     *  |S| < close y, and the inverse slope there: false position (Illinois method) with bisections. */
+    /** z at which S vanishes, between no volume flow (S < 0) and no mean stress (S > 0), until |S| < close
+     *  y, and the inverse slope (chord) there: false position (Illinois method) with bisections. end: z
+     *  without mean stress. */
     [[gnu::noinline]] void bracket(const Batch &b, const double *mt, const double *qt,
                                    const double *f0, const double *y, const double *active,
                                    double *z, double *chord, double *end, double close) const

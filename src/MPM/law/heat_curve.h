@@ -9,7 +9,7 @@
 #ifndef MPM_LAW_HEAT_CURVE_H
 #define MPM_LAW_HEAT_CURVE_H
 
-// Heat that a material has at a temperature, when its specific heat depends on that or it melts over a range.
+// Enthalpy of a material whose specific heat depends on temperature or that melts over a range of temperatures.
 
 #include "law/law.h"
 
@@ -20,13 +20,14 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Enthalpy per mass as a function H(T) of the temperature: between knots the specific heat is linear in
-   *  T, before the first and behind the last one constant. (Of a formula, it jumps at knots by what makes the heat
-   *  from one to the next exact.) The knots are the terms {T, specific heat, its
-   *  slope, H} of the parameters of a thermal part. Where melting takes no range, a knot without specific
-   *  heat is the end of the solid, and the next one, at the same temperature, the beginning of the melt.
+  /** Enthalpy per mass as a function H(T) of temperature. Between knots the specific heat is linear in T;
+   *  it is constant before the first and after the last knot. (A specific heat given by a formula jumps at
+   *  knots so that the heat from each knot to the next is exact.) The knots are the terms {T, specific
+   *  heat, its slope, H} of the parameters of a thermal part. Where melting occurs at one temperature, a
+   *  knot with zero specific heat marks the end of the solid, and the next knot, at the same temperature,
+   *  the beginning of the melt.
    *
-   *  A point has its temperature and its molten fraction f. Heat changes H, from which both follow: none is
+   *  A point has a temperature and a molten fraction f. Heat changes H, and both follow from H: no heat is
    *  lost, however long the step. */
   struct HeatCurve {
     enum { TEMPERATURE, CAPACITY, SLOPE, ENTHALPY };
@@ -34,8 +35,10 @@ namespace {
     const LawParameters &p;
     double melt, latent, over;
 
-    /** Makes the knots, from a specific heat c(T) that is constant outside of these temperatures. Between two of them a
-     *  straight line takes its place, which rises by what c does and begins with begin(T1, T2). */
+    /** Creates the knots of a specific heat c(T) that is constant outside the temperatures T. Between two
+     *  of them it is replaced by a straight line that starts at begin(T1, T2) and rises as much as c does.
+     *  melt, latent, over: melting temperature, heat of fusion (0: none), and range of melting (0: one
+     *  temperature). */
     template <class Capacity, class Begin>
     static void make(LawParameters &p, std::vector<double> T, const Capacity &c, const Begin &begin,
                      double melt, double latent, double over)
@@ -74,7 +77,7 @@ namespace {
         H += width * (capacity + 0.5 * slope * width);
       }
     }
-    /** Knots that make() needs at the most, besides those of a table. */
+    /** Largest number of knots that make() adds to those of a table. */
     static constexpr int MORE = 4;
 
     /** The last knot at or below a temperature, or the first one. */
@@ -84,7 +87,7 @@ namespace {
       while (k + 1 < p.nterms && T >= p.term[k + 1][TEMPERATURE]) k++;
       return p.term[k];
     }
-    /** In equilibrium; at the temperature of melting that of a melt. */
+    /** Molten fraction in equilibrium; 1 at the melting temperature if there is no range of melting. */
     MPM_INLINE double molten_at(double T) const
     {
       if (!(latent > 0.0)) return 0.0;
@@ -92,21 +95,24 @@ namespace {
       const double f = (T - melt) / over;
       return f < 0.0 ? 0.0 : (f > 1.0 ? 1.0 : f);
     }
+    /** Enthalpy at a temperature and a molten fraction. */
     MPM_INLINE double enthalpy(double T, double molten) const
     {
       const double *const k = below(T), d = T - k[TEMPERATURE];
       const double slope = d < 0.0 ? 0.0 : k[SLOPE];
       return k[ENTHALPY] + d * (k[CAPACITY] + 0.5 * slope * d) + latent * (molten - molten_at(T));
     }
-    /** Specific heat, without that of melting. With it, points that begin to melt in a step would take
-     *  what the nodes have got of it too late, and the error of a front be eight times as large. */
+    /** Specific heat without the heat of fusion. If that were included, points that begin to melt within a
+     *  step would take heat from the nodes too late, and the error of a melting front would be eight times
+     *  as large. */
     MPM_INLINE double capacity(double T) const
     {
       const double *const k = below(T), d = T - k[TEMPERATURE];
       const bool melting = over > 0.0 && T >= melt && T < melt + over;
       return k[CAPACITY] + (d < 0.0 ? 0.0 : k[SLOPE] * d) - (melting ? latent / over : 0.0);
     }
-    /** Heat comes to a point. */
+    /** Adds heat per mass to a point: updates its temperature T and its molten fraction (null if the
+     *  material does not melt). */
     MPM_INLINE void warm(double heat, double &T, double *molten) const
     {
       const double H = enthalpy(T, molten ? *molten : 0.0) + heat;
@@ -121,7 +127,7 @@ namespace {
       const double slope = rest < 0.0 ? 0.0 : k[SLOPE];
       T = k[TEMPERATURE] +
           2.0 * rest / (k[CAPACITY] + std::sqrt(k[CAPACITY] * k[CAPACITY] + 2.0 * slope * rest));
-      // round-off may bring a solid to the temperature of melting
+      // round-off may bring a solid to the melting temperature
       if (molten) *molten = over > 0.0 ? molten_at(T) : (melt <= k[TEMPERATURE] ? 1.0 : 0.0);
     }
   };

@@ -22,9 +22,11 @@ namespace {
     for (int i = 0; i < b.n; i++) store_rows(strain.row, i, left_strain(displacement(b, i)));
   }
 
-  /** Loops of a law whose stress is a function of F. Law has: Law(parameters);
-   *  kirchhoff(batch, i), the Kirchhoff stress J sigma; stored(batch, i), the energy per reference
-   *  volume. */
+  /** Kernels of a law whose stress is a function of F. Law provides:
+   *    Law(parameters)
+   *    kirchhoff(batch, i), the Kirchhoff stress J sigma
+   *    stored(batch, i), the energy per reference volume
+   */
   template <class Law> struct Hyperelastic : LawDefaults {
     static void update(const LawParameters &p, Batch &b, History)
     {
@@ -41,7 +43,7 @@ namespace {
     }
   };
 
-  /** Response of isotropic points in principal axes. */
+  /** Response of isotropic points along their principal axes. */
   struct PrincipalResponse {
     alignas(64) double e[3][BATCH];      ///< logarithms of the principal stretches
     alignas(64) double logJ[BATCH];      ///< their sum
@@ -49,7 +51,7 @@ namespace {
     alignas(64) double A[6][BATCH];      ///< out: d tau_a / d e_b for ab = 11 22 33 12 13 23
   };
 
-  /** Waves along axis b that move points along axis a, see largest_modulus(); ab: index of A_ab. */
+  /** Entry of largest_modulus() for waves along axis b that move points along axis a. ab: index of A_ab. */
   MPM_INLINE double pair_modulus(const PrincipalResponse &r, int i, int a, int b, int ab)
   {
     const double d = r.e[a][i] - r.e[b][i], coupling = r.A[ab][i], tau = r.tau[b][i];
@@ -59,19 +61,19 @@ namespace {
     return s + std::fabs(coupling + s - tau);
   }
 
-  /** Largest density_0 c^2 of all waves in an isotropic elastic point, or little more.
+  /** Largest density_0 c^2 of all waves in an isotropic elastic point, or a slightly larger value.
    *
-   *  For a plane wave with normal n and polarization m, both in principal axes, density_0 c^2 is
-   *  (R.W. Ogden, Non-Linear Elastic Deformations, 1984, ch. 6.3; here with Kirchhoff stresses)
+   *  For a plane wave with normal n and polarization m, both in principal axes, density_0 c^2 is (R.W.
+   *  Ogden, Non-Linear Elastic Deformations, 1984, ch. 6.3; here with Kirchhoff stresses)
    *
    *    sum_a (A_aa - tau_a) n_a^2 m_a^2
    *      + sum_(a != b) [s_ab n_b^2 m_a^2 + (A_ab + s_ab - tau_b) n_a m_a n_b m_b],
    *    s_ab = (tau_a - tau_b) / (exp(2 (e_a - e_b)) - 1),
    *
-   *  a matrix in m. Its largest eigenvalue is at most max_a (M v)_a / v_a for any positive v, with
-   *  the absolute values of the off-diagonal entries in M (L. Collatz, Math. Z. 48 (1942) 221).
-   *  v = |n| makes that a mean over n_b^2 of the entries below: a bound for all n, which is exact
-   *  at small strain. */
+   *  a quadratic form in m. The largest eigenvalue of its matrix is at most max_a (M v)_a / v_a for any
+   *  positive v, where M has the absolute values of the off-diagonal entries (L. Collatz, Math. Z. 48
+   *  (1942) 221). With v = |n|, this is a mean over n_b^2 of the entries computed below, whose maximum is
+   *  thus a bound for all n. The bound is exact at small strain. */
   MPM_INLINE double largest_modulus(const PrincipalResponse &r, int i)
   {
     const double k0 = r.A[0][i] - r.tau[0][i], k1 = r.A[1][i] - r.tau[1][i];
@@ -82,14 +84,15 @@ namespace {
     return max(max(max(k0, k1), max(k2, k3)), max(k4, k5));
   }
 
-  /** What the tangent of an isotropic point has for shear in the plane of its principal axes a and b. With
-   *  d tau_ab = s_ab l_ab + s_ba l_ba, s_ab = (tau_a - tau_b)/(exp(2 (e_a - e_b)) - 1), the mean of s_ab and s_ba is
+  /** Contribution to the tangent of an isotropic point for shear in the plane of its principal axes a and
+   *  b. With d tau_ab = s_ab l_ab + s_ba l_ba, s_ab = (tau_a - tau_b)/(exp(2 (e_a - e_b)) - 1), the mean of
+   *  s_ab and s_ba is
    *
    *    m_ab = (tau_a - tau_b)/2 coth(e_a - e_b)
    *
-   *  (G.A. Holzapfel, Nonlinear Solid Mechanics, 2000, ch. 6.6; E.A. de Souza Neto et al., Computational Methods for
-   *  Plasticity, 2008, app. A), and the rest is a rotation of the stress. m_ab is even in e_a - e_b: where that is
-   *  small, what the limit leaves out is of second order. */
+   *  (G.A. Holzapfel, Nonlinear Solid Mechanics, 2000, ch. 6.6; E.A. de Souza Neto et al., Computational
+   *  Methods for Plasticity, 2008, app. A). The remainder is a rotation of the stress. m_ab is even in e_a
+   *  - e_b: where this difference is small, the error of the limit is of second order. */
   MPM_INLINE double shear_tangent(const PrincipalResponse &r, int i, int a, int b, int ab)
   {
     const double d = r.e[a][i] - r.e[b][i];
@@ -99,8 +102,7 @@ namespace {
     return equal ? limit : 0.5 * (r.tau[a][i] - r.tau[b][i]) * ratio;
   }
 
-  /** Hyperelastic law that is isotropic. Law has in addition: respond_at(response, i), or its own
-   *  respond(). */
+  /** Computes the response of n points; r.tau and r.A must be zero on entry. */
   template <class Law> struct IsotropicHyperelastic : Hyperelastic<Law> {
     static void respond(const LawParameters &p, int n, PrincipalResponse &r)
     {

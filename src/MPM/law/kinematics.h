@@ -10,14 +10,14 @@
 #define MPM_LAW_KINEMATICS_H
 
 // Strain increment and rotation of a step, and small tensor functions that the laws share.
-// Formulas are written out by component: that is what the compiler vectorizes over the batch.
+// Formulas are written out by component, because the compiler then vectorizes them over the batch.
 
 #include "law/math.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  /** Symmetric tensor, or a strain or stress in tensor components. */
+  /** Symmetric tensor; strains have tensor components (xy is half the engineering shear strain). */
   struct Sym {
     double xx, yy, zz, xy, xz, yz;
   };
@@ -32,16 +32,19 @@ namespace {
     return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.xz, s * a.yz};
   }
 
+  /** Sum of the diagonal components. */
   MPM_INLINE double trace(const Sym &a)
   {
     return a.xx + a.yy + a.zz;
   }
 
+  /** a + d I */
   MPM_INLINE Sym add_diagonal(const Sym &a, double d)
   {
     return {a.xx + d, a.yy + d, a.zz + d, a.xy, a.xz, a.yz};
   }
 
+  /** a - tr(a)/3 I */
   MPM_INLINE Sym deviator(const Sym &a)
   {
     return add_diagonal(a, -(1.0 / 3.0) * trace(a));
@@ -61,29 +64,32 @@ namespace {
         2.0 * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
   }
 
-  /** Von Mises equivalent of a deviator. */
+  /** Von Mises equivalent sqrt(3/2 s:s) of a deviator. */
   MPM_INLINE double equivalent(const Sym &s)
   {
     return std::sqrt(1.5 * norm2(s));
   }
 
-  /** Invariants of a symmetric tensor. */
+  /** Second invariant: sum of the principal minors. */
   MPM_INLINE double minors(const Sym &a)
   {
     return (a.xx * a.yy - a.xy * a.xy) + (a.xx * a.zz - a.xz * a.xz) + (a.yy * a.zz - a.yz * a.yz);
   }
 
+  /** Third invariant. */
   MPM_INLINE double determinant(const Sym &a)
   {
     return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
         a.xz * (a.xy * a.yz - a.yy * a.xz);
   }
 
+  /** Tensor of point i from six rows [component][point]. */
   MPM_INLINE Sym load_rows(const double (*rows)[BATCH], int i)
   {
     return {rows[0][i], rows[1][i], rows[2][i], rows[3][i], rows[4][i], rows[5][i]};
   }
 
+  /** Stores the tensor of point i in six rows [component][point]. */
   MPM_INLINE void store_rows(History rows, int i, const Sym &s)
   {
     rows[0][i] = s.xx;
@@ -94,16 +100,19 @@ namespace {
     rows[5][i] = s.yz;
   }
 
+  /** Cauchy stress of point i. */
   MPM_INLINE Sym load_stress(const Batch &b, int i)
   {
     return load_rows(b.stress, i);
   }
 
+  /** Sets the Cauchy stress of point i. */
   MPM_INLINE void store_stress(Batch &b, int i, const Sym &s)
   {
     store_rows(b.stress, i, s);
   }
 
+  /** Subtracts a pressure, positive in compression, from the stress of point i. */
   MPM_INLINE void subtract_pressure(Batch &b, int i, double p)
   {
     b.stress[0][i] -= p;
@@ -111,7 +120,7 @@ namespace {
     b.stress[2][i] -= p;
   }
 
-  /** Isotropic moduli of a law whose first parameters are Young's modulus and Poisson's ratio. */
+  /** Bulk and shear modulus of a law whose first two parameters are Young's modulus and Poisson's ratio. */
   struct BulkAndShear {
     double K, G;
     explicit BulkAndShear(const LawParameters &p) :
@@ -119,6 +128,7 @@ namespace {
     {
     }
   };
+  /** Lame constants of a law whose first two parameters are Young's modulus and Poisson's ratio. */
   struct LameModuli {
     double mu, lambda;
     explicit LameModuli(const LawParameters &p) :
@@ -128,14 +138,15 @@ namespace {
     }
   };
 
-  /** Middle-of-the-step motion: G = dt * velocity gradient of the configuration half-way. */
+  /** Motion at the middle of the step: G = dt * velocity gradient with respect to the configuration
+   *  half-way. */
   struct Increment {
     Sym strain;           ///< symmetric part of G
     double wx, wy, wz;    ///< axial vector of the skew part of G
   };
 
-  /** G = A (I + A/2)^-1. With B = A/2, (I + B)^-1 B = [(1 + tr B) B - B^2 + det B I] / det(I + B)
-   *  (Cayley-Hamilton), which keeps full relative precision for small A. */
+  /** G = A (I + A/2)^-1. With B = A/2, (I + B)^-1 B = [(1 + tr B) B - B^2 + det B I] / det(I + B) (theorem
+   *  of Cayley and Hamilton), which keeps full relative precision for small A. */
   MPM_INLINE Increment increment(const Batch &b, int i)
   {
     const double a = 0.5 * b.A[0][i], c = 0.5 * b.A[1][i], d = 0.5 * b.A[2][i];
@@ -163,6 +174,7 @@ namespace {
   struct Displacement {
     double xx, xy, xz, yx, yy, yz, zx, zy, zz;
 
+    /** Sum of the principal minors. */
     MPM_INLINE double minors() const
     {
       return (xx * yy - xy * yx) + (xx * zz - xz * zx) + (yy * zz - yz * zy);
@@ -180,14 +192,14 @@ namespace {
             b.F[5][i],       b.F[6][i], b.F[7][i], b.F[8][i] - 1.0};
   }
 
-  /** H = A of this step. */
+  /** Displacement gradient A of this step. */
   MPM_INLINE Displacement step_displacement(const Batch &b, int i)
   {
     return {b.A[0][i], b.A[1][i], b.A[2][i], b.A[3][i], b.A[4][i],
             b.A[5][i], b.A[6][i], b.A[7][i], b.A[8][i]};
   }
 
-  /** b - I = H + H^T + H H^T: small strains keep full relative precision. */
+  /** b - I = H + H^T + H H^T, which keeps full relative precision for small strains. */
   MPM_INLINE Sym left_strain(const Displacement &H)
   {
     return {2.0 * H.xx + H.xx * H.xx + H.xy * H.xy + H.xz * H.xz,
@@ -204,7 +216,7 @@ namespace {
     return 0.5 * left_strain({H.xx, H.yx, H.zx, H.xy, H.yy, H.zy, H.xz, H.yz, H.zz});
   }
 
-  /** ln J, from J - 1 = tr H + minors + det H. */
+  /** ln J, computed from J - 1 = tr H + minors + det H to keep precision near J = 1. */
   MPM_INLINE double log_volume(const Displacement &H)
   {
     return log1p(H.xx + H.yy + H.zz + (H.minors() + H.determinant()));
@@ -249,15 +261,15 @@ namespace {
     }
   };
 
-  /** Q s Q^T */
+  /** Q s Q^T with the incremental rotation Q. */
   MPM_INLINE Sym rotate(const Increment &inc, const Sym &s)
   {
     return congruence(Rotation(inc).Q, s);
   }
 
-  /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate belongs to the middle
-   *  of the step. It is exact under rotation and of second order; Q old Q^T + rate (Hughes & Winget) is
-   *  of first order as soon as strain and rotation come together. */
+  /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate is the increment in the axes of
+   *  the middle of the step. The result is exact for pure rotation and of second order in general. The form
+   *  Q old Q^T + rate of Hughes and Winget is only of first order when strain and rotation occur together. */
   MPM_INLINE Sym jaumann(const Increment &inc, const Sym &old, const Sym &rate)
   {
     const Sym half = 0.5 * rate;
@@ -274,7 +286,7 @@ namespace {
             xx * yx + xy * yy + xz * yz, xx * zx + xy * zy + xz * zz, yx * zx + yy * zy + yz * zz};
   }
 
-  /** a a */
+  /** The product a a. */
   MPM_INLINE Sym square(const Sym &a)
   {
     return {a.xx * a.xx + a.xy * a.xy + a.xz * a.xz, a.xy * a.xy + a.yy * a.yy + a.yz * a.yz,
@@ -282,13 +294,14 @@ namespace {
             a.xx * a.xz + a.xy * a.yz + a.xz * a.zz, a.xy * a.xz + a.yy * a.yz + a.yz * a.zz};
   }
 
-  /** The eigenvalue of largest magnitude of a deviator, and half the distance of the two others. They
-   *  are right to round-off, the latter to 1e-8 of the norm where it vanishes. Scaled by
-   *  r = sqrt(d:d/6), eigenvalues solve t^3 - 3 t - 2 c = 0 with c = det(d)/(2 r^3). The root of
-   *  largest magnitude comes from Newton steps, the others follow from a quadratic. */
+  /** Eigenvalues of a deviator: the one of largest magnitude (first) and half the difference of the two
+   *  others (half). They are exact to round-off, half to 1e-8 of the norm where it vanishes. With r =
+   *  sqrt(d:d/6), the scaled eigenvalues solve t^3 - 3 t - 2 c = 0 with c = det(d)/(2 r^3). The root of
+   *  largest magnitude comes from Newton steps; the others follow from a quadratic equation. */
   struct DeviatorRoots {
     double first, half;
 
+    /** d: a deviator. */
     MPM_INLINE explicit DeviatorRoots(const Sym &d)
     {
       const double r = std::sqrt((1.0 / 6.0) * norm2(d)), r3 = r * r * r;
@@ -315,11 +328,11 @@ namespace {
     return (1.0 / 3.0) * trace(a) + largest_eigenvalue(deviator(a));
   }
 
-  /** Smallest density_0 (wave speed)^2 that is believed, over its value at rest: tangents may be
-   *  zero or negative far from rest, where there are no waves, but the time step must be finite. */
+  /** Lower limit of density_0 (wave speed)^2, relative to its value at rest. Far from rest, tangents may be
+   *  zero or negative (there are no waves then), but the time step must stay finite. */
   constexpr double LEAST_MODULUS = 0.01;
 
-  /** Upper bound of the largest eigenvalue of a deviator, exact when the other two are equal. */
+  /** Upper bound of the largest eigenvalue of a deviator; exact if the other two are equal. */
   MPM_INLINE double eigenvalue_bound(const Sym &dev)
   {
     return std::sqrt((2.0 / 3.0) * norm2(dev));

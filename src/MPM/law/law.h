@@ -43,18 +43,18 @@ constexpr bool OF_NEW_POINTS = true;    ///< last word of a declaration, see Par
 
 /** Declaration of one parameter.
  *
- *  Parameters without option are given first, in this order; those of them that have a default are
- *  given all together or not at all. The others follow the words of their option, options in any
- *  order. Options that begin with the same word exclude each other.
- */
+ *  Positional parameters (those without an option) come first, in this order; those of them that have a
+ *  default are given all together or not at all. The other parameters follow the words of their option.
+ *  Options may come in any order; options that begin with the same word exclude each other. */
 struct Parameter {
   const char *option;    ///< word or words that introduce it, "" when positional
   const char *name;      ///< as in the manual
   const char *unit;      ///< kind of unit: pressure, velocity, viscosity, temperature, ..., or 1
   Range range;
-  double standard;    ///< value when not given, or REQUIRED
+  double standard;    ///< default value, or REQUIRED
   const char *meaning;
-  bool of_new_points = false;    ///< of the state of new points, which no temperature changes?
+  /** Does it only set the state of new points? Then it cannot vary with temperature. */
+  bool of_new_points = false;
 };
 
 /** Declarations that several laws share. */
@@ -70,18 +70,20 @@ struct HistoryDeclaration {
   const char *unit;    ///< kind of unit, as for parameters
   const char *meaning;
 };
-/** Initial values of history variables; INITIALIZED: by initialize(). */
+/** Initial values of history variables: 0, 1, or the value that initialize() sets. */
 enum { ZERO = -1, ONE = -2, INITIALIZED = -3 };
 constexpr HistoryDeclaration PLASTIC_STRAIN = {"eplastic", ZERO, "1", "equivalent plastic strain"};
 
-/** Shares of the stress: which ones a law needs from the last step, which ones a viscosity adds. When
- *  these overlap, the material keeps what viscosities add apart and out of the law's sight. */
+/** Parts of the stress: of a law, the parts of the old stress that its update starts from; of a viscosity,
+ *  the parts to which it adds. Where these overlap, the material stores the viscous stress separately and
+ *  hides it from the law. */
 enum StressShare { NO_SHARE = 0, PRESSURE = 1, DEVIATOR = 2, WHOLE_STRESS = 3 };
 
-/** The places that a law can take in a material, in the order of their history variables. */
+/** Places of laws in a material, in the order of their history variables. */
 enum Part { CLOSED, EOS, STRENGTH, VISCOSITY, DAMAGE, THERMAL, NPARTS };
 
-/** Values of the parameters, as the kernels get them, and what other parts of the material tell. */
+/** Values of the parameters of a law as its kernels receive them, with what the kernels need from other
+ *  parts of the material. */
 struct LawParameters {
   static constexpr int MAX = 32, MAX_TERMS = 32, TERM = 4;
   double density;       ///< reference density, in pressure / velocity^2
@@ -94,10 +96,10 @@ struct LawParameters {
   double broken;          ///< share of the work of damage that becomes heat
   double warm;        ///< temperature rise per heat of unit reference volume; 0: no thermal part
   int temperature;    ///< row of the temperature in batch.history, -1: no thermal part
-  bool curved = false;    ///< of a thermal part: are its terms the knots of a HeatCurve?
+  bool curved = false;    ///< of a thermal part: do its terms hold the knots of a HeatCurve?
 };
 
-/** Rows of history variables of a batch, beginning with the first one of a law. */
+/** Rows of history variables of a batch, [variable][point], from the first variable of a law on. */
 using History = double (*)[BATCH];
 
 /** Temperature of the points of a batch, or null when the material has no thermal part. */
@@ -106,11 +108,12 @@ inline __attribute__((always_inline)) double *temperature(const LawParameters &p
   return p.temperature < 0 ? nullptr : b.history[p.temperature];
 }
 
-/** Declaration of a law. */
+/** Declaration of a law. The first words of a comment name the kind of law to which a member applies. */
 struct LawInfo {
   const char *name;
   const char *meaning;
-  StressShare share;    ///< of the old stress that it builds on; of a viscosity: what it adds
+  /** Parts of the old stress that it starts from; of a viscosity: parts to which it adds. */
+  StressShare share;
   const Parameter *parameters;
   int nparameters;
   const char *term;    ///< option that may be given several times, or null
@@ -120,88 +123,96 @@ struct LawInfo {
   int ndeclared;                             ///< entries of history
   const HistoryDeclaration *term_history;    ///< one set for each term, names followed by 1, 2, ...
   int nterm_history;
-  /** How many of the history variables a law with these parameters has. Null: all. */
+  /** Number of history variables that a law with these parameters uses. Null: all. */
   int (*nhistory)(const LawParameters &);
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
-  bool uses_F;        ///< does any kernel read batch.F? Else J and A are all that it knows
-  /** Of an equation of state: does it have an internal energy, which heat raises, so that it expands? Then
-   *  no 'expansion' goes with it, and what conduction brings, and what a damage has made in the last step, is in
-   *  batch.heat when it is updated, if it does not find the temperature. */
+  bool uses_F;        ///< does any kernel read batch.F? Otherwise only J and A
+  /** Of an equation of state: does it have an internal energy that heat raises, so that it expands when
+   *  heated? Then the option 'expansion' is not allowed with it. Unless it also finds the temperature,
+   *  batch.heat contains the heat of conduction and of the damage of the last step when it is updated. */
   bool expands;
-  /** Of an equation of state: does the temperature follow from its internal energy? Then no other part
-   *  changes that but by heat, the first two rows of its history are that energy and the dissipated part of it, and
-   *  what conduction and a damage bring is in both before it is updated. */
+  /** Of an equation of state: does the temperature follow from its internal energy? Then other parts change
+   *  the temperature only through heat, and the first two rows of its history are the internal energy and
+   *  the dissipated part of it. The heat of conduction and of damage is added to both before the update. */
   bool finds_temperature;
-  /** Of a closed law: does it bear nothing across the plane of its axes 1 and 2, so that it is for surfaces only? */
+  /** Of a closed law: does it carry no stress across the plane of its axes 1 and 2, so that it can be used
+   *  for surfaces only? */
   bool of_surfaces;
-  /** What is wrong with parameters that are each in their range; null when all is well. */
+  /** Error message for parameters that are each within range but not valid together; null if they are
+   *  valid. */
   const char *(*check)(const LawParameters &);
-  /** Does a law with these parameters need the temperature, and so a thermal part? */
+  /** Does a law with these parameters need the temperature, and therefore a thermal part? */
   bool (*needs_temperature)(const LawParameters &);
-  /** Of a thermal part: share of the plastic work that becomes heat, and temperature rise per heat
-   *  of unit reference volume. */
+  /** Of a thermal part: share of the plastic work that becomes heat. */
   double (*heat_share)(const LawParameters &);
+  /** Of a thermal part: temperature rise per heat per reference volume. */
   double (*warming)(const LawParameters &);
   /** Of a thermal part: share of the work of damage that becomes heat. Null: none. */
   double (*fracture_share)(const LawParameters &);
-  /** Of a thermal part with conduction of heat: what that needs. Null: none. */
+  /** Of a thermal part that conducts heat: data of the conduction. Null: none. */
   Conduction (*conduction)(const LawParameters &);
-  /** Of a thermal part: coefficient of the linear thermal expansion [1/temperature]. Null: none. */
+  /** Of a thermal part: coefficient of linear thermal expansion [1/temperature]. Null: none. */
   double (*expansion)(const LawParameters &);
-  int gruneisen;    ///< of a thermal part: which of the parameters is the Gruneisen parameter, -1: none
-  /** Of a thermal part with expansion: does the material find the Gruneisen parameter by its bulk modulus?
-   *  Null: never. */
+  int gruneisen;    ///< of a thermal part: index of the Gruneisen parameter, -1: none
+  /** Of a thermal part with expansion: does the material compute the Gruneisen parameter from its bulk
+   *  modulus? Null: never. */
   bool (*consistent)(const LawParameters &);
-  /** History of a new point at x (its values one after the other; in: initial values). Null: keep
-   *  the initial values. */
+  /** Sets the history of a new point at x. history: the values of the variables, one after the other; in:
+   *  initial values. Null: keep the initial values. */
   void (*initialize)(const LawParameters &, const double *x, double *history);
 
-  /** Number of history variables, those of the terms not counted. */
+  /** Number of history variables, without those of the terms. */
   int count_history(const LawParameters &p) const { return nhistory ? nhistory(p) : ndeclared; }
 };
 
-/** Declarations of all laws for one place: in the order of the lists in law/list.h, then those
- *  of plugins. They stay where they are when others are added. */
+/** List of the declarations of laws. References to them stay valid when laws are added. */
 using LawList = std::deque<LawInfo>;
+/** Declarations of all laws for one place in a material: those of law/list.h in the order of the lists,
+ *  then those of plugins. */
 const LawList &declared_laws(Part);
 
-/** Kernels of a law; those that do not concern it are null.
+/** Kernels of a law; those that do not apply to it are null.
  *
- *  Energies are per reference volume. The parts of a composed material work on one batch in turn:
- *  a damage takes back its reduction of the stress (prepare), a strength makes the deviator of the
- *  stress, viscosities add to it, the equation of state subtracts the pressure, a damage reduces the
- *  stress, a thermal part turns batch.heat into temperature. A closed law makes the whole stress.
- *  The other parts know nothing of a damage: it corrects their accounts of plastic work and heat.
- */
+ *  Energies are per reference volume. The parts of a composed material update one batch in turn:
+ *    - a damage restores the undamaged stress (prepare);
+ *    - a strength computes the deviator of the stress;
+ *    - viscosities add to the stress;
+ *    - the equation of state subtracts the pressure;
+ *    - a damage reduces the stress;
+ *    - a thermal part turns batch.heat into a change of temperature.
+ *
+ *  A closed law computes the whole stress. Damage is invisible to the other parts: it corrects the plastic
+ *  work and heat that they have recorded. */
 struct LawKernels {
-  /** Stress and history at the end of the step; work of the batch is added to batch.work, heat of
-   *  the points to batch.heat, increments of the equivalent plastic strain go to batch.plastic. */
+  /** Computes stress and history at the end of the step. Adds the work of the batch to batch.work and the
+   *  heat of the points to batch.heat; stores the increments of the equivalent plastic strain in
+   *  batch.plastic. */
   void (*update)(const LawParameters &, Batch &, History);
 
-  /** Adds to k[n] this part's share of density * (wave speed)^2, with the reference density:
-   *  J d sigma_nn / d epsilon_nn for a small uniaxial strain on top of the present state. */
+  /** Adds to k[n] the contribution of this part to reference density * (wave speed)^2, that is J d sigma_nn
+   *  / d epsilon_nn for a small uniaxial strain on top of the present state. */
   void (*modulus)(const LawParameters &, const Batch &, History, double *k);
 
-  /** Adds to w[n] the stored energy; a damage, whose strength is not asked, finds the energy of the
-   *  equation of state there and makes it that of the damaged material. */
+  /** Adds the stored energy to w[n]. A damage receives in w[n] the energy of the equation of state and
+   *  replaces it by that of the damaged material; the energy() of the strength is then not called. */
   void (*energy)(const LawParameters &, const Batch &, History, double *w);
 
-  /** Of a viscosity: raises c[n] so that h / c[n] is the stable step with this viscosity. */
+  /** Of a viscosity: raises c[n] so that h / c[n] is the stable time step with this viscosity. */
   void (*raise_speed)(const LawParameters &, const Batch &, History, double *c);
 
-  /** Of a damage: before the other parts, gives back the stress of the undamaged material, and
-   *  tells in batch.kept what share of its deviator there was. Of a thermal part: the change of
-   *  temperature by compression, when stress depends on it: stress and heat are then those of the
-   *  same time, and no energy comes of the coupling of the two. */
+  /** Runs before the other parts. A damage restores the stress of the undamaged material and stores in
+   *  batch.kept the share of the deviator that was left. A thermal part applies the change of temperature
+   *  by compression if stress depends on temperature: stress and heat then belong to the same time, and
+   *  their coupling creates no energy. */
   void (*prepare)(const LawParameters &, Batch &, History);
 
-  /** What update() does, to the last bit, and adds this part's share of the tangent of the step. A part that adds to
-   *  batch.heat adds to Tangent::heat, and one whose stress depends on that heat looks at it there. Null: has no
-   *  analytic tangent. Of a thermal part it is not asked. */
+  /** Does the same as update(), bit for bit, and adds the contribution of this part to the tangent of the
+   *  step. A part that adds to batch.heat also adds to Tangent::heat; a part whose stress depends on that
+   *  heat reads it there. Null: no analytic tangent. Not called for a thermal part. */
   void (*tangent)(const LawParameters &, Batch &, History, Tangent &);
 };
 
-/** What a law need not declare or provide; all laws derive from this. */
+/** Default declarations and kernels; all laws derive from this. */
 struct LawDefaults {
   static constexpr StressShare share = NO_SHARE;
   static constexpr bool uses_speed = true, uses_F = true, expands = false,
@@ -229,19 +240,19 @@ struct LawTable {
 
   void (*mean_stress)(const Batch &, double *);    ///< a third of the trace
 
-  /** Equivalent strain rate sqrt(2/3 D:D) in the middle of a step. */
+  /** Equivalent strain rate sqrt(2/3 D:D) at the middle of a step. */
   void (*strain_rate)(const Batch &, double *);
 
-  /** The table for this CPU, or the one with this name: as MPMKernels::select(). */
+  /** The table for this CPU, or the one with this name; see MPMKernels::select(). */
   static const LawTable *select(const char *name = nullptr);
 
   /** Kernels of a law by its index in declared_laws(). */
   const LawKernels &kernels(Part, int index) const;
 };
 
-/** What a plugin with laws must have in common with the package. */
+/** Version and sizes of structs on which a plugin with laws and the package must agree. */
 struct LawVersion {
-  int interface;    ///< raised with each change of what laws and package expect of each other
+  int interface;    ///< raised with each change of the interface of laws and package
   int batch, info, kernels, parameters, conduction;
 };
 constexpr LawVersion law_version{8,
@@ -258,14 +269,14 @@ struct PluginLaw {
   LawKernels kernels;
 };
 
-/** Adds laws to declared_laws(); returns what is wrong, or nothing. */
+/** Adds laws of a plugin to declared_laws(); returns an error message, or an empty string on success. */
 std::string add_laws(const LawVersion &, const PluginLaw *, int n);
 
-// from the struct of a law to its declaration and its kernels
-
+// conversion of the struct of a law to its declaration and its kernels
 namespace law {
   namespace {
 
+    /** Number of entries of a declaration; 0 for null. */
     template <class T, int N> constexpr int count(const T (&)[N])
     {
       return N;
@@ -275,6 +286,7 @@ namespace law {
       return 0;
     }
 
+    /** Declaration of a law, from the static members of its struct. */
     template <class Law> LawInfo declaration()
     {
       LawInfo info;
@@ -311,6 +323,7 @@ namespace law {
       return info;
     }
 
+    /** Kernels of a law, from the static functions of its struct. */
     template <class Law> constexpr LawKernels kernels()
     {
       return {Law::update, Law::modulus, Law::energy, Law::raise_speed, Law::prepare, Law::tangent};

@@ -20,7 +20,7 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Laws for one place in a material that are compiled in one file. */
+  /** Laws for one place in a material that are compiled together in one file. */
   template <Part PART, class... Laws> struct Family {
     static constexpr Part part = PART;
     static constexpr int size = sizeof...(Laws);
@@ -31,7 +31,7 @@ namespace {
 }    // namespace
 }    // namespace MPM_NS::law
 
-/** The laws of a family: its part of a material, and their structs. */
+/** Defines a family: its place in a material and the structs of its laws. */
 #define MPM_FAMILY(name, ...)           \
   namespace MPM_NS::law {               \
     namespace {                         \
@@ -105,13 +105,13 @@ MPM_FAMILY(damage, DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRanki
 MPM_FAMILY(thermal, THERMAL, ThermalAdiabatic, ThermalConducting, ThermalConstant)
 #endif
 
-// in the order in which laws are listed in messages
+// families in the order in which messages list their laws
 #define MPM_LAW_FAMILIES(X) \
   X(elastic)                \
   X(viscoelastic)           \
   X(frictional) X(soil) X(porous) X(eos) X(strength) X(impact) X(viscosity) X(damage) X(thermal)
 
-/** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the family in the order of its list. */
+/** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the laws of a family in their order. */
 #define MPM_LAW_FAMILY(family)                         \
   namespace MPM_NS {                                   \
     const LawKernels *MPM_OF_ISA(mpm_laws_##family)(); \

@@ -10,7 +10,7 @@
 #define MPM_LAW_MATH_H
 
 // Elementary functions without branches and library calls, so that loops over them vectorize.
-// The polynomials are Chebyshev fits made with mpmath (chebyfit); what they leave out is below 2e-17.
+// The polynomials are Chebyshev fits made with mpmath (chebyfit); their error is below 2e-17.
 
 #include "law/law.h"
 
@@ -21,6 +21,7 @@
 namespace MPM_NS::law {
 namespace {
 
+  /** Bit pattern of a double. */
   MPM_INLINE uint64_t to_bits(double x)
   {
     uint64_t u;
@@ -28,6 +29,7 @@ namespace {
     return u;
   }
 
+  /** Double with this bit pattern. */
   MPM_INLINE double from_bits(uint64_t u)
   {
     double x;
@@ -35,17 +37,19 @@ namespace {
     return x;
   }
 
+  /** Larger of two numbers; b if either is not a number. */
   MPM_INLINE double max(double a, double b)
   {
     return a > b ? a : b;
   }
 
+  /** Smaller of two numbers; b if either is not a number. */
   MPM_INLINE double min(double a, double b)
   {
     return a < b ? a : b;
   }
 
-  /** Polynomial of x, its coefficients from that of the highest power down. */
+  /** Polynomial of x by Horner's scheme; coefficients from the highest power down. */
   template <class... Rest> MPM_INLINE double polynomial(double x, double first, Rest... rest)
   {
     double sum = first;
@@ -58,6 +62,7 @@ namespace {
     double k, f, s, tail;
   };
 
+  /** Parts of the logarithm of a normal positive number. */
   MPM_INLINE LogParts log_parts(double x)
   {
     constexpr uint64_t SQRT_HALF = 0x3fe6a09e667f3bcd;
@@ -104,6 +109,7 @@ namespace {
     double scale, rest, tail;
   };
 
+  /** Parts of the exponential. */
   MPM_INLINE ExpParts exp_parts(double x)
   {
     constexpr double ROUND = 6755399441055744.0;    // 1.5 * 2^52: adding it rounds to an integer
@@ -129,7 +135,8 @@ namespace {
     return p.scale + p.scale * p.rest;
   }
 
-  /** Exponential of a number below 700, at most 7 percent too large: straight lines between powers of two. */
+  /** Exponential of a number below 700 by linear interpolation between powers of two; at most 7 percent too
+   *  large. */
   MPM_INLINE double rough_exp(double x)
   {
     constexpr double SHIFT = 1.5 * 1048576.0 + 1023.0;    // leaves 32 bits behind the point

@@ -18,7 +18,7 @@ namespace {
     double s1, s2, s3;
   };
 
-  /** A batch of them: trial stresses and what the return changes. */
+  /** Ordered stresses of a batch: trial stresses s1, s2, s3, and their changes c1, c2, c3 by the return. */
   struct OrderedStates {
     alignas(64) double s1[BATCH], s2[BATCH], s3[BATCH], c1[BATCH], c2[BATCH], c3[BATCH];
     alignas(64) double at_apex[BATCH];    ///< 1 or 0
@@ -31,43 +31,43 @@ namespace {
     double sp, cc, dsp, dcc;
   };
 
-  /** Return to the surface: the stresses there, and their derivatives by the plastic strain that
-   *  strength depends on. */
+  /** Stresses on the surface after the return, and their derivatives by the plastic strain on which the
+   *  strength depends. */
   struct MohrCoulombReturn {
     double s1, s2, s3, d1, d2, d3;
     double at_apex;    ///< 1 or 0
   };
 
-  /** Mohr-Coulomb surface s1 - s3 + (s1 + s3) sin(phi) = 2 c cos(phi), with non-associated flow, and
-   *  the return to it (E.A. de Souza Neto, D. Peric, D.R.J. Owen, Computational Methods for
-   *  Plasticity, 2008, boxes 8.4 to 8.7): to the plane, one of the two edges, or the apex. */
+  /** Mohr-Coulomb surface s1 - s3 + (s1 + s3) sin(phi) = 2 c cos(phi) with non-associated flow, and the
+   *  return to its plane, to one of the two edges, or to the apex (E.A. de Souza Neto, D. Peric, D.R.J.
+   *  Owen, Computational Methods for Plasticity, 2008, boxes 8.4 to 8.7). */
   struct MohrCoulombSurface {
     double K, G, sin_psi;
 
-    /** Left side less right side; s1, s3: largest and smallest stress. */
+    /** Left side minus right side; s1, s3: largest and smallest stress. */
     MPM_INLINE double excess(double s1, double s3, const MohrCoulombStrength &f) const
     {
       return s1 - s3 + (s1 + s3) * f.sp - 2.0 * f.cc;
     }
-    /** Its derivative. */
+    /** Derivative of excess() by the plastic strain. */
     MPM_INLINE double slope(double s1, double s3, const MohrCoulombStrength &f) const
     {
       return (s1 + s3) * f.dsp - 2.0 * f.dcc;
     }
 
-    /** Excess over the multiplier of the plane. */
+    /** Excess per multiplier of the plane. */
     MPM_INLINE double stiffness(double sp) const
     {
       return 4.0 * G + ((4.0 / 3.0) * G + 4.0 * K) * sin_psi * sp;
     }
 
-    /** The trial state is outside. Without SLOPES there are no derivatives. */
+    /** Projects a trial state t outside the surface onto it. Derivatives are computed only with SLOPES. */
     template <bool SLOPES>
     MPM_INLINE MohrCoulombReturn project(const Ordered &t, const MohrCoulombStrength &f) const
     {
       const double st = sin_psi, ss = f.sp * st;
-      // change of the three stresses per multiplier of the main plane; of the other two planes it is
-      // the same with stresses exchanged
+      // change of the three stresses per multiplier of the main plane; for the other two planes it is the
+      // same with stresses exchanged
       const double d1 = -2.0 * G * (1.0 + (1.0 / 3.0) * st) - 2.0 * K * st;
       const double d2 = ((4.0 / 3.0) * G - 2.0 * K) * st;
       const double d3 = 2.0 * G * (1.0 - (1.0 / 3.0) * st) - 2.0 * K * st;
@@ -83,16 +83,16 @@ namespace {
       const double b3 = right > 0.0 ? d2 : d3;
       const double det = (a - b) * (a + b), inv = 1.0 / (a * det);
 
-      // conditions are the sign of a number: combinations of comparisons do not vectorize
+      // conditions are the sign of a number, because combinations of comparisons do not vectorize
       const double m = main * det * inv;
       const double p1 = t.s1 + d1 * m, p2 = t.s2 + d2 * m, p3 = t.s3 + d3 * m;
       const double plane = min(p1 - p2, p2 - p3);
       const double ma = (a * main - b * other) * (a * inv), mb = (a * other - b * main) * (a * inv);
       const double e1 = t.s1 + d1 * ma + b1 * mb, e2 = t.s2 + d2 * ma + b2 * mb;
       const double e3 = t.s3 + d3 * ma + b3 * mb;
-      const double pair = 0.5 * (e2 + (right > 0.0 ? e3 : e1));    // equal but for round-off
+      const double pair = 0.5 * (e2 + (right > 0.0 ? e3 : e1));    // equal except for round-off
       const double k1 = right > 0.0 ? e1 : pair, k3 = right > 0.0 ? pair : e3;
-      // the difference of k1 and k3 by the surface: that of the stresses may be round-off
+      // the difference of k1 and k3 from the surface, because that of the stresses may be round-off
       const double edge = 2.0 * f.cc - (k1 + k3) * f.sp, tip = f.cc / f.sp;
       const double c1 = edge >= 0.0 ? k1 : tip, c2 = edge >= 0.0 ? pair : tip;
       const double c3 = edge >= 0.0 ? k3 : tip;
@@ -121,13 +121,13 @@ namespace {
       return r;
     }
 
-    /** Equivalent plastic strain of a change of stress, sqrt(2/3 e:e) of its deviator. */
+    /** Equivalent plastic strain of a change of stress: sqrt(2/3 e:e) of the deviator e of the strain. */
     MPM_INLINE double strain(double a, double b, double c) const
     {
       const double ab = a - b, bc = b - c, ca = c - a;
       return std::sqrt((2.0 / 9.0) * (ab * ab + bc * bc + ca * ca)) / (2.0 * G);
     }
-    /** Its derivative when the change has the derivatives x, y, z. */
+    /** Derivative of strain(); x, y, z: derivatives of a, b, c. */
     MPM_INLINE double strain_slope(double a, double b, double c, double x, double y, double z,
                                    double strain) const
     {
@@ -141,16 +141,17 @@ namespace {
     }
   };
 
-  /** Elastic-plastic solid with the Mohr-Coulomb surface in Kirchhoff stress, see
-   *  MohrCoulombSurface, and Hencky elasticity. Cohesion and friction angle may soften with the
-   *  equivalent plastic strain e (A. Yerro, E.E. Alonso, N.M. Pinyol, Comput. Geotech. 74 (2016) 26):
+  /** Elastic-plastic solid with the Mohr-Coulomb surface in Kirchhoff stress (see MohrCoulombSurface) and
+   *  Hencky elasticity. Cohesion and friction angle may soften with the equivalent plastic strain e (A.
+   *  Yerro, E.E. Alonso, N.M. Pinyol, Comput. Geotech. 74 (2016) 26):
    *
    *    c = CR + (C - CR) exp(-RATE e),  phi = PHIR + (PHI - PHIR) exp(-RATE e)
    *
-   *  at the end of the step: the increment of e that a return makes, as a function of that with which
-   *  the strength is taken, has a fixed point. Newton's method finds it, in one or two steps when the
-   *  strength changes little in a step; what remains, the secant method (Illinois variant) within
-   *  a bracket; both a batch at a time. Volume strain at the apex is kept as "gap", see close_gap(). */
+   *  at the end of the step. The increment of e caused by the return is a function of the increment used
+   *  for the strength; its fixed point is the solution. Newton's method finds it, in one or two steps if
+   *  the strength changes little in a step. The secant method (Illinois variant) within a bracket finds the
+   *  remaining points. Both work on a batch at a time. Volume strain at the apex is stored as "gap", see
+   *  close_gap(). */
   struct LawMohrCoulomb : PrincipalReturn<LawMohrCoulomb>, BulkAndShear {
     static constexpr const char *name = "mohr/coulomb";
     static constexpr const char *meaning = "Mohr-Coulomb plasticity with softening: soil, rock";
@@ -178,7 +179,8 @@ namespace {
       return nullptr;
     }
 
-    static constexpr double LEAST = 1e-15;    ///< of sin(phi): without any strength tension is lost
+    /** Lower limit of sin(phi). A material without any strength then bears no tension. */
+    static constexpr double LEAST = 1e-15;
     double phi, c, cr, phir, rate, sin_phi, c_cos_phi;
     MohrCoulombSurface surface;
 
@@ -207,7 +209,8 @@ namespace {
                         : stay_below<false>(b, history + ELASTIC_STRAIN_ROWS, strain);
     }
 
-    /** The cone that the surface contains is enough for most. */
+    /** Checks against the inner cone of the surface, which is enough for most points, and computes the
+     *  elastic stresses. */
     template <bool SOFT>
     MPM_INLINE bool stay_below(Batch &b, History history, const Tensors &strain) const
     {
@@ -234,6 +237,7 @@ namespace {
         return_to_surface<false>(b, history, s);
     }
 
+    /** Returns the points of a batch to the surface; SOFT: with softening. */
     template <bool SOFT>
     MPM_INLINE void return_to_surface(Batch &b, History history, PrincipalStates &s) const
     {
@@ -266,7 +270,7 @@ namespace {
         o.open[i] = plastic;
         yielding += plastic;
       }
-      if (yielding == 0.0) {    // what follows would change no bit
+      if (yielding == 0.0) {    // the rest would not change a bit
         for (int i = 0; i < b.n; i++) s.work[i] = 0.0;
         return;
       }
@@ -311,9 +315,10 @@ namespace {
       }
     }
 
-    /** Solves strain of the return(D) = D for the increment D of the plastic strain with which the
-     *  strength is taken: from a guess, without a safeguard. What the last step changes is
-     *  added to the stresses by their derivatives. Closes what is solved, returns the number of the others. */
+    /** Solves (strain of the return with D) = D for the increment D of the plastic strain that determines
+     *  the strength, from a guess and without a safeguard. The change of D in the last step is added to the
+     *  stresses through their derivatives. Closes the points that are solved; returns the number of the
+     *  others. */
     MPM_INLINE double newton(const Batch &b, History history, OrderedStates &o) const
     {
       constexpr int MAX_ITERATIONS = 6;
@@ -330,7 +335,7 @@ namespace {
           const double made = surface.strain(c1, c2, c3);
           const double steep = surface.strain_slope(c1, c2, c3, r.d1, r.d2, r.d3, made);
           const double step = (made - d) / (1.0 - steep), size = max(step, -step);
-          // derivatives change by less than this share
+          // bound of the relative change of the derivatives
           const double bend = 4.0 * rate * size;
           const double rest = bend * size * max(max(r.d1, -r.d1), max(r.d3, -r.d3));
           const double off = max(rest - 1e-14 * G * (1.0 - steep) * made, bend - 0.1);
@@ -347,16 +352,17 @@ namespace {
       return busy;
     }
 
-    /** The sure way for the points that are open. */
+    /** The safe method for the points that are still open. */
     [[gnu::noinline]] void search(const Batch &b, History history, OrderedStates &o) const
     {
       constexpr int MAX_ITERATIONS = 60;
       alignas(64) double low[BATCH], high[BATCH], r_low[BATCH], r_high[BATCH], side[BATCH];
-      alignas(64) double open[BATCH], d0[BATCH], d1[BATCH], r0[BATCH], r1[BATCH];    // the last two
+      alignas(64) double open[BATCH], d0[BATCH], d1[BATCH], r0[BATCH],
+          r1[BATCH];    // of the last two iterations
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        // strain of the return less D: not negative at the low end, and not positive at the high one,
-        // where there is no strength in shear
+        // strain of the return minus D: not negative at the low end and not positive at the high end, where
+        // there is no strength in shear
         low[i] = r_low[i] = 0.0;
         high[i] = o.open[i] * surface.strain(o.s1[i], o.s2[i], o.s3[i]);
         r_high[i] = -high[i];
@@ -365,8 +371,9 @@ namespace {
         o.more[i] = o.open[i] > 0.0 ? 0.0 : o.more[i];
       }
       for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-        // D = 0 comes first, then a step of the fixed-point iteration, which comes close, then the secant of
-        // the last two, or now and then, and where that is outside, of the bracket
+        // D = 0 comes first, then a step of the fixed-point iteration, which comes close, then the secant
+        // of the last two iterations, or (every fourth iteration, and if that secant lies outside) the
+        // secant of the bracket
         const double late = iteration > 1 ? 1.0 : 0.0, free = iteration % 4 != 1 ? 1.0 : 0.0;
         double busy = 0.0;
         MPM_SIMD_SUM(busy)

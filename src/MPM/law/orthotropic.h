@@ -29,18 +29,18 @@ namespace {
     }
   };
 
-  /** Anisotropic solid with the second Piola-Kirchhoff stress linear in the Green-Lagrange strain
-   *  (as St. Venant and Kirchhoff):
+  /** Anisotropic solid whose second Piola-Kirchhoff stress is linear in the Green-Lagrange strain (St.
+   *  Venant-Kirchhoff):
    *
    *    w = E:C:E/2,  J sigma = F (C:E) F^T
    *
-   *  The axes of the material, given in the reference configuration, turn and stretch with it, and
-   *  any rotation leaves the stress rotated and otherwise unchanged. */
+   *  The axes of the material, given in the reference configuration, rotate and stretch with it; a
+   *  superposed rotation only rotates the stress. */
   struct AnisotropicKirchhoff {
     double C11, C22, C33, C12, C13, C23, G12, G13, G23;
-    double to_axes[9], from_axes[9];    ///< rotations of tensors into the axes and back
+    double to_axes[9], from_axes[9];    ///< row-major rotations of tensors into the axes and back
 
-    /** axis: three orthonormal vectors. */
+    /** axis: three orthonormal vectors, [axis][component]. */
     AnisotropicKirchhoff(const Orthotropic &c, const double axis[3][3]) :
         G12(c.G12), G13(c.G13), G23(c.G23)
     {
@@ -85,8 +85,9 @@ namespace {
           s.yz * e.yz;
     }
 
-    /** Largest density_0 c^2 of small waves in the unstrained material, or little more: exact when
-     *  it is that of an axis or when the material is isotropic; reason as in largest_modulus(). */
+    /** Largest density_0 c^2 of small waves in the unstrained material, or a slightly larger value: exact
+     *  if it belongs to a wave along an axis or if the material is isotropic. Derived as in
+     *  largest_modulus(). */
     double stiffest() const
     {
       const double a = max(C11, max(C22, C33));
@@ -95,8 +96,8 @@ namespace {
       return max(a, b);
     }
 
-    /** l tau + tau l^T + F (C : F^T l F) F^T. The last term is that of a law in principal axes, with the axes of the
-     *  material, as F has moved them, in place of those. */
+    /** l tau + tau l^T + F (C : F^T l F) F^T. The last term has the form of a law in principal axes, with
+     *  the axes of the material as deformed by F in their place. */
     static void add_tangent(const AnisotropicKirchhoff &law, const Batch &b, Tangent &t)
     {
       alignas(64) double tau[6][BATCH], axes[3][3][BATCH];
@@ -126,7 +127,8 @@ namespace {
       add_frame_tangent(b.n, axes, moduli, t);
     }
 
-    /** With N = F^T n and M = F^T m, J density c^2 = (M N):C:(M N) + n.tau.n. */
+    /** Bound of the modulus: with N = F^T n and M = F^T m for a wave with normal n and polarization m, J
+     *  density c^2 = (M N):C:(M N) + n.tau.n. */
     static MPM_INLINE void bound(const AnisotropicKirchhoff &law, const Batch &b, double *k)
     {
       const double stiff = law.stiffest();
@@ -139,7 +141,7 @@ namespace {
     }
   };
 
-  /** Law by nine engineering constants. */
+  /** Orthotropic law with nine engineering constants. */
   struct LawOrthotropic : Hyperelastic<LawOrthotropic>, AnisotropicKirchhoff {
     static constexpr const char *name = "orthotropic";
     static constexpr const char *meaning = "orthotropic elastic, linear in Green-Lagrange strain";
@@ -161,6 +163,7 @@ namespace {
         {"axes", "A2Z", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
         {"angle", "THETA", "degrees", ANY_NUMBER, 0.0, "then turns axes 1 and 2 about axis 3"}};
 
+    /** Axes of the material from the options axes and angle. */
     struct Axes {
       double axis[3][3];
 
@@ -170,6 +173,7 @@ namespace {
       }
     };
 
+    /** Elastic constants from the parameters. */
     static Orthotropic constants(const LawParameters &p)
     {
       const double *const v = p.value;
@@ -201,7 +205,8 @@ namespace {
     }
   };
 
-  /** Law by the five constants of a material with an axis of symmetry, such as fibres. */
+  /** Law with the five constants of a material that has an axis of symmetry, such as the direction of
+   *  fibers. */
   struct LawTransverselyIsotropic : Hyperelastic<LawTransverselyIsotropic>, AnisotropicKirchhoff {
     static constexpr const char *name = "transversely/isotropic";
     static constexpr const char *meaning = "elastic with one axis, linear in Green-Lagrange strain";
@@ -216,6 +221,7 @@ namespace {
         {"axis", "AY", "1", ANY_NUMBER, 0.0, "axis"},
         {"axis", "AZ", "1", ANY_NUMBER, 0.0, "axis"}};
 
+    /** Axes of the material: axis 1 is the axis of symmetry. */
     struct Axes {
       double axis[3][3];
 
@@ -224,7 +230,7 @@ namespace {
         const double *const a = p.value + AXIS;
         const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
         for (int k = 0; k < 3; k++) axis[0][k] = a[k] / length;
-        // two more, from the coordinate axis that is farthest from the first
+        // two further axes, from the coordinate axis that is most nearly normal to the first
         int far = 0;
         for (int k = 1; k < 3; k++)
           if (std::fabs(axis[0][k]) < std::fabs(axis[0][far])) far = k;
@@ -237,6 +243,7 @@ namespace {
       }
     };
 
+    /** Elastic constants from the parameters. */
     static Orthotropic constants(const LawParameters &p)
     {
       const double *const v = p.value;

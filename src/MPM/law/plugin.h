@@ -16,7 +16,7 @@
 //   MPM_LAW_PLUGIN(MPM_LAW(EOS, EosQuadratic))
 //
 // with one MPM_LAW(PART, STRUCT) for each law of the plugin, separated by commas. The laws are
-// compiled once, for the instruction set that the compiler is told (-march=native -fopenmp-simd).
+// compiled once, for the instruction set in the options of the compiler (-march=native -fopenmp-simd).
 
 #ifndef MPM_ISA
 #define MPM_ISA plugin
@@ -26,18 +26,20 @@
 
 namespace MPM_NS {
 
-/** Adds the laws of a plugin for the LAMMPS that loads it; ends with an error of LAMMPS if they do
- *  not fit. */
+/** Adds the laws of a plugin to the LAMMPS that loads it; stops with an error of LAMMPS if they do not fit
+ *  the package. */
 void register_laws(void *lmp, const LawVersion &, const PluginLaw *, int n);
 
 }    // namespace MPM_NS
 
+/** Entry of one law: its place in a material and its struct. */
 #define MPM_LAW(PART, STRUCT)                                      \
   {                                                                \
     MPM_NS::PART, MPM_NS::law::declaration<MPM_NS::law::STRUCT>(), \
         MPM_NS::law::kernels<MPM_NS::law::STRUCT>()                \
   }
 
+/** Defines the function that LAMMPS calls when it loads the plugin. */
 #define MPM_LAW_PLUGIN(...)                                                          \
   extern "C" void lammpsplugin_init(void *lmp, void *, void *)                       \
   {                                                                                  \

@@ -9,14 +9,14 @@
 #ifndef MPM_LAW_RUBBER_H
 #define MPM_LAW_RUBBER_H
 
-// Hyperelastic laws in which change of volume is uncoupled from change of shape.
+// Hyperelastic laws in which change of volume and change of shape are uncoupled.
 
 #include "law/hyperelastic.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  /** Change of shape: z = J^(-2/3) b - I. */
+  /** Isochoric strain z = J^(-2/3) b - I of a point. */
   struct Isochoric {
     Sym z;
     double logJ;
@@ -29,8 +29,8 @@ namespace {
       z = add_diagonal((1.0 + change) * left_strain(H), change);
     }
 
-    /** tr(z) = first invariant - 3, of second order in the strain: since det(I + z) = 1, it is also
-     *  minus the sum of the other two invariants of z, which does not cancel for small strains. */
+    /** tr(z) = first invariant - 3, which is of second order in the strain. Since det(I + z) = 1, it equals
+     *  minus the sum of the other two invariants of z, which do not cancel for small strains. */
     MPM_INLINE double first() const
     {
       const double t = trace(z);
@@ -38,7 +38,7 @@ namespace {
     }
   };
 
-  /** Adds a term MU/ALPHA (sum_a exp(ALPHA (e_a - ln J/3)) - 3) of the energy, Ogden's. */
+  /** Adds the response of an Ogden term MU/ALPHA (sum_a exp(ALPHA (e_a - ln J/3)) - 3) of the energy. */
   MPM_INLINE void respond_ogden(double mu, double alpha, PrincipalResponse &r, int i)
   {
     const double mean = (1.0 / 3.0) * r.logJ[i];
@@ -56,8 +56,9 @@ namespace {
     r.A[5][i] -= third * (y + z - average);
   }
 
-  /** Resistance to change of volume, U = K/4 (J^2 - 1 - 2 ln J): convex, and infinite for J -> 0
-   *  (J.C. Simo, T.J.R. Hughes, Computational Inelasticity, 1998, eq. 9.2.5). */
+  /** Energy of the change of volume, U = K/4 (J^2 - 1 - 2 ln J): convex, and infinite for J -> 0 (J.C.
+   *  Simo, T.J.R. Hughes, Computational Inelasticity, 1998, eq. 9.2.5). stress() is J dU/dJ, derivative()
+   *  its derivative with respect to ln J. */
   struct VolumeEnergy {
     double K;
     MPM_INLINE double stress(double logJ) const { return 0.5 * K * expm1(2.0 * logJ); }
@@ -65,14 +66,14 @@ namespace {
     MPM_INLINE double stored(double logJ) const { return 0.25 * K * expm1_minus(2.0 * logJ); }
   };
 
-  /** Neo-Hookean solid with change of volume uncoupled from change of shape, in the form that most
-   *  finite element programs use (P.J. Flory, Trans. Faraday Soc. 57 (1961) 829; R.W. Ogden,
-   *  Non-Linear Elastic Deformations, 1984, ch. 7.4):
+  /** Neo-Hookean solid with uncoupled change of volume and change of shape, in the form that most finite
+   *  element programs use (P.J. Flory, Trans. Faraday Soc. 57 (1961) 829; R.W. Ogden, Non-Linear Elastic
+   *  Deformations, 1984, ch. 7.4):
    *
    *    w = G/2 (I1 - 3) + K/2 (J - 1)^2,   I1 = tr b*,  b* = J^(-2/3) b
    *    J sigma = G dev(b*) + K J (J - 1) I
    *
-   *  The energy is finite at J = 0: for compression beyond about one half take another law. */
+   *  The energy is finite at J = 0: use another law for compression beyond about one half. */
   struct LawNeoHookeanSplit : IsotropicHyperelastic<LawNeoHookeanSplit>, BulkAndShear {
     static constexpr const char *name = "neohookean/split";
     static constexpr const char *meaning = "neo-Hookean, volume change uncoupled";
@@ -129,7 +130,7 @@ namespace {
   };
 
   /** Rubber after M. Mooney, J. Appl. Phys. 11 (1940) 582, and R.S. Rivlin, Phil. Trans. R. Soc. A
-   *  241 (1948) 379, with change of volume uncoupled from change of shape:
+   *  241 (1948) 379, with uncoupled change of volume and change of shape:
    *
    *    w = C10 (I1 - 3) + C01 (I2 - 3) + K/4 (J^2 - 1 - 2 ln J)
    *
@@ -180,8 +181,8 @@ namespace {
     }
   };
 
-  /** Rubber after R.W. Ogden, Proc. R. Soc. London A 326 (1972) 565 and 328 (1972) 567, with change
-   *  of volume uncoupled from change of shape; stretches l_a = J^(-1/3) * principal stretches:
+  /** Rubber after R.W. Ogden, Proc. R. Soc. London A 326 (1972) 565 and 328 (1972) 567, with uncoupled
+   *  change of volume and change of shape; stretches l_a = J^(-1/3) * principal stretches:
    *
    *    w = sum_p MU_p/ALPHA_p (l_1^ALPHA_p + l_2^ALPHA_p + l_3^ALPHA_p - 3)
    *          + K/4 (J^2 - 1 - 2 ln J)
@@ -197,7 +198,7 @@ namespace {
         {"term", "MU", "pressure", ANY_NUMBER, REQUIRED, "coefficient, of the sign of ALPHA"},
         {"term", "ALPHA", "1", ANY_NUMBER, REQUIRED, "exponent of the stretches"}};
 
-    /** R. Hill's sufficient condition for stability, as in Ogden's paper. */
+    /** Checks the sufficient condition of R. Hill for stability, as in Ogden's paper. */
     static const char *check(const LawParameters &p)
     {
       if (p.nterms == 0) return "no term: add 'term MU ALPHA'";

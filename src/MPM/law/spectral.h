@@ -14,13 +14,13 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Symmetric tensors of the points of a batch, by component. */
+  /** Symmetric tensors of the points of a batch, [component][point]. */
   struct Tensors {
     alignas(64) double row[6][BATCH];
   };
 
   /** Spectral decomposition of the symmetric tensors of a batch: sum_a value[a] n_a x n_a, with the unit
-   *  vectors n_a = (vector[0][a], vector[1][a], vector[2][a]); values in no particular order. */
+   *  vectors n_a = (vector[0][a], vector[1][a], vector[2][a]). The values are in no particular order. */
   struct Spectral {
     alignas(64) double value[3][BATCH];
     alignas(64) double vector[3][3][BATCH];    ///< [component][axis][point]
@@ -39,27 +39,31 @@ namespace {
     }
   };
 
+  /** Vector of a point. */
   struct Direction {
     double x, y, z;
   };
 
+  /** a . b */
   MPM_INLINE double product(const Direction &a, const Direction &b)
   {
     return a.x * b.x + a.y * b.y + a.z * b.z;
   }
+  /** a x b */
   MPM_INLINE Direction cross(const Direction &a, const Direction &b)
   {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
   }
+  /** s v */
   MPM_INLINE Direction product(const Sym &s, const Direction &v)
   {
     return {s.xx * v.x + s.xy * v.y + s.xz * v.z, s.xy * v.x + s.yy * v.y + s.yz * v.z,
             s.xz * v.x + s.yz * v.y + s.zz * v.z};
   }
 
-  /** Unit vector along the principal axis whose value is farthest from the mean: that axis is well
-   *  defined whatever the others are. It is normal to the rows of s less this value; of their three
-   *  vector products the largest is taken. z when it is a principal axis, or when all values are equal. */
+  /** Unit vector along the principal axis whose value is farthest from the mean; this axis is well defined
+   *  whatever the other values are. It is normal to the rows of s minus this value; the largest of their
+   *  three cross products is taken. The result is z if z is a principal axis or if all values are equal. */
   MPM_INLINE Direction distinct_axis(const Sym &s)
   {
     const Sym d = deviator(s);
@@ -78,9 +82,10 @@ namespace {
     return {tilt * ux, tilt * uy, tilt > 0.0 ? tilt * uz : 1.0};
   }
 
-  /** Decomposition by one axis that is well defined and a rotation of the plane normal to it (C.G.J. Jacobi): no
-   *  branches on points, accurate to round-off also when values coincide. Where z is a principal axis of all
-   *  points, as in plane strain, the rotation is all that there is to do. */
+  /** Decomposition by one axis that is well defined and a Jacobi rotation (C.G.J. Jacobi) of the plane
+   *  normal to it. There are no branches on points, and the result is accurate to round-off even when
+   *  values coincide. Where z is a principal axis of all points, as in plane strain, the rotation is the
+   *  only step. */
   MPM_INLINE Spectral::Spectral(int n, const double (*tensors)[BATCH])
   {
     alignas(64) double xx[BATCH], yy[BATCH], xy[BATCH];    // in the plane
@@ -125,7 +130,7 @@ namespace {
     MPM_SIMD
     for (int i = 0; i < n; i++) {
       const double d = yy[i] - xx[i], o = xy[i], root = std::sqrt(d * d + 4.0 * o * o);
-      // tangent of the smaller angle; the tiny number makes 0/0 a zero
+      // tangent of the smaller angle; the tiny number turns 0/0 into zero
       const double t = 2.0 * o * (d < 0.0 ? -1.0 : 1.0) / ((d < 0.0 ? -d : d) + root + 1e-300);
       const double c = 1.0 / std::sqrt(1.0 + t * t), sine = t * c;
       value[0][i] = xx[i] - t * o;
@@ -140,7 +145,7 @@ namespace {
     }
   }
 
-  /** r += v n x n, n = (x, y, z) */
+  /** r += v n x n with n = (x, y, z). */
   MPM_INLINE void add_dyad(Sym &r, double x, double y, double z, double v)
   {
     r.xx += v * x * x;
@@ -160,14 +165,14 @@ namespace {
     return r;
   }
 
-  /** Principal logarithmic strain, from a principal value of b - I. */
+  /** Principal logarithmic strain from a principal value of b - I. */
   MPM_INLINE double log_strain(double value)
   {
     return 0.5 * log1p(max(value, -1.0 + 1e-15));
   }
 
-  /** f b f^T with f = I + A of this step: how a left Cauchy-Green tensor (or its elastic part, as
-   *  trial state) follows the motion; exact and objective. */
+  /** f b f^T with f = I + A of this step: the left Cauchy-Green tensor b (or its elastic part, as trial
+   *  state) after the motion of the step. It is exact and objective. */
   MPM_INLINE Sym push_forward(const Batch &batch, int i, const Sym &b)
   {
     const double f[9] = {1.0 + batch.A[0][i], batch.A[1][i],       batch.A[2][i],

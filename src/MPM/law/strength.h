@@ -14,14 +14,14 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Cauchy stress deviator after an elastic step: hypoelastic, see LawLinear. */
+  /** Cauchy stress deviator after an elastic step in rate form; see LawLinear. */
   MPM_INLINE Sym elastic_trial(double G, const Batch &b, int i, const Increment &inc)
   {
     const Sym old = b.Jold[i] * deviator(load_stress(b, i));
     return (1.0 / b.J[i]) * jaumann(inc, old, 2.0 * G * deviator(inc.strain));
   }
 
-  /** Deviators of the Kirchhoff stress at the start of the step, before the update. */
+  /** Deviators of the Kirchhoff stress at the start of the step; call before the update. */
   inline void old_deviators(const Batch &b, double (*old)[BATCH])
   {
     MPM_SIMD
@@ -75,31 +75,33 @@ namespace {
     }
   };
 
-  /** A point after the elastic trial step. */
+  /** State of a point after the elastic trial step. */
   struct TrialState {
     double q;        ///< equivalent stress
     double stiff;    ///< 3 G/J
     double J;        ///< mean volume ratio of the step
   };
 
-  /** Flow stress at the end of a step as a function of its plastic strain increment D, its first two
-   *  derivatives, and how far D is from the next kink of the function. */
+  /** Flow stress y at the end of a step as a function of its plastic strain increment D, its first two
+   *  derivatives, and room, the distance of D from the next kink of the function. */
   struct FlowStress {
     double y, dy, ddy, room;
   };
 
-  /** c x^n near an x0 > 0 that is the same for all D: c x0^n (1 + n z + n (n - 1)/2 z^2), z = D slope. Beyond
-   *  the half of x0 it stays what it is there. */
+  /** Second-order expansion of c x^n about an x0 > 0 that is the same for all D: c x0^n (1 + n z + n (n -
+   *  1)/2 z^2) with z = (x - x0)/x0. It is constant for |z| > 1/2. */
   struct NearPower {
     alignas(64) double at[BATCH];         ///< c x0^n
     alignas(64) double inverse[BATCH];    ///< 1/x0
 
+    /** Stores value = c x0^n and x0 of point i; returns value. */
     MPM_INLINE double keep(int i, double value, double x0)
     {
       at[i] = value;
       inverse[i] = 1.0 / (x0 + 1e-300);
       return value;
     }
+    /** Expansion for the exponent n at x = x0 + change, with derivatives with respect to x. */
     MPM_INLINE FlowStress operator()(int i, double n, double change) const
     {
       const double w = change * inverse[i], z = min(max(w, -0.5), 0.5), half = 0.5 * (n - 1.0);
@@ -109,8 +111,8 @@ namespace {
     }
   };
 
-  /** Change of D by a Newton step of third order (E. Halley, 1694) for r(D) = q - stiff D - Y(D) = 0; from far
-   *  above the root, by one of Newton's in log D. */
+  /** Change of D in a step of third order (E. Halley, 1694) for r(D) = q - stiff D - Y(D) = 0; far above
+   *  the root, in a Newton step in log D. */
   MPM_INLINE double third_order_step(const TrialState &t, double D, const FlowStress &f)
   {
     const double r = t.q - t.stiff * D - f.y, s = t.stiff + f.dy, square = 2.0 * s * s;
@@ -119,10 +121,10 @@ namespace {
     return r < -0.5 * s * D ? far : near;
   }
 
-  /** Solves r(D) = 0 without any safeguard: one to three steps are enough for nearly all points. open: 1 for
-   *  points to solve; what is left of it has no solution yet, and what these points have in D is no more
-   *  than a guess. Returns their number. With ROUGH, by what Flow says that the flow stress is nearly,
-   *  until D has some digits: all points stay open, and yield is left alone. */
+  /** Solves r(D) = 0 without any safeguard; one to three steps are enough for nearly all points. open: in:
+   *  1 for points to solve; out: 1 for points without a solution yet, whose D is only a guess. Returns the
+   *  number of open points. With ROUGH, the iteration uses the estimates of Flow until D has a few digits;
+   *  all points stay open, and yield is unchanged. */
   template <bool ROUGH, class Flow>
   MPM_INLINE double solve_quickly(const Batch &b, const Flow &flow, History history,
                                   const double *trial, const double *stiff, const double *start,
@@ -143,7 +145,7 @@ namespace {
         } else {
           const FlowStress f = flow.stress(history, i, start[i], t, safe);
           const double step = third_order_step(t, safe, f), size = max(step, -step);
-          // an upper bound of what is left, as |ddy/D| is one of the third derivative
+          // upper bound of the remaining error, since |ddy/D| bounds the third derivative
           const double rest = max(f.ddy, -f.ddy) * size * size * size;
           const double off = max(rest - 1e-14 * f.y * safe, size - min(f.room, 0.1 * safe));
           const double here = off <= 0.0 ? 0.0 : on;    // not a number: stays open
@@ -157,12 +159,12 @@ namespace {
     return busy;
   }
 
-  /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, which is the first guess; most:
-   *  upper bound of D. What solve_quickly() does not find is found with a bracket, all points
-   *  together. r is convex in D for power hardening (n < 1), logarithmic or power rate dependence, and
-   *  both together, and concave in log D. So Newton in D from the left and Newton in log D from the right
-   *  approach the root from their side only, also with infinite slope at D = 0 and when D is smaller
-   *  than any strain that is ever seen (small exponents). The bracket catches all else (thermal
+  /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, where D is the first guess and most an
+   *  upper bound of the solution. Points that solve_quickly() leaves open are solved with a bracket, all
+   *  together. r is convex in D for power hardening (n < 1), for logarithmic or power rate dependence, and
+   *  for both together, and it is concave in log D. Therefore Newton steps in D from the left and in log D
+   *  from the right approach the root from one side only, even with infinite slope at D = 0 and when D is
+   *  smaller than any observable strain (small exponents). The bracket catches all other cases (thermal
    *  softening). */
   template <class Flow>
   MPM_INLINE void solve_return(const Batch &b, const Flow &flow, History history,
@@ -206,7 +208,7 @@ namespace {
         high[i] = hi;
         yield[i] = on > 0.0 ? min(f.y + f.dy * step, t.q) : yield[i];
         D[i] = on > 0.0 ? d + step : d;
-        // the error left by a small Newton step is its square: no need to look again
+        // a small Newton step leaves an error of its square, so that no further iteration is needed
         const double size = max(step, -step) < f.room ? 1e-14 * d * d : 0.0;
         open[i] = step * step > size ? on : 0.0;
         busy += open[i];
@@ -215,20 +217,24 @@ namespace {
     }
   }
 
-  /** Loops of a von Mises strength: radial return to the flow stress at the end of the step
-   *  (M.L. Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational
-   *  Inelasticity, 1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
+  /** Kernels of a von Mises strength: radial return to the flow stress at the end of the step (M.L.
+   *  Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational Inelasticity,
+   *  1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
    *
    *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
    *
-   *  Flow has: Flow(parameters, batch); shear(i), the shear modulus of the step; start(history, i),
-   *  the flow stress for D -> 0; stress(history, i, start, trial state, D), which returns Y(D); with
-   *  estimates = true also estimate(i, start, trial state, D), which is about the same with fewer
-   *  elementary functions, from what start() has kept; begin(start, D), the flow stress at the beginning
-   *  of the step, which makes the plastic work with Y. start is the stress at which plastic flow begins in this step:
-   *  that of start(), or with goes_on = true that of the last step, unless it was far below. First
-   *  row of the history: the equivalent plastic strain.
-   */
+   *  Flow provides:
+   *    Flow(parameters, batch)
+   *    shear(i), the shear modulus of the step
+   *    start(history, i), the flow stress for D -> 0
+   *    stress(history, i, start, trial state, D), which returns Y(D)
+   *    begin(start, D), the flow stress at the beginning of the step; the plastic work is the mean of this and Y, times D
+   *    estimates; if true, also estimate(i, start, trial state, D), which returns about the same as stress() with
+   *      fewer elementary functions, from values that start() has stored
+   *    goes_on; selects the argument start, the stress at which plastic flow begins in this step: false: the result
+   *      of start(); true: the equivalent stress of the last step, unless it was far below
+   *
+   *  First row of the history: the equivalent plastic strain. */
   template <class Flow> struct RadialReturn : ShearElasticity {
     static void update(const LawParameters &p, Batch &b, History history)
     {
@@ -279,9 +285,9 @@ namespace {
     }
   };
 
-  /** A flow stress and a back stress X/J that is part of the flow: seen from the elastic trial state
-   *  of s - X/J, what resists D is Y, the growth C g/J of the back stress along the flow, and the
-   *  fading of the old back stress, which turns s - w X/J. */
+  /** Flow stress with a back stress X/J, for solve_return(). Relative to the elastic trial state of s -
+   *  X/J, plastic flow D is resisted by Y, by the growth C g/J of the back stress along the flow, and by
+   *  the fading of the old back stress, which turns s - w X/J. */
   template <class Flow> struct KinematicFlow {
     static constexpr bool estimates = Flow::estimates;
     const Flow &flow;
@@ -293,7 +299,7 @@ namespace {
 
     KinematicFlow(const Flow &flow, double C, double gamma) : flow(flow), C(C), gamma(gamma) {}
 
-    /** Growth g of the back stress / C along the flow; faded = 1 - w. */
+    /** Growth g of the back stress along the flow, divided by C; out: faded = 1 - w. */
     MPM_INLINE double growth(double D, double &faded) const
     {
       faded = -expm1(-gamma * D);
@@ -314,6 +320,7 @@ namespace {
     {
       return with_back_stress(flow.estimate(i, start, t, D), i, D);
     }
+    /** Adds the resistance of the back stress to a flow stress. */
     MPM_INLINE FlowStress with_back_stress(const FlowStress &f, int i, double D) const
     {
       double faded;
@@ -325,17 +332,16 @@ namespace {
     }
   };
 
-  /** Radial return with the back stress of P.J. Armstrong, C.O. Frederick (CEGB Report RD/B/N731,
-   *  1966; Mater. High Temp. 24 (2007) 1), linear (W. Prager, Proc. IMechE 169 (1955) 41) when
-   *  GAMMA = 0: X = J times the back stress follows, besides its Jaumann rotation,
+  /** Radial return with the back stress of P.J. Armstrong, C.O. Frederick (CEGB Report RD/B/N731, 1966;
+   *  Mater. High Temp. 24 (2007) 1), which is linear (W. Prager, Proc. IMechE 169 (1955) 41) if GAMMA = 0.
+   *  In addition to its Jaumann rotation, X = J times the back stress changes by
    *
    *    dX = 2/3 C de_p - GAMMA X de,   integrated with constant direction of de_p = de N:
    *    X_new = w X + 2/3 C g N,        w = exp(-GAMMA D), g = (1 - w)/GAMMA
    *
-   *  which is exact on straight paths. N is along s_new - X_new/J, and so along s - w X/J of the
-   *  trial state: one equation for D remains. Stored: 3/4 X:X/C; the rest of the plastic work,
-   *  Y de + 3/2 GAMMA/C X:X de, is dissipated.
-   */
+   *  which is exact on straight paths. N is along s_new - X_new/J, and therefore along s - w X/J of the
+   *  trial state, so that one equation for D remains. The stored energy is 3/4 X:X/C; the rest of the
+   *  plastic work, Y de + 3/2 GAMMA/C X:X de, is dissipated. */
   template <class Flow> struct KinematicReturn : RadialReturn<Flow> {
     static void update(const LawParameters &p, double C, double gamma, Batch &b, History history,
                        History back)
@@ -383,7 +389,7 @@ namespace {
         const Sym X = load_rows(back, i), kept = (1.0 - faded) * X;
         const Sym xi = load_stress(b, i) + (-inv_J) * kept;
         const double y = yield[i] - kinematic.slope[i] * g - (kinematic.trial[i] - q);
-        // without flow: 0 and 1. A choice of tensors would not vectorize
+        // without flow: 0 and 1. A conditional choice of tensors would not vectorize
         const double grown = d > 0.0 ? C * g / q : 0.0, scale = d > 0.0 ? y / q : 1.0;
         const Sym Xnew = kept + grown * xi;
         store_rows(back, i, Xnew);
@@ -403,22 +409,22 @@ namespace {
 
   /** Flow stress of a radial return at the ends of a step, for its tangent. */
   struct FlowOfStep {
-    alignas(64) double begin[BATCH];    ///< at which plastic flow begins, as in RadialReturn
+    alignas(64) double begin[BATCH];    ///< stress at which plastic flow begins, as in RadialReturn
     alignas(64) double end[BATCH], slope[BATCH];    ///< Y(D) and dY/dD
   };
 
-  /** Consistent tangent of RadialReturn, and of KinematicReturn, without and with a back stress (J.C. Simo, T.J.R.
-   *  Hughes, Computational Inelasticity, 1998, ch. 3.3 and 8; E.A. de Souza Neto, D. Peric, D.R.J. Owen, Computational
-   *  Methods for Plasticity, 2008, ch. 7.4), here of Kirchhoff stresses. With the trial deviator t, the turned back
-   *  stress X, and xi = t - w X, of equivalent value q, the step ends with
+  /** Consistent tangent of RadialReturn and, with KINEMATIC, of KinematicReturn (J.C. Simo, T.J.R. Hughes,
+   *  Computational Inelasticity, 1998, ch. 3.3 and 8; E.A. de Souza Neto, D. Peric, D.R.J. Owen,
+   *  Computational Methods for Plasticity, 2008, ch. 7.4), here for Kirchhoff stresses. With the trial
+   *  deviator t, the rotated back stress X, and xi = t - w X with equivalent value q, the step ends with
    *
    *    J s = t - (3 G D/q) xi,   q - 3 G D - J Y(D) - C g(D) = 0,
    *
-   *  where t and X depend on the motion by strain and rotation of the step. To be made before the update. */
+   *  where t and X depend on the strain and rotation of the step. Construct it before the update. */
   template <bool KINEMATIC> struct ReturnTangent {
     const double C, gamma;
     alignas(64) double old[6][BATCH], X[6][BATCH];
-    alignas(64) double last[BATCH];    ///< equivalent stress, less back stress, of the step before
+    alignas(64) double last[BATCH];    ///< old equivalent stress, back stress subtracted
 
     ReturnTangent(double C, double gamma, const Batch &b, const double (*back)[BATCH]) :
         C(C), gamma(gamma)
@@ -439,7 +445,8 @@ namespace {
       }
     }
 
-    /** After the update: adds the tangent with the shear modulus G, and that of the heat, a share chi of the work. */
+    /** After the update: adds the tangent with the shear modulus G, and that of the heat, the share chi of
+     *  the work. */
     void add(double G, double chi, const FlowOfStep &flow, const Batch &b, Tangent &t) const
     {
       const ElasticStep step(b, G, old);
@@ -451,7 +458,7 @@ namespace {
         const double D = b.plastic[i], w = kept(D);
         const Sym x = KINEMATIC ? step.trial(i) + (-w) * load_rows(X, i) : step.trial(i);
         const double inv = 1.0 / max(equivalent(x), 1e-30 * G);
-        // of q by D at a given motion
+        // derivative of q with respect to D at a given motion
         const double fading = KINEMATIC ? 1.5 * inv * gamma * w * contract(x, load_rows(X, i))
                                         : 0.0;
         const double stiff = 3.0 * G + b.J[i] * flow.slope[i] + (KINEMATIC ? C * w : 0.0) - fading;
@@ -505,13 +512,15 @@ namespace {
     }
 
    private:
+    /** Factor w of the old back stress. */
     MPM_INLINE double kept(double D) const { return KINEMATIC ? 1.0 + expm1(-gamma * D) : 1.0; }
+    /** Growth g of the back stress, divided by C. */
     MPM_INLINE double growth(double D) const
     {
       const double faded = -expm1(-gamma * D);
       return gamma > 0.0 ? faded / gamma : D;
     }
-    /** Derivative of the plastic work. */
+    /** Derivative of the plastic work per reference volume. */
     static MPM_INLINE double work(const FlowOfStep &flow, const Batch &b, int i, double volume,
                                   double D, double dD)
     {
@@ -521,7 +530,7 @@ namespace {
     }
   };
 
-  /** Energy that the back stress stores. */
+  /** Adds the energy that the back stress stores to w[n]. */
   MPM_INLINE void back_stress_energy(const Batch &b, History back, double C, double *w)
   {
     MPM_SIMD

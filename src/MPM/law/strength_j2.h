@@ -14,19 +14,19 @@
 namespace MPM_NS::law {
 namespace {
 
-  // parameters, in lines as the options that they belong to
+  // indices of the parameters, one line per option
   enum { J2_G, J2_SIGMAY, J2_H, J2_B, J2_N };
   enum { J2_VOCE_Q = J2_N + 1, J2_VOCE_BETA, J2_VOCE_H, J2_SWIFT_E0, J2_SWIFT_N };
   enum { J2_COWPER_RATE = J2_SWIFT_N + 1, J2_COWPER_P };
   enum { J2_PERZYNA_S = J2_COWPER_P + 1, J2_PERZYNA_RATE, J2_PERZYNA_M };
   enum { J2_BACK_C = J2_PERZYNA_M + 1, J2_BACK_GAMMA };
 
-  /** Flow stress at rest over the plastic strain e: kinds, or the size of a table. */
+  /** Kinds of flow stress at rest over the plastic strain e; a larger number is the size of a table. */
   enum { HARDENING_LINEAR, HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8 };
   constexpr int LONG_TABLE = LawParameters::MAX_TERMS;
 
-  /** Straight lines between the points, from SIGMAY at e = 0; constant behind the last one. SIZE:
-   *  room for points, as only loops of fixed length vectorize inside of others. */
+  /** Straight lines between the points of a table, from SIGMAY at e = 0; constant after the last point.
+   *  SIZE: room for points; only inner loops of fixed length allow the outer loop to vectorize. */
   template <int SIZE> struct J2Hardening {
     double sigmay;
     double from[SIZE], length[SIZE], slopes[SIZE];
@@ -72,8 +72,8 @@ namespace {
    *  SIGMAY (1 + e/E0)^N (H.W. Swift, J. Mech. Phys. Solids 1 (1952) 1). */
   template <> struct J2Hardening<HARDENING_POWER> {
     double base, H, B, N, inv, offset;
-    alignas(64) double y[BATCH], slope[BATCH], bend[BATCH],
-        most[BATCH];    ///< at the start of the step
+    /** Flow stress and its derivatives at the start of the step, and largest D of the expansion. */
+    alignas(64) double y[BATCH], slope[BATCH], bend[BATCH], most[BATCH];
 
     explicit J2Hardening(const LawParameters &p)
     {
@@ -94,7 +94,7 @@ namespace {
       most[i] = 0.5 * (e + offset / inv);
       return f.y;
     }
-    /** As if D were small against x. */
+    /** Expansion for D small compared with x. */
     MPM_INLINE FlowStress estimate(int i, double D) const
     {
       const double z = min(D, most[i]), dy = slope[i] + z * bend[i], go = z < D ? 0.0 : 1.0;
@@ -125,7 +125,7 @@ namespace {
     }
   };
 
-  /** Flow stress of hardening and plastic strain rate r, at the end of the step:
+  /** Flow stress at the end of the step from hardening and plastic strain rate r:
    *
    *    Y (1 + (r/RATE)^(1/P))      G.R. Cowper, P.S. Symonds, Brown Univ. Tech. Rep. 28 (1957)
    *    Y + S (r/RATE)^(1/M)        P. Perzyna, Adv. Appl. Mech. 9 (1966) 243
@@ -134,7 +134,8 @@ namespace {
     static constexpr bool goes_on = RATE, estimates = KIND == HARDENING_POWER;
     J2Hardening<KIND> hardening;
     double G;
-    double inv_rate, exponent, factor, drag;    ///< factor and drag times (r/RATE)^exponent
+    /** Y (1 + factor x) + drag x with x = (r/RATE)^exponent; inv_rate: 1/(RATE dt). */
+    double inv_rate, exponent, factor, drag;
 
     J2Flow(const LawParameters &p, const Batch &b) : hardening(p), G(p.value[J2_G])
     {
@@ -155,11 +156,12 @@ namespace {
     {
       return with_rate(hardening.estimate(i, D), D);
     }
-    /** At the end of a step, with the history of then. */
+    /** Flow stress after the update, with the history at the end of the step. */
     MPM_INLINE FlowStress at_end(History history, int i, double D) const
     {
       return with_rate(hardening(history[0][i]), D);
     }
+    /** Adds the effect of the rate D/dt to a flow stress at rest. */
     MPM_INLINE FlowStress with_rate(const FlowStress &f, double D) const
     {
       if (!RATE) return f;
@@ -172,8 +174,8 @@ namespace {
     MPM_INLINE double begin(double start, double) const { return start; }
   };
 
-  /** Von Mises plasticity with isotropic and kinematic hardening and rate dependence. Linear
-   *  isotropic hardening alone is solved in closed form. */
+  /** Von Mises plasticity with isotropic and kinematic hardening and rate dependence. If there is only
+   *  linear isotropic hardening, the return is computed in closed form. */
   struct StrengthJ2 : ShearElasticity {
     static constexpr const char *name = "j2";
     static constexpr const char *meaning = "von Mises plasticity with hardening and rate";
@@ -262,6 +264,7 @@ namespace {
     }
 
    private:
+    /** Kind of hardening: HARDENING_..., or the size of the table. */
     static constexpr int kind(const LawParameters &p)
     {
       if (p.nterms > 0) return p.nterms > SHORT_TABLE ? LONG_TABLE : SHORT_TABLE;
@@ -269,10 +272,11 @@ namespace {
       return power(p) ? HARDENING_POWER : HARDENING_LINEAR;
     }
 
-    /** use(FlowType<...>()) */
+    /** Carries the type of a flow stress as a value, for use(FlowType<...>()). */
     template <class Flow> struct FlowType {
       using type = Flow;
     };
+    /** Calls use() with the type of flow stress that the parameters select. */
     template <class Use> static MPM_INLINE void with_flow(const LawParameters &p, const Use &use)
     {
       switch (kind(p)) {
@@ -325,6 +329,7 @@ namespace {
       motion.add(p.value[J2_G], p.chi, of_step, b, t);
     }
 
+    /** Updates with or without a back stress, as the parameters select. */
     template <class Flow>
     static MPM_INLINE void choose_kinematic(const LawParameters &p, Batch &b, History history)
     {
@@ -335,6 +340,7 @@ namespace {
         RadialReturn<Flow>::update(p, b, history);
     }
 
+    /** Radial return with linear hardening, in closed form. */
     static MPM_INLINE void linear(const LawParameters &p, Batch &b, History history)
     {
       const double G = p.value[J2_G], sigmay = p.value[J2_SIGMAY], H = p.value[J2_H];

@@ -18,10 +18,10 @@ namespace {
 
   enum { JC_G, JC_A, JC_B, JC_N, JC_C, JC_RATE, JC_M, JC_MELT, JC_REF };
 
-  /** Y = (A + B e^N) (1 + C ln max(rate/EPSDOT0, 1)) (1 - T*^M) of plastic strain e, plastic strain
-   *  rate and temperature at the end of the step. The temperature rises by the heat of the plastic
-   *  work of the step, (Y_start + Y)/2 D with Y_start at the old e and T and the present rate; other
-   *  heat of the step counts in the next one. */
+  /** Y = (A + B e^N) (1 + C ln max(rate/EPSDOT0, 1)) (1 - T*^M) with plastic strain e, plastic strain rate
+   *  and temperature at the end of the step. The temperature rises by the heat of the plastic work of the
+   *  step, (Y_start + Y)/2 D, where Y_start is for the old e and T and the present rate; other heat of the
+   *  step acts in the next step. */
   template <bool THERMAL> struct JohnsonCookFlow {
     static constexpr bool goes_on = false, estimates = true;
     double G, A, B, N, C, inv_rate;
@@ -40,6 +40,7 @@ namespace {
     }
 
     MPM_INLINE double shear(int) const { return G; }
+    /** Homologous temperature T*, within 0 and 1. */
     MPM_INLINE double homologous(double T) const
     {
       return min(max((T - Tref) * inv_range, 0.0), 1.0);
@@ -52,7 +53,7 @@ namespace {
       return hard * (1.0 - softening.keep(i, soft * pow(t, M), t));
     }
 
-    /** Factor of the rate, and its derivative with respect to D. */
+    /** Factor of the rate; out: slope, its derivative with respect to D. */
     MPM_INLINE double rate(double D, double &slope) const
     {
       const double x = D * inv_rate;
@@ -154,13 +155,13 @@ namespace {
    *
    *    f = 1 + A P J^(1/3) - B (T - TREF)
    *
-   *  of pressure P and temperature T at the end of the last step, J = density_0/density, and no
-   *  strength at and above the melting temperature
-   *  TM = TM0 exp(2 MA (1 - J)) J^(-2 (MGAMMA - MA - 1/3)). f is kept above LEAST. */
+   *  where pressure P and temperature T are those at the end of the last step, and J = density_0/density.
+   *  There is no strength at and above the melting temperature TM = TM0 exp(2 MA (1 - J)) J^(-2 (MGAMMA -
+   *  MA - 1/3)). f is kept above LEAST. */
   struct SteinbergState {
     static constexpr double LEAST = 0.01;
     double A, B, melt, a, power, tref;
-    const double *temperature;    ///< null: at TREF
+    const double *temperature;    ///< null: temperature TREF
 
     SteinbergState(const LawParameters &p, const Batch &b) :
         A(p.value[SCG_A]), B(p.value[SCG_B]),
@@ -169,10 +170,12 @@ namespace {
         tref(p.value[SCG_TREF]), temperature(MPM_NS::temperature(p, b))
     {
     }
+    /** Factor f. */
     MPM_INLINE double factor(double pressure, double J, double T) const
     {
       return max(1.0 + A * pressure * exp((1.0 / 3.0) * log(J)) - B * (T - tref), LEAST);
     }
+    /** Is the temperature T at or above the melting temperature? */
     MPM_INLINE bool molten(double J, double T) const
     {
       return T >= melt * exp(2.0 * a * (1.0 - J) + power * log(J));
@@ -180,8 +183,9 @@ namespace {
     MPM_INLINE double T(int i) const { return temperature ? temperature[i] : tref; }
   };
 
+  /** Flow stress of StrengthSteinberg for RadialReturn. */
   struct SteinbergFlow {
-    static constexpr bool goes_on = true;    // when f falls
+    static constexpr bool goes_on = true;    // f may fall from step to step
     static constexpr bool estimates = true;
     double G0, Y0, beta, n, ymax, pre;
     alignas(64) double G[BATCH], strong[BATCH];    ///< strong: f, or 0 when molten
@@ -223,9 +227,9 @@ namespace {
     MPM_INLINE double begin(double start, double) const { return start; }
   };
 
-  /** Strength at high pressure (D.J. Steinberg, S.G. Cochran, M.W. Guinan, J. Appl. Phys. 51 (1980)
-   *  1498, eqs. 1, 2 and 4; D.J. Steinberg, UCRL-MA-106439, 1996). In rate form with the present
-   *  shear modulus: the elastic energy is then what the stress has stored, a history variable. */
+  /** Strength at high pressure (D.J. Steinberg, S.G. Cochran, M.W. Guinan, J. Appl. Phys. 51 (1980) 1498,
+   *  eqs. 1, 2 and 4; D.J. Steinberg, UCRL-MA-106439, 1996), in rate form with the present shear modulus.
+   *  The elastic energy is then the energy that the stress has stored, a history variable. */
   struct StrengthSteinberg : RadialReturn<SteinbergFlow> {
     static constexpr const char *name = "steinberg";
     static constexpr const char *meaning = "Steinberg-Cochran-Guinan plasticity, with pressure";
@@ -294,10 +298,10 @@ namespace {
   enum { ZA_G, ZA_C0, ZA_BCC_C1, ZA_BCC_C3, ZA_BCC_C4, ZA_BCC_C5, ZA_BCC_N };
   enum { ZA_FCC_C2 = ZA_BCC_N + 1, ZA_FCC_C3, ZA_FCC_C4, ZA_MELT, ZA_RATE };
 
-  /** Y = C0 + (C1 + C2 sqrt(e)) exp(-C3 T + C4 T ln(r/RATE)) + C5 e^N of plastic strain e, plastic
-   *  strain rate r and temperature T of the end of the step; C2 = 0 (bcc) or C1 = C5 = 0 (fcc). The
-   *  exponent is at most 0. T rises by the heat of the plastic work of the step,
-   *  (Y_begin + Y)/2 D; other heat of the step counts in the next one. */
+  /** Y = C0 + (C1 + C2 sqrt(e)) exp(-C3 T + C4 T ln(r/RATE)) + C5 e^N with plastic strain e, plastic strain
+   *  rate r and temperature T at the end of the step; C2 = 0 (bcc) or C1 = C5 = 0 (fcc). The exponent is at
+   *  most 0. T rises by the heat of the plastic work of the step, (Y_begin + Y)/2 D; other heat of the step
+   *  acts in the next step. */
   struct ZerilliArmstrongFlow {
     static constexpr bool goes_on = true, estimates = true;
     double G, C0, C1, C2, C3, C4, C5, N;
@@ -317,7 +321,7 @@ namespace {
     MPM_INLINE double shear(int) const { return G; }
     MPM_INLINE double start(History history, int i)
     {
-      // rate 0: no thermal stress, except at absolute zero
+      // at rate 0 there is no thermal stress, except at absolute zero
       const double e = history[0][i], T = temperature[i],
                    square_root = root.keep(i, std::sqrt(e), e);
       const double thermal = T * C4 > 0.0 ? 0.0 : (C1 + C2 * square_root) * exp(-C3 * T);
@@ -364,9 +368,9 @@ namespace {
     MPM_INLINE double begin(double start, double) const { return start; }
   };
 
-  /** Flow stress by thermally activated motion of dislocations (F.J. Zerilli, R.W. Armstrong, J.
-   *  Appl. Phys. 61 (1987) 1816, eqs. 9 and 10). At and above the melting temperature, where one is
-   *  given, there is no strength. */
+  /** Flow stress from thermally activated motion of dislocations (F.J. Zerilli, R.W. Armstrong, J. Appl.
+   *  Phys. 61 (1987) 1816, eqs. 9 and 10). If a melting temperature is given, there is no strength at and
+   *  above it. */
   struct StrengthZerilliArmstrong : RadialReturn<ZerilliArmstrongFlow> {
     static constexpr const char *name = "zerilli/armstrong";
     static constexpr const char *meaning = "Zerilli-Armstrong plasticity of bcc and fcc metals";

@@ -9,20 +9,22 @@
 #ifndef MPM_LAW_TANGENT_H
 #define MPM_LAW_TANGENT_H
 
-// Tangents that laws share, see Tangent in material/material.h. Loops over the columns of a tangent are outside of those
-// over the points, so that their indices cost nothing. Functions that have loops over points are not inlined by force: a
-// tensor with a name in such a loop would become an array in memory, and the loop would not vectorize.
+// Functions for tangents that laws share; see Tangent in material/material.h. Loops over the columns of a
+// tangent enclose the loops over the points, so that their indices cost nothing. Functions that contain
+// loops over points are not forced inline: a named tensor in such a loop would then become an array in
+// memory, and the loop would not vectorize.
 
 #include "law/kinematics.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  /** Component of a symmetric tensor, in the order of Sym, by its indices, and the indices of a component. */
+  /** Component of a symmetric tensor, in the order of Sym, from its indices. */
   constexpr int COMPONENT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  /** First and second index of a component of a symmetric tensor. */
   constexpr int FIRST[6] = {0, 1, 2, 0, 0, 1}, SECOND[6] = {0, 1, 2, 1, 2, 2};
 
-  /** Adds a factor times one row to another one. */
+  /** Adds a factor times one row to another row. */
   inline void add_rows(int n, double factor, const double *from, double *to)
   {
     MPM_SIMD
@@ -36,7 +38,7 @@ namespace {
       for (int k = 0; k < 9; k += 4) add_rows(n, 1.0, value, t.stress[c][k]);
   }
 
-  /** Adds l s + s l^T, how a tensor s changes that moves with the material. */
+  /** Adds l s + s l^T, the change of a tensor s that is convected with the material. */
   inline void add_convected(int n, const double (*s)[BATCH], Tangent &t)
   {
     for (int c = 0; c < 6; c++)
@@ -49,7 +51,7 @@ namespace {
       }
   }
 
-  /** Adds w s - s w with the skew part w of l, how a tensor s changes that turns with the material. */
+  /** Adds w s - s w with the skew part w of l, the change of a tensor s that rotates with the material. */
   inline void add_turned(int n, const double (*s)[BATCH], Tangent &t)
   {
     for (int c = 0; c < 6; c++)
@@ -67,17 +69,18 @@ namespace {
       }
   }
 
-  /** Derivative along three vectors of a stress that depends on the symmetric part of the motion only. */
+  /** Derivatives, in the frame of three vectors, of a stress that depends only on the symmetric part of the
+   *  motion. */
   struct FrameModuli {
-    alignas(64) double A[6][BATCH];    ///< of the components aa by l_bb, for ab = 11 22 33 12 13 23
-    alignas(64) double m[3][BATCH];    ///< of ab by l_ab + l_ba, for ab = 12 13 23
+    alignas(64) double A[6][BATCH];    ///< of component aa by l_bb, for ab = 11 22 33 12 13 23
+    alignas(64) double m[3][BATCH];    ///< of component ab by l_ab + l_ba, for ab = 12 13 23
   };
 
   /** Adds the tangent
    *
    *    sum_ab A_ab (v_a v_a) (v_b v_b) + sum_(a < b) m_ab (v_a v_b + v_b v_a) (v_a v_b + v_b v_a)
    *
-   *  with three vectors v_a of each point, [component][vector]. */
+   *  with the three vectors v_a of each point, v[component][vector][point]. */
   inline void add_frame_tangent(int n, const double (*v)[3][BATCH], const FrameModuli &moduli,
                                 Tangent &t)
   {
@@ -116,7 +119,7 @@ namespace {
     }
   }
 
-  /** Change of a tensor that turns with the velocity (x, y, z). */
+  /** Spin with the angular velocity (x, y, z). of(s): rate of a tensor s that rotates with it. */
   struct Spin {
     double x, y, z;
 
@@ -131,13 +134,13 @@ namespace {
     }
   };
 
-  /** What the end of a step in rate form depends on. With the increment G = A (I + A/2)^-1 of the middle of the step,
-   *  strain e and rotation W, its derivative is
+  /** Motion of a step in rate form, and its derivatives. The increment at the middle of the step, G = A (I
+   *  + A/2)^-1, with strain e and rotation W, has the derivative
    *
-   *    dG = (I - G/2) l (I + G/2),
+   *    dG = (I - G/2) l (I + G/2).
    *
-   *  and the rotation Q = (I - W/2)^-1 (I + W/2) changes by dQ Q^T = (I - W/2)^-1 dW (I + W/2)^-1, the matrix of the
-   *  vector (dw + w x dw/2)/(1 + w.w/4), where W is that of w. */
+   *  The rotation Q = (I - W/2)^-1 (I + W/2) changes by dQ Q^T = (I - W/2)^-1 dW (I + W/2)^-1, the skew
+   *  matrix of the vector (dw + w x dw/2)/(1 + w.w/4), where w is the axial vector of W. */
   struct StepMotion {
     alignas(64) double G[9][BATCH], Q[9][BATCH];
     alignas(64) double QM[9][BATCH], QN[9][BATCH];    ///< Q (I - G/2), Q (I + G/2)^T
@@ -176,7 +179,7 @@ namespace {
         }
     }
 
-    /** e of the step. */
+    /** Strain e of the step. */
     MPM_INLINE Sym strain(int i) const
     {
       return {G[0][i],
@@ -187,15 +190,15 @@ namespace {
               0.5 * (G[5][i] + G[7][i])};
     }
 
-    /** Derivatives by l_kl of one point. */
+    /** Derivatives with respect to l_kl for one point. */
     struct Column {
       Sym strain;     ///< of e
       Sym both;       ///< de + Q de Q^T
-      double mean;    ///< third of the trace of de
+      double mean;    ///< a third of the trace of de
       Spin spin;      ///< of Q
     };
 
-    /** Of the points, one after the other. */
+    /** Derivatives with respect to l_kl for any point i. */
     struct Columns {
       const StepMotion &step;
       const int k, l;
@@ -205,7 +208,7 @@ namespace {
       {
         const auto &G = step.G, &QM = step.QM, &QN = step.QN;
         const auto &w = step.w;
-        // dG is a dyad a b, and so is what Q makes of it
+        // dG is a dyad a b, and Q dG Q^T is the dyad c d
         const double ax = kx - 0.5 * G[k][i], ay = ky - 0.5 * G[3 + k][i];
         const double az = kz - 0.5 * G[6 + k][i], bx = lx + 0.5 * G[3 * l][i];
         const double by = ly + 0.5 * G[3 * l + 1][i], bz = lz + 0.5 * G[3 * l + 2][i];
@@ -227,6 +230,7 @@ namespace {
       }
     };
 
+    /** Derivatives with respect to l_kl. */
     MPM_INLINE Columns columns(int k, int l) const
     {
       return {*this,
@@ -241,8 +245,9 @@ namespace {
     }
   };
 
-  /** The deviator of the Kirchhoff stress after an elastic step of the rate form, see jaumann(), with the shear modulus
-   *  G: its rotated part, of which the rotation is felt, and its derivative. */
+  /** Deviator of the Kirchhoff stress after an elastic step in rate form with the shear modulus G (see
+   *  jaumann()), and its derivative. Only the rotated part of the stress depends on the rotation of the
+   *  step. */
   struct ElasticStep : StepMotion {
     double shear;
     alignas(64) double turned[6][BATCH];    ///< Q (old + G dev(e)) Q^T
@@ -258,10 +263,10 @@ namespace {
       }
     }
 
-    /** The deviator that it ends with. */
+    /** Deviator at the end of the step. */
     MPM_INLINE Sym trial(int i) const { return load_rows(turned, i) + shear * deviator(strain(i)); }
 
-    /** Its derivatives by l_kl. */
+    /** Derivatives of trial() with respect to l_kl. */
     void column(int n, int k, int l, double (*out)[BATCH]) const
     {
       const Columns columns = StepMotion::columns(k, l);
@@ -275,7 +280,7 @@ namespace {
     }
   };
 
-  /** Adds to a column the derivatives of one point. */
+  /** Adds the derivatives of the stress of point i to a column of the tangent. */
   MPM_INLINE void add_column(Tangent &t, int column, int i, const Sym &s)
   {
     t.stress[0][column][i] += s.xx;

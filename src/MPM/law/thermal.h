@@ -45,20 +45,24 @@ namespace {
       "over",       "DT", "temperature",
       NOT_NEGATIVE, 0.0,  "range of temperatures in which it melts, from TMELT on"};
 
-  /** Temperature of a point by the heat that it makes itself:
+  /** Temperature of a point from its own heat:
    *
    *    density_0 CP dT = dq - density_0 CP GAMMA T dJ
    *
-   *  with the heat dq of the step per reference volume: the share CHI of the plastic work
-   *  (G.I. Taylor, H. Quinney, Proc. R. Soc. London A 143 (1934) 307), and all viscous work. The
-   *  second term is the change along an isentrope when density * Gruneisen parameter is constant,
-   *  T ~ exp(GAMMA (1 - J)). Strengths use the temperature of the end of the step. With melting the
-   *  temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone from 0 to 1,
-   *  and on cooling back to 0, or rises from TMELT to TMELT + DT meanwhile; with this, and with a CP that
-   *  depends on the temperature, it follows from the enthalpy (HeatCurve). With expansion the second term
-   *  comes before the stress of the step, which depends on it. A GAMMA that follows from the expansion is
-   *  that of the given CP, and goes with its inverse: dp/dT at constant volume, 3 K ALPHA, is what stays.
-   *  MORE: parameters between T0 and CHI. */
+   *  with the heat dq of the step per reference volume: the share CHI of the plastic work (G.I. Taylor, H.
+   *  Quinney, Proc. R. Soc. London A 143 (1934) 307), and all viscous work. The second term is the change
+   *  along an isentrope if density * Gruneisen parameter is constant, T ~ exp(GAMMA (1 - J)). Strengths use
+   *  the temperature at the end of the step.
+   *
+   *  With melting, the temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone
+   *  from 0 to 1 (on cooling, back to 0), or it rises from TMELT to TMELT + DT meanwhile. In the latter
+   *  case, and if CP depends on temperature, the temperature follows from the enthalpy (HeatCurve).
+   *
+   *  With expansion, the second term is applied before the stress of the step, which depends on it. A GAMMA
+   *  that follows from the expansion is that of the given CP and varies as the inverse of the specific
+   *  heat: dp/dT at constant volume, 3 K ALPHA, stays constant.
+   *
+   *  MORE: number of parameters between T0 and CHI. */
   template <int MORE> struct ThermalByWork : LawDefaults {
     static constexpr bool uses_F = false;
     enum { CP, T0, CHI = 2 + MORE, GAMMA, TMELT, LATENT, ALPHA, CONSISTENT, BREAKS, OVER };
@@ -76,7 +80,7 @@ namespace {
         return "'over DT' is a range of melting: add 'melt TMELT LATENT'";
       return nullptr;
     }
-    /** A material above its melting temperature is a melt. */
+    /** Material that starts above its melting temperature is molten. */
     static void initialize(const LawParameters &p, const double *, double *history)
     {
       const HeatCurve curve = curve_of(p);
@@ -88,12 +92,13 @@ namespace {
     static double expansion(const LawParameters &p) { return p.value[ALPHA]; }
     static constexpr int gruneisen = GAMMA;
     static bool consistent(const LawParameters &p) { return p.value[CONSISTENT] > 0.0; }
+    /** Enthalpy curve of the parameters. */
     static MPM_INLINE HeatCurve curve_of(const LawParameters &p)
     {
       return {p, p.value[TMELT], p.value[LATENT], p.value[OVER]};
     }
 
-    /** Change of temperature by compression. */
+    /** Applies the change of temperature by compression. */
     static MPM_INLINE void compress(const LawParameters &p, Batch &b, History history)
     {
       const double gamma = p.value[GAMMA];
@@ -139,6 +144,7 @@ namespace {
     }
   };
 
+  /** Temperature without conduction of heat. */
   struct ThermalAdiabatic : ThermalByWork<0> {
     static constexpr const char *name = "adiabatic";
     static constexpr const char *meaning = "temperature by dissipation, without conduction";
@@ -147,7 +153,7 @@ namespace {
         HEAT_OF_FUSION, EXPANSION,         CONSISTENT_GRUNEISEN, FRACTURE_SHARE, MELTING_RANGE};
   };
 
-  /** The same for points between which fix mpm/heat conducts heat. */
+  /** As ThermalAdiabatic, for points between which fix mpm/heat conducts heat. */
   struct ThermalConducting : ThermalByWork<1> {
     enum { K = 2, K2 = OVER + 1, K3, A1, THETA = A1 + 6 };
     static constexpr const char *name = "conducting";
@@ -202,7 +208,7 @@ namespace {
     }
   };
 
-  /** Temperature that nothing changes. */
+  /** Constant temperature. */
   struct ThermalConstant : LawDefaults {
     static constexpr bool uses_F = false;
     static constexpr const char *name = "constant";

@@ -14,20 +14,23 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** History of a generalized Newtonian fluid; at rest it has the viscosity of this parameter. */
+  /** History of a generalized Newtonian fluid; parameter: index of the viscosity at rest. */
   constexpr HistoryDeclaration apparent_viscosity(int parameter)
   {
     return {"viscosity", parameter, "pressure time", "apparent viscosity"};
   }
 
-  /** Loops of a generalized Newtonian fluid (R.B. Bird, R.C. Armstrong, O. Hassager, Dynamics of
-   *  Polymeric Liquids 1, 1987, ch. 4): adds 2 eta dev(D) with an apparent viscosity eta of the
-   *  shear rate sqrt(2 dev(D):dev(D)), D the strain rate half-way in the step.
+  /** Kernels of a generalized Newtonian fluid (R.B. Bird, R.C. Armstrong, O. Hassager, Dynamics of
+   *  Polymeric Liquids 1, 1987, ch. 4): adds 2 eta dev(D), where the apparent viscosity eta depends on the
+   *  shear rate sqrt(2 dev(D):dev(D)) and D is the strain rate at the middle of the step.
    *
-   *  Fluid is made from the parameters and has apparent(rate), the viscosity at a rate, and steepness,
-   *  a bound of the slope of stress over rate in units of the apparent viscosity; slope(rate), the derivative of
-   *  apparent(). History: the
-   *  apparent viscosity of the last step, which the stable time step needs, and for output. */
+   *  Fluid provides:
+   *    Fluid(parameters)
+   *    apparent(rate), the viscosity at a shear rate
+   *    slope(rate), the derivative of apparent()
+   *    steepness, a bound of the slope of stress over rate, in units of the apparent viscosity
+   *
+   *  History: the apparent viscosity of the last step, for the stable time step and for output. */
   template <class Fluid> struct GeneralizedNewtonian : LawDefaults {
     static constexpr StressShare share = DEVIATOR;
     static constexpr bool uses_speed = false, uses_F = false;
@@ -135,7 +138,7 @@ namespace {
 
   constexpr Parameter CONSISTENCY = {"", "K", "pressure time^N", POSITIVE, REQUIRED, "consistency"};
 
-  /** Viscous stress with a power of the shear rate, by the first two parameters K and N. */
+  /** Viscous stress with a power of the shear rate; K and N are the first two parameters. */
   struct PowerOfRate {
     double k, n, steepness;
 
@@ -144,12 +147,13 @@ namespace {
     {
     }
 
-    /** Apparent viscosity of the stress yield + K rate^N. */
+    /** Apparent viscosity for the stress yield + K rate^N. */
     MPM_INLINE double viscosity(double rate, double yield) const
     {
       const double g = max(rate, 1e-100);
       return (yield + k * pow(g, n)) / g;
     }
+    /** Derivative of viscosity() with respect to the rate. */
     MPM_INLINE double slope_of_viscosity(double rate, double yield) const
     {
       const double g = max(rate, 1e-100);
@@ -157,8 +161,8 @@ namespace {
     }
   };
 
-  /** Herschel-Bulkley fluid (W.H. Herschel, R. Bulkley, Kolloid-Z. 39 (1926) 291), with a largest
-   *  viscosity as in the Bingham fluid: tau = min(MUMAX g, TAUY + K g^N). */
+  /** Herschel-Bulkley fluid (W.H. Herschel, R. Bulkley, Kolloid-Z. 39 (1926) 291), with a largest viscosity
+   *  as in the Bingham fluid: tau = min(MUMAX g, TAUY + K g^N). */
   struct ViscosityHerschelBulkley : GeneralizedNewtonian<ViscosityHerschelBulkley>, PowerOfRate {
     static constexpr const char *name = "herschel/bulkley";
     static constexpr const char *meaning = "Herschel-Bulkley fluid, bi-viscous";

@@ -14,18 +14,19 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Fabric of two families of yarns, warp and weft, that cross at pins: with the stretches lambda of the yarns and the
-   *  change gamma of the angle theta between them,
+  /** Fabric of two families of yarns, warp and weft, that cross at pins. With the stretches lambda of the
+   *  yarns and the change gamma of the angle theta between them,
    *
    *    w = E1 <lambda1 - 1>^2/2 + E2 <lambda2 - 1>^2/2 + (integral of M over gamma),
    *    J sigma = sum_k E_k <lambda_k - 1> lambda_k a_k a_k
    *              + M/sin(theta) [a_1 a_2 + a_2 a_1 - cos(theta) (a_1 a_1 + a_2 a_2)]
    *
-   *  where a_k are unit vectors along the deformed yarns, which turn as lines of the material do and do not stay normal to each
-   *  other (X.Q. Peng, J. Cao, Composites A 36 (2005) 859; M.J. King, P. Jearanaisilawong, S. Socrate, Int. J. Solids Struct. 42
-   *  (2005) 3867). Yarns bear tension only. The moment M per reference volume is G gamma, beyond the locking angle with another
-   *  modulus. Warp is along axis 1 of the reference configuration, and weft in the plane of axes 1 and 2. Nothing acts
-   *  across this plane, whatever the stretch there. */
+   *  where a_k are unit vectors along the deformed yarns, which rotate like material lines and do not stay
+   *  normal to each other (X.Q. Peng, J. Cao, Composites A 36 (2005) 859; M.J. King, P. Jearanaisilawong,
+   *  S. Socrate, Int. J. Solids Struct. 42 (2005) 3867). Yarns bear tension only. The moment M per
+   *  reference volume is G gamma, with another modulus beyond the locking angle. The warp is along axis 1
+   *  of the reference configuration, and the weft in the plane of axes 1 and 2. No stress acts across this
+   *  plane, whatever the stretch normal to it. */
   struct LawWoven : LawDefaults {
     static constexpr const char *name = "woven";
     static constexpr const char *meaning = "fabric of two families of yarns, for surfaces";
@@ -40,7 +41,7 @@ namespace {
         {"locking", "GL", "pressure", NOT_NEGATIVE, 0.0, "stiffness against shear beyond"}};
 
     static constexpr double DEGREE = 3.14159265358979323846 / 180.0;
-    // yarns that lie on each other have no angle: least sine of it that counts
+    // lower limit of the sine of the angle: the angle of yarns that lie on each other is undefined
     static constexpr double LEAST_SINE = 1e-6;
 
     double E[2], shear, beyond, lock;
@@ -53,7 +54,8 @@ namespace {
     {
     }
 
-    /** A yarn by its Green-Lagrange strain x: energy, and derivatives by x. */
+    /** Stretch and energy of a yarn with the Green-Lagrange strain x, and first and second derivative of
+     *  the energy by x. */
     struct Yarn {
       double stretch, energy, first, second;
 
@@ -68,11 +70,12 @@ namespace {
       }
     };
 
-    /** The angle of a point: cosine c, sine s, and change gamma. */
+    /** Angle between the yarns of a point: cosine c, sine s, and change gamma (positive when the angle
+     *  becomes smaller). */
     struct Angle {
       double c, s, gamma;
 
-      /** z: a_1 (F^T F - I) a_2 / 2 at rest. */
+      /** z: a_1 (F^T F - I) a_2 / 2 with the directions at rest; stretches: product of both stretches. */
       MPM_INLINE Angle(const LawWoven &law, double z, double stretches)
       {
         c = max(-1.0, min(1.0, (law.c0 + 2.0 * z) / stretches));
@@ -81,23 +84,26 @@ namespace {
       }
     };
 
-    /** Moment M and its derivative by gamma, and energy. */
+    /** Moment M. */
     MPM_INLINE double moment(double gamma) const
     {
       const double over = excess(gamma);
       return shear * (gamma - over) + beyond * over;
     }
+    /** Derivative of M with respect to gamma. */
     MPM_INLINE double slope(double gamma) const { return excess(gamma) == 0.0 ? shear : beyond; }
+    /** Part of gamma beyond the locking angle. */
     MPM_INLINE double excess(double gamma) const { return gamma - max(-lock, min(lock, gamma)); }
+    /** Energy of shear: integral of M over gamma. */
     MPM_INLINE double sheared(double gamma) const
     {
       const double over = excess(gamma), under = gamma - over;
       return 0.5 * shear * under * under + over * (shear * under + 0.5 * beyond * over);
     }
 
-    /** All of a point: derivatives of the energy by strains 11 and 22 along the yarns, and by the sum of 12 and 21. */
+    /** State of the yarns of a point. */
     struct Point {
-      double A[3], B[3];    ///< F a_1, F a_2 with the directions at rest
+      double A[3], B[3];    ///< F a_1 and F a_2, with the directions a_k at rest
       Yarn warp, weft;
       Angle angle;
 
@@ -148,9 +154,9 @@ namespace {
       }
     }
 
-    /** A wave with normal n stretches yarns by no more than sum_k E_k lambda_k^2 (n a_k)^2, whose largest value over n is an
-     *  eigenvalue, taut or not; shear adds what it has at small strain, the larger one of its moduli, and what the moment
-     *  makes of yarns that turn. */
+    /** A wave with normal n stretches the yarns by at most sum_k E_k lambda_k^2 (n a_k)^2, taut or not; the
+     *  largest value over n is an eigenvalue. Shear adds its larger modulus at small strain, and the moment
+     *  adds a term from the rotation of the yarns. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawWoven law(p);
