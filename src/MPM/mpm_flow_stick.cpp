@@ -18,7 +18,7 @@ using namespace LAMMPS_NS;
 // distance up to which walls are looked at; shortest distance from a face to a wall that stresses use;
 // the same for velocities continued into walls [spacings]
 static constexpr double FAR = 2.5, NEAREST = 0.05, NEAREST_HELD = 0.25;
-// layers of faces in walls that points next to them reach
+// layers of faces in walls that points next to the walls reach
 static constexpr int LAYERS = 2;
 
 void MPMFlowStick::find(bool again)
