@@ -54,8 +54,8 @@ static constexpr int AIR_LAYERS = 3;
 static constexpr double SMOOTHED = 0.125;
 // residuals that are as small as this share of speed/spacing are rounding
 static constexpr double ROUNDING = 1.0e-14;
-// relative change of the time step from which on there are two solves: a smaller one changes the
-// pressure as little
+// relative change of the time step from which on there are two
+// solves: a smaller one changes the pressure as little
 static constexpr double DIFFERENT_DT = 0.01;
 // relative difference of densities that counts as none
 static constexpr double SAME_DENSITY = 1.0e-9;
@@ -80,8 +80,8 @@ static constexpr double FLIP_OF_BODIES = 0.98;
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
 // entries of the vector with gas; entries about parts of steps, at its end
 static constexpr int GAS_VALUES = 5, PART_VALUES = 2;
-// passes that fit the gradients of velocities with which points begin: a pass leaves up to 0.58 of what
-// is missing
+// passes that fit the gradients of velocities with which points
+// begin: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
 /* ----------------------------------------------------------------------
@@ -762,7 +762,8 @@ void FixMPMIncompressible::setup_pre_force(int vflag)
   pre_force(vflag);
 }
 
-/** LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include), see FixMPM::pre_force(). */
+/** LAMMPS has set to zero only the forces of atoms in the neighbor lists (neigh_modify include), see
+ *  FixMPM::pre_force(). */
 void FixMPMIncompressible::pre_force(int)
 {
   if (!neighbor->includegroup) return;
@@ -857,7 +858,7 @@ void FixMPMIncompressible::initial_integrate(int)
   check_speed();
   if (gas) gas->move(velocity.data(), dt);
   if (grains) grains->end(velocity);
-  if (grains || inflow) pressure->set_mobility(nullptr);    // points spread among grains, too
+  if (grains || inflow) pressure->set_mobility(nullptr);    // points also spread among grains
 
   if (sharp) find_paths();
   if (spread > 0.0) find_shift();
@@ -1011,7 +1012,7 @@ void FixMPMIncompressible::find_tension(double duration)
 }
 
 /* ----------------------------------------------------------------------
-   Viscous stresses, with what they add to the pressure, at the end of a step that had none so far. The effect
+   Viscous stresses, with what they add to the pressure, at the end of a step without them. The effect
    of the place of a surface is left to the pressure alone, so that a fluid at rest stays at rest.
 ------------------------------------------------------------------------- */
 
@@ -1158,7 +1159,8 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
 void FixMPMIncompressible::go_on_into_air()
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
-  if (viscous)    // changes by viscosity go on into the air, too: otherwise the layer of points at a surface would fall freely
+  // changes by viscosity go on into the air, too: otherwise the layer of points at a surface would fall freely
+  if (viscous)
     for (std::size_t k = 0; k < star.size(); k++) star[k] -= shift[k];
   for (std::size_t k = 0; k < velocity.size(); k++)
     if (known[k] > 0.0) velocity[k] -= star[k];
@@ -1273,8 +1275,7 @@ void FixMPMIncompressible::check_speed()
     if (neighbor->includegroup && domain->periodicity[d] && gone > 0.25 * domain->prd[d])
       next_reneighbor = update->ntimestep;
   if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * h) return;
-  // what hits a wall flat is several times faster after the step: no limit by earlier speeds can foresee
-  // that
+  // what hits a wall flat is several times faster after the step: no limit by earlier speeds can foresee that
 
   const bool is_set = !modify->get_fix_by_style("^mpm/dt$").empty();
   error->all(FLERR, Error::NOLASTLINE,
@@ -1319,9 +1320,8 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   if (tension > 0.0)
     dt = std::min(dt, MPMFlowTension::stable_dt(tension * acceleration_of_stress(), h));
 
-  // At the start of a run there are no forces yet. Those at the end of the last run count by the limit
-  // that they gave, also if that run has written the restart file; at the start of the first run,
-  // gravity counts
+  // At the start of a run there are no forces yet. Those at the end of the last run count by the limit that
+  // they gave, also if that run has written the restart file; at the start of the first run, gravity counts
 
   double g[3] = {0.0, 0.0, 0.0};
   if (!forces_known && limit_before > 0.0)
@@ -1359,10 +1359,11 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
 }
 
 /* ----------------------------------------------------------------------
-   scalar: number of iterations; vector: these, what is left of the divergence (relative), largest |div v|, volume that
-   points fill, number of wet cells, kinetic energy, largest speed, force on the six walls, iterations of the implicit viscosity,
-   force on the regions, and energy that spreading has added; with gas: number of pockets that have some, highest and lowest pressure, volume, and energy;
-   parts of the last step, and halvings so far
+   scalar: number of iterations; vector: this number, what is left of the divergence (relative), largest |div
+   v|, volume that points fill, number of wet cells, kinetic energy, largest speed, force on the six walls,
+   iterations of the implicit viscosity, force on the regions, and energy that spreading has added; with gas:
+   number of pockets that have some, highest and lowest pressure, volume, and energy; parts of the last step,
+   and halvings so far
 ------------------------------------------------------------------------- */
 
 double FixMPMIncompressible::compute_scalar()

@@ -44,16 +44,16 @@
 
      V_p k_p/C_p max_d sum_i (dN_ip/dx_d)^2/N_ip,
 
-   as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The
-   sum is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever
-   points are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. With a tensor k it is the greatest
-   eigenvalue that counts. A function of GIMP of a point with the half size s (in cells, at most 1/2) has at most 2/s + 1/(1 - s), and with
-   domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip = sum_c g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N
-   grad N^T/N <= sum_c g_c g_c^T/w_c.
+   as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The sum
+   is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever points
+   are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. With a tensor k it is the
+   greatest eigenvalue that counts. A function of GIMP of a point with the half size s (in cells, at most 1/2)
+   has at most 2/s + 1/(1 - s), and with domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip = sum_c
+   g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N grad N^T/N <= sum_c g_c g_c^T/w_c.
 
-   Linear functions and Bernstein polynomials have no such bound: a node that a point hardly reaches has next to no capacity, while the
-   gradient there is not small. For them the greatest rate is at most the greatest sum of absolute values of a row of C^-1 K, which is not
-   above
+   Linear functions and Bernstein polynomials have no such bound: a node that a point hardly reaches has next
+   to no capacity, while the gradient there is not small. For them the greatest rate is at most the greatest
+   sum of absolute values of a row of C^-1 K, which is not above
 
      sum_p V_p sum_d |dN_ip/dx_d| sum_e |k_de| (2/h)/C_i,
 
@@ -80,8 +80,8 @@
    the volume V_p/J: the same sums with V_p F^-1 k F^-T. Around an axis of symmetry, points are rings with
    their whole volume and capacity; nothing flows around the axis, so that there is no other term.
 
-   Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so that
-   it is that of the points to round-off.
+   Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so
+   that it is that of the points to round-off.
 ------------------------------------------------------------------------- */
 
 #include "mpm_conduction.h"
@@ -118,8 +118,8 @@ static constexpr double TOO_LITTLE = 0.7;
 static constexpr double LEAST_LEFT = 0.25;
 // distance from a side of cells, in cells, within which a point is on both sides
 static constexpr double ON_SIDE = 1.0e-9;
-static constexpr double SAME =
-    2.0;    // ratio of conductivities for which means across interfaces matter little
+// ratio of conductivities for which means across interfaces matter little
+static constexpr double SAME = 2.0;
 
 /* ---------------------------------------------------------------------- */
 
@@ -1042,8 +1042,8 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     double here = 0.0;
     if (bounded) {
       here = bound(*t, i, volume_of(i));
-      // at interfaces what is possible counts, not what is there at present, so that it is the same
-      // after a restart
+      // at interfaces what is possible counts, not what is there at
+      // present, so that it is the same after a restart
       if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
     } else if (!field.domains || conducted == 0.0) {
       double k[3][3], x[24], least = 1.0;

@@ -34,8 +34,9 @@
 
      Q_p = sum_i Q_i m_p N_ip/m_i,
 
-   of which the sum over points is sum_i Q_i. With one capacity for each mass this is the change of the temperature of nodes, Q_i/C_i,
-   at the point, as after conduction. Only points next to nodes that got heat are visited.
+   of which the sum over points is sum_i Q_i. With one capacity for each mass this is the change of the
+   temperature of nodes, Q_i/C_i, at the point, as after conduction. Only points next to nodes that got heat
+   are visited.
 ------------------------------------------------------------------------- */
 
 #include "atom.h"

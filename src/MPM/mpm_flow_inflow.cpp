@@ -32,8 +32,8 @@ static constexpr double ALONG = 1.0 - 1.0e-9;
 // differences of shares of faces, and of squares of distances in spacings, that count as none; relative
 // difference of velocities in mouths that is small
 static constexpr double ALIKE = 1.0e-6, LIKE_POINTS = 0.05;
-// least open part of a face over the share of a section in it: that of a corner into which columns of
-// points just fit
+// least open part of a face over the share of a section in it: that
+// of a corner into which columns of points just fit
 static constexpr double LEAST_OPEN = 0.25;
 
 MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, const Fix &flow) :

@@ -145,8 +145,7 @@ void MPMFlowLattice::find_cells()
     }
   }
 
-  // ranks share what they reach and the layers around it; where there are periodic images, all of their
-  // blocks
+  // ranks share what they reach and the layers around it; where there are periodic images, all of their blocks
 
   std::vector<uint64_t> shared;
   constexpr int STENCIL = 2, LOWER = 1;    // of points that have a width
@@ -293,7 +292,8 @@ void MPMFlowLattice::list_cells()
   }
 }
 
-/** Lists the images of each axis: of all cells that exist along the other axes, including those beyond walls. */
+/** Lists the images of each axis: of all cells that exist along the other axes, including those beyond
+ *  walls. */
 void MPMFlowLattice::list_images()
 {
   images.clear();

@@ -24,8 +24,7 @@ using namespace MPM_NS;
 static constexpr double SPREAD = 8.0;
 // share of the surroundings of a cell, and mean share of its neighbors, from which on the cell is wet
 static constexpr double HALF = 0.5, SURROUNDED = 0.6;
-// excess of points in a cell cut by a region that may not be real: points come in steps there, and walls
-// do not
+// excess of points in a cell cut by a region that may not be real: points come in steps there, and walls do not
 static constexpr double UNSURE = 0.25;
 // open share of the surroundings of a cell below which its neighbors decide whether it is wet, if it has
 // a least share of water

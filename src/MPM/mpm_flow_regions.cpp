@@ -26,8 +26,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// distance up to which a wall is looked at, and up to which closed faces have its normal velocity, in
-// spacings
+// distance up to which a wall is looked at, and up to which closed faces have its normal velocity, in spacings
 static constexpr double FAR = 4.0, HELD = 3.5;
 // distance between two regions from which on there is a gap, in spacings
 static constexpr double LEAST_GAP = 0.05;
@@ -703,8 +702,8 @@ bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
  *  wall is thicker than a cell. */
 bool MPMFlowRegions::is_corner(const MPMFlowLattice::Cell &cell, int axis) const
 {
-  constexpr int NEAR =
-      2;    // cells up to which a corner of 60 degrees gets that thick, wherever it ends in the cell
+  // cells up to which a corner of 60 degrees gets that thick, wherever it ends in the cell
+  constexpr int NEAR = 2;
   for (int e = 0; e < dim; e++) {
     if (e == axis) continue;
     for (int along = -NEAR; along <= NEAR; along++) {

@@ -34,8 +34,8 @@ static constexpr double PROBE = 1.0e-6;
 // stiffness of a stretched solid over that at rest, up to which an interface reaches its balance with
 // the fluid in one step
 static constexpr double STIFFER = 3.0;
-// least share of fluid that counts against shear along an interface, over the largest share of fluid
-// next to a point
+// least share of fluid that counts against shear along an
+// interface, over the largest share of fluid next to a point
 static constexpr double LEAST_SHARE = 0.5;
 // share of fluid next to a point from which on strains along the interface are those of the solid alone
 static constexpr double MIXED = 0.1;
@@ -498,8 +498,7 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
   to.most = most;
   if (most < LEAST_FLUID) return false;
 
-  // the normal, by splines of cells, which reach all of these boxes: even next to no fluid gives a
-  // direction
+  // the normal, by splines of cells, which reach all of these boxes: even next to no fluid gives a direction
 
   int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
   double spline[3][3], slope[3][3];
@@ -536,7 +535,7 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
    along the interface: the stress along the interface is the same on both sides, so the fluid has the shear
    of the solid plus that which the stress of the law causes by its viscosity; the rest is that of the solid.
    Without this both would have the same shear, and solids would hold a layer of fluid of up to half a
-   spacing. The stress is that at the end of the step: a solid that is as good as rigid then leaves all shear
+   spacing. The stress is that at the end of the step: a nearly rigid solid then leaves all shear
    to the fluid, whatever the duration of the step.
 
    The other strains are the same on both sides at the interface, but fluid in a box away from it has others.

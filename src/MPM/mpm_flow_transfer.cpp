@@ -19,12 +19,10 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// points are kept this far inside of walls, in spacings, so that rounding does not take them out of the
-// box
+// points are kept this far inside of walls, in spacings, so that rounding does not take them out of the box
 static constexpr double INSIDE = 1.0e-6;
-// largest change of the velocity of a point over a spacing, in spacings per step. Flows change by less,
-// but points that splash can get any gradient, which would give any velocity to faces up to 1.5 spacings
-// away
+// largest change of the velocity of a point over a spacing, in spacings per step. Flows change by less, but
+// points that splash can get any gradient, which would give any velocity to faces up to 1.5 spacings away
 static constexpr double STEEPEST = 0.75;
 
 namespace {
@@ -77,8 +75,8 @@ template <int dim> double limit_of(const double *G, double inv_h, double dt)
 /** Sums of what points whose places have the same base give, until they are added to the cells. */
 template <int dim> struct Gifts {
   static constexpr int ROWS = MPMFlowStencil<dim>::ROWS;
-  static constexpr int WIDE =
-      4;    // cells along an axis that the width of points can reach, from base - 1 on
+  // cells along an axis that the width of points can reach, from base - 1 on
+  static constexpr int WIDE = 4;
   static constexpr int FILLED = dim == 3 ? WIDE * WIDE * WIDE : WIDE * WIDE;
   // [c][row][k]: of faces, with one k more than there are, because vector operations take four
   double momentum[dim][ROWS][4], mass[dim][ROWS][4], force[dim][ROWS][4];
@@ -435,9 +433,9 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.of_shift[1] += work;
       }
 
-      // The midpoint rule in the field of velocities, which has no divergence. With all of the change
-      // once more, velocities are those in the middle of the step where points were at its start, and
-      // paths are straight
+      // The midpoint rule in the field of velocities, which has no divergence.
+      // With all of the change once more, velocities are those in the middle of
+      // the step where points were at its start, and paths are straight
 
       double middle[3] = {x[0], x[1], x[2]}, at_middle[dim];
       const double *start = now;

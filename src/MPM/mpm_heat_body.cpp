@@ -42,8 +42,8 @@
    at the sides of the body and of the box. The sum of n.G has the noise of sums over points, which are not
    integrals.
 
-   A surface that is inclined crosses lines of nodes along several axes. The lines along the axis a count with the share
-   s_a = n_a^4/sum_b n_b^4 of the area, each h^(d-1)/|n_a|.
+   A surface that is inclined crosses lines of nodes along several axes. The lines along the axis a count with
+   the share s_a = n_a^4/sum_b n_b^4 of the area, each h^(d-1)/|n_a|.
 ------------------------------------------------------------------------- */
 
 #include "mpm_heat_body.h"
@@ -65,15 +65,15 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using MathSpecial::square;
 
-static constexpr double LEAST =
-    0.01;    // least sum of weights of a line that has a surface, over that of a full line
-static constexpr double ENOUGH =
-    0.5;    // share of the volume of a node that has to conduct for its full weight
-// sums over points are not exactly integrals: a line counts as full from FULL on, with a transition from
-// NOT_FULL
+// least sum of weights of a line that has a surface, over that of a full line
+static constexpr double LEAST = 0.01;
+// share of the volume of a node that has to conduct for its full weight
+static constexpr double ENOUGH = 0.5;
+// sums over points are not exactly integrals: a line counts as full
+// from FULL on, with a transition from NOT_FULL
 static constexpr double FULL = 0.95, NOT_FULL = 0.8;
-// length of the mean of unit normals from which on a surface is no edge: that of two normals that differ
-// by 36 degrees
+// length of the mean of unit normals from which on a surface is no
+// edge: that of two normals that differ by 36 degrees
 static constexpr double STRAIGHT = 0.95;
 // gaps up to which all heat goes through, and from which on none does, in node spacings
 static constexpr double TOUCHES = 0.2, IS_APART = 0.4, MORE_WITH_LINEAR = 0.1;
@@ -218,7 +218,8 @@ bool MPMHeatBody::weigh_by_functions(int first, double at, double part, double i
 }
 
 /* ----------------------------------------------------------------------
-   Bernstein polynomials: cells have two node spacings, with nodes at their sides (even numbers) and in the middle
+   Bernstein polynomials: cells have two node spacings, with nodes at their sides (even numbers) and in the
+   middle
 ------------------------------------------------------------------------- */
 
 bool MPMHeatBody::spreads() const

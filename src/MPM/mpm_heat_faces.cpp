@@ -20,8 +20,9 @@
    at least half of the volume that it has where material fills the box, and in proportion to the volume below
    that.
 
-   Convection and radiation: the temperature at a face follows that outside with the rate r = R dP/dT of a line, with its
-   response R and the power P. As at other surfaces (mpm_heat_surface.cpp) this rate is limited to l: the line gets
+   Convection and radiation: the temperature at a face follows that outside with the rate r = R dP/dT of a
+   line, with its response R and the power P. As at other surfaces (mpm_heat_surface.cpp) this rate is limited
+   to l: the line gets
 
      P = F - a D/R,   a = r/l - 1,
 
@@ -66,17 +67,17 @@ using namespace MPM_NS;
 // least sum of weights by the surface, over the area
 static constexpr double THICK = 0.9;
 static constexpr double ENOUGH = 0.5;    // share of the volume of a node for its full weight
-static constexpr double LIGHT =
-    0.1;    // of a cell: nodes with less volume do not show how full a line is
+// volume of a node inside of the box, in cells, below which it does not show how full a line is
+static constexpr double LIGHT = 0.1;
 // fullness from which on material touches a face, and from which on all of it is at the face
 static constexpr double TOUCHES = 0.6, IS_AT_FACE = 0.75;
-// sums over points are not exactly integrals: a line counts as full from FULL on, with a transition from
-// NOT_FULL
+// sums over points are not exactly integrals: a line counts as full
+// from FULL on, with a transition from NOT_FULL
 static constexpr double FULL = 0.95, NOT_FULL = 0.8;
 // greatest rate of lines at edges, over that of conduction
 static constexpr double FIGHTS = 4.0;
-static constexpr double STIFFEST =
-    1.0e9;    // of the equations: stands for a prescribed temperature
+// stiffness of equations that stands for a prescribed temperature
+static constexpr double STIFFEST = 1.0e9;
 
 /* ---------------------------------------------------------------------- */
 

@@ -7,14 +7,14 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Surfaces are where a number at the nodes changes its sign between two nodes along an axis: the distance from a region,
-   or the depth in the body by the share of the volume of the node that it fills (of what is inside of the box), for free
-   surfaces. Lines of nodes through these places have the temperature T = sum_k w_k T_k of the surface, and get the heat
-   (mpm_heat_body.cpp).
+   Surfaces are where a number at the nodes changes its sign between two nodes along an axis: the distance
+   from a region, or, for free surfaces, the depth in the body by the share of the volume of a node (inside of
+   the box) that the body fills. Lines of nodes through these places have the temperature T = sum_k w_k T_k of
+   the surface, and get the heat (mpm_heat_body.cpp).
 
-   With the power P = f (T_out - T) of a line, f = area * coefficient, T would follow the temperature outside with the rate r =
-   f R/s, where R is its response to heat and s the share of the area that the line has. As in mpm_heat_contact.cpp,
-   this rate is limited to l: where r is larger,
+   With the power P = f (T_out - T) of a line, f = area * coefficient, T would follow the temperature outside
+   with the rate r = f R/s, where R is its response to heat and s the share of the area that the line has. As
+   in mpm_heat_contact.cpp, this rate is limited to l: where r is larger,
 
      P = (l/r) f (T_out - T) - (1 - l/r) s D/R,   D: rate of T by all other heat,
 
@@ -46,16 +46,14 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double FAR = 4.0;    // node spacings: larger distances from regions are not needed
-static constexpr double COVERED =
-    0.5;    // free surfaces this near to a region, in node spacings, are not free
+// free surfaces this near to a region, in node spacings, are not free
+static constexpr double COVERED = 0.5;
 static constexpr double ALL_ROOM = 0.999;
 static constexpr int INSIDE = 3;                // nodes inwards that show how full a body is
 static constexpr double LEAST_FILLED = 0.02;    // least fullness of a line with a surface
 static constexpr double LEAST_ROOM = 0.02;    // least room of a line of nodes at a face of the box
-static constexpr double
-    OPEN = 0.15,
-    HIDDEN =
-        0.4;    // shares of other bodies at a free surface up to which it is open, and from which on it is hidden
+// shares of other bodies at a free surface up to which it is open, and from which on it is hidden
+static constexpr double OPEN = 0.15, HIDDEN = 0.4;
 
 /* ---------------------------------------------------------------------- */
 
@@ -95,8 +93,7 @@ bool MPMHeatSurfaces::near_wall(Wall &wall, const int *b) const
 
 void MPMHeatSurfaces::extend_topology()
 {
-  // also with one rank, for lines through the surface of a region next to the last nodes that points
-  // reach
+  // also with one rank, for lines through the surface of a region next to the last nodes that points reach
   const bool all = has_free && comm->nprocs > 1;
   if (!all && walls.empty()) return;
   const auto &blocks = body.field.grid.blocks;

@@ -27,14 +27,14 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int LOOK_EVERY = 50;    // steps
-static constexpr double BEHIND =
-    0.3;    // node spacings behind the width of the functions at which material is looked for
-static constexpr double EMPTY =
-    0.2;    // greatest filled share of the volume of nodes at an empty place
+// node spacings behind the width of the functions at which material is looked for
+static constexpr double BEHIND = 0.3;
+// greatest filled share of the volume of nodes at an empty place
+static constexpr double EMPTY = 0.2;
 static constexpr double KNOWN = 0.5;         // least share of the nodes there that are known
 static constexpr double LEAST_ROOM = 0.1;    // least share of the nodes there that is in the box
-static constexpr double MUCH =
-    0.05;    // share of the area that is too thin: less would not change the sum by 3 %
+// share of the area that is too thin: less would not change the sum by 3 %
+static constexpr double MUCH = 0.05;
 
 /* ----------------------------------------------------------------------
    Is the place empty of material? 1: yes, 0: no, -1: unknown. Nothing is known where no points have been

@@ -32,35 +32,36 @@ using namespace MPM_NS;
 
 static constexpr double PROJECTED = 1.0e-12;    // relative change by one more action
 static constexpr int MOST_REPEATS = 200;
-static constexpr int MOST_TIED =
-    48;    // nodes in a group tied by lines of walls, up to which each has its own unit vector
-static constexpr int APART =
-    7;    // in larger groups, spacings between nodes that share a unit vector
+// nodes in a group tied by lines of walls, up to which each has its own unit vector
+static constexpr int MOST_TIED = 48;
+// in larger groups, spacings between nodes that share a unit vector
+static constexpr int APART = 7;
 static constexpr double ENOUGH = 0.9;    // share of the slope that may be left, with the other sign
 static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
 static constexpr double SYMMETRIC = 1.0e-3;         // of tangents, for conjugate gradients
 static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are not known better
 static constexpr int TURN = 1000;                   // iterations in which GMRES must gain something
-static constexpr int IN_A_PART =
-    15;    // Newton iterations in a part of a step that failed as a whole
-static constexpr int DO_WELL =
-    15;    // iterations up to which levels are kept for the next tangents
+// Newton iterations in a part of a step that failed as a whole
+static constexpr int IN_A_PART = 15;
+// iterations up to which levels are kept for the next tangents
+static constexpr int DO_WELL = 15;
 static constexpr int TOO_OLD = 300;    // iterations with old levels, after which new ones are tried
 static constexpr double SLIP = 1.0e-5;    // of friction, in node spacings
-static constexpr double SOFT = 0.1,
-                        HARDER = 0.1;    // the slip at first, and the factor by which it decreases
-static constexpr double NEARLY = 1.0e-3;    // residual over all forces at which it decreases
-static constexpr double MAY_GROW =
-    100.0;    // growth of the residual that is accepted where lines of nodes begin to stick or slip
-static constexpr double STALLS =
-    0.5;    // share of the residual left after an iteration that counts as slow
-static constexpr int MOST_SLOW = 2;       // of these, until bodies decide what touches and slides
+// the slip at first, and the factor by which it decreases
+static constexpr double SOFT = 0.1, HARDER = 0.1;
+static constexpr double NEARLY = 1.0e-3;    // residual over all forces at which the slip decreases
+// growth of the residual that is accepted where lines of nodes begin to stick or slip
+static constexpr double MAY_GROW = 100.0;
+// share of the residual left after an iteration that counts as slow
+static constexpr double STALLS = 0.5;
+// such iterations, until bodies decide what touches and slides
+static constexpr int MOST_SLOW = 2;
 static constexpr double AT_ONCE = 0.1;    // node spacings up to which walls move their nodes alone
 static constexpr int ROUNDS = 2;    // in which friction of walls that press on each other is found
 static constexpr double LOST = 1.0e12;    // growth over the first residual at which an attempt ends
-static constexpr double REACHED =
-    1.0e-9;    // in points: nodes with less reach count as without points
+// in points: nodes with less reach count as without points
+static constexpr double REACHED = 1.0e-9;
 // largest system, by dimension, that is factorized as a whole, which is faster than levels
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};
 // the same with averages of the pressure, for which levels need many iterations
@@ -391,8 +392,7 @@ void MPMImplicit::find_friction(const std::vector<double> &u)
     std::fill(friction.begin(), friction.end(), 0.0);
     for (auto *contact : contacts) {
       contact->take_forces(of_pushes);
-      // bodies that stick have no slip in u, so the slip of sliding ones has to be measured in the same
-      // way
+      // bodies that stick have no slip in u, so the slip of sliding ones has to be measured in the same way
       contact->add_friction(contact->is_regularised() ? slide_of(u) : u.data(), friction.data());
     }
     for (double &force : friction) force *= rub_share;
@@ -1105,8 +1105,8 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
   double size = 0.0, accuracy = options.least_accuracy, last = 0.0, stiffness = 0.0;
   const int before = now.iterations;
   now.residuals.clear();
-  // friction begins soft, so that what slips and what sticks changes little at a time, and walls do not
-  // tear what they drag
+  // friction begins soft, so that what slips and what sticks
+  // changes little at a time, and walls do not tear what they drag
   double softness = 0.0;
   if (std::any_of(contacts.begin(), contacts.end(), [](const MPMTrialContact *contact) {
         return contact->has_friction() && contact->is_regularised();
@@ -1133,8 +1133,7 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
         std::max({options.tolerance * size, options.absolute * lmp->force->ftm2v,
                   negligible_forces(u, stiffness), joint ? joint->negligible_forces() : 0.0});
     enough_force = enough;
-    // with a pressure, the larger one of the residuals of forces and volumes, relative to what may be
-    // left
+    // with a pressure, the larger one of the residuals of forces and volumes, relative to what may be left
     const double left = joint ? joint->excess() * enough : now.unbalanced;
     if (softness > 0.0 && !wall_moves && now.unbalanced <= std::max(enough, NEARLY * size)) {
       softness *= HARDER;
@@ -1212,9 +1211,8 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
       if (!multigrid && !tied) now.failure += " (use solver multigrid)";
       return now.iterations == before + 1 ? HOPELESS : FAILED;
     }
-    // the energy has no minimum along some direction, for example near an unstable state: the solution
-    // goes as far as it had one, and at least down the slope (T. Steihaug, SIAM J. Numer. Anal. 20
-    // (1983) 626)
+    // the energy has no minimum along some direction, for example near an unstable state: the solution goes as
+    // far as it had one, and at least down the slope (T. Steihaug, SIAM J. Numer. Anal. 20 (1983) 626)
 
     if (solved.outcome == SolveReport::INDEFINITE) {
       now.indefinite++;

@@ -27,8 +27,8 @@ void MPMImplicit::find_accelerations()
 {
   const int dim = width;
   const double *const of_point = lmp->atom->rmass;
-  // walls with contact hold by forces of the end of the step alone: until then, nodes have accelerations
-  // of the body there
+  // walls with contact hold by forces of the end of the step alone:
+  // until then, nodes have accelerations of the body there
   std::vector<double> borne;
   if (impacts) {
     std::vector<double> rest = acceleration;

@@ -104,8 +104,7 @@ void MPMImplicit::find_free_bodies()
   std::vector<int> body;
   const int nbodies = find_bodies(body), w = width, first = field.options.axisymmetric ? 1 : 0;
 
-  // sums for each body: products [w][w] of what walls take from unit motions; force; its size; place;
-  // nodes
+  // sums for each body: products [w][w] of what walls take from unit motions; force; its size; place; nodes
 
   const int NSUM = w * w + 2 * w + 2;
   std::vector<double> mine((std::size_t) nbodies * NSUM, 0.0), sums, taken[3];

@@ -55,13 +55,13 @@ static constexpr int MOST_INNER = 1000;    // iterations of it
 static constexpr int MOST_OUTER = 240;     // iterations for both together
 static constexpr double NEGLIGIBLE = 1.0e-3;    // share of all forces
 static constexpr int MOST_SHORTER = 5;          // halvings of a correction
-static constexpr double LARGER =
-    2.0;    // growth of the residual with a correction that is taken all the same
-static constexpr double GAINED =
-    0.1;    // share of the residual left by a solution that is used although it is not as accurate as wanted
+// growth of the residual with a correction that is taken all the same
+static constexpr double LARGER = 2.0;
+// share of the residual left by a solution that is used although it is not as accurate as wanted
+static constexpr double GAINED = 0.1;
 static constexpr double HELD = 1.0e-6;    // sum of squares that walls take of a unit motion
-static constexpr double SMALL =
-    1.0e-2;    // share of the tolerance, for pressures relative to stress
+// share of the tolerance, for pressures relative to stress
+static constexpr double SMALL = 1.0e-2;
 static constexpr double LEAST = 1.0e-15;               // of volumes: round-off
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};    // as in mpm_implicit.cpp
 

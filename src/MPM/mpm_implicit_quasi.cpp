@@ -298,8 +298,8 @@ bool MPMImplicit::go_on(std::vector<double> &u)
   double size;
   int made = 0, with_these = 0;
   now.residuals.clear();
-  // overall, a step costs least if factors are made again as soon as a step costs more than the mean of
-  // those before
+  // overall, a step costs least if factors are made again as soon
+  // as a step costs more than the mean of those before
   if (memory.factorized && memory.steps > 0 &&
       memory.last * memory.steps > memory.iterations + COST)
     memory.drop_factors();
