@@ -39,9 +39,10 @@ static constexpr int APART = 7;
 static constexpr double ENOUGH = 0.9;    // share of the slope that may be left, with the other sign
 static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
-static constexpr double SYMMETRIC = 1.0e-3;         // of tangents, for conjugate gradients
-static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are not known better
-static constexpr int TURN = 1000;                   // iterations in which GMRES must gain something
+static constexpr double SYMMETRIC =
+    1.0e-3;    // greatest asymmetry of tangents, for conjugate gradients
+static constexpr double ROUND_OFF = 2.0e-16;    // of strains, which limits the accuracy of forces
+static constexpr int TURN = 1000;               // iterations in which GMRES must gain something
 // Newton iterations in a part of a step that failed as a whole
 static constexpr int IN_A_PART = 15;
 // iterations up to which levels are kept for the next tangents
@@ -1511,7 +1512,7 @@ void MPMImplicit::account_loose(const std::vector<double> &u)
 void MPMImplicit::account()
 {
   const bool by_mean = options.moves_by_mean();
-  // of the forces of the end of the step
+  // share of the forces of the end of the step
   const double share = options.time == MPMImplicitOptions::NEWMARK ? options.gamma : late;
   const double unit = lmp->force->mvv2e;
   each_record([&](const Member &member, int64_t n, const double *record) {

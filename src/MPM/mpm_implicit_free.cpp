@@ -31,8 +31,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double HELD = 1.0e-12;      // mean square of what walls take from a motion
-static constexpr double CANCELS = 1.0e-6;    // sum of forces over that of their sizes
+static constexpr double HELD = 1.0e-12;    // mean square of what walls take from a motion
+static constexpr double CANCELS =
+    1.0e-6;    // sum of forces, over the sum of their sizes, that counts as zero
 
 namespace {
 

@@ -34,12 +34,12 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double SAME = 1.0e-10;         // difference of what walls leave free
-static constexpr double SYMMETRIC = 1.0e-3;     // of tangents
-static constexpr double ROUND_OFF = 2.0e-16;    // of strains: forces are not known better
+static constexpr double SYMMETRIC = 1.0e-3;     // greatest asymmetry of tangents
+static constexpr double ROUND_OFF = 2.0e-16;    // of strains, which limits the accuracy of forces
 static constexpr int COST = 20;                 // of making factors, in iterations
-static constexpr int MOST_FACTORS = 3;          // in a step
+static constexpr int MOST_FACTORS = 3;          // factorizations in a step
 static constexpr int MOST_WITH_FACTORS = 25;    // iterations in a step
-static constexpr std::size_t MOTIONS = 2;       // that are kept
+static constexpr std::size_t MOTIONS = 2;       // of former steps that are kept
 
 /** Can factors of tangents serve several steps of this run? */
 bool MPMImplicit::can_keep() const
