@@ -163,7 +163,7 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
   solver = std::make_unique<MPMImplicit>(lmp, fields, mine, kept);
 }
 
-/** Refuses what implicit steps of a field do not know. */
+/** Refuses what implicit steps of a field do not support. */
 void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
 {
   auto *const field = &of;
@@ -321,7 +321,7 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
   }
 }
 
-/** Can nodes that points barely reach have a stiffness of their own? */
+/** Can nodes that points barely reach get a stiffness of their own? */
 bool FixMPMImplicit::may_stabilize(const MPMField &of) const
 {
   return (time == STATIC || time == EULER) &&
@@ -329,7 +329,8 @@ bool FixMPMImplicit::may_stabilize(const MPMField &of) const
       !of.options.axisymmetric && of.elements.empty();
 }
 
-/** By default nodes get such a stiffness from the first step on that finds no balance without, also after a restart. */
+/** By default, nodes get such a stiffness from the first step on that finds no balance without it, also after
+ *  a restart. */
 void FixMPMImplicit::choose_stabilize(const MPMPlan &plan)
 {
   const auto &only = *fields[0];
@@ -374,7 +375,7 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 void FixMPMImplicit::setup(int)
 {
-  for (const auto *elements : fields[0]->elements)    // which know of their pressure now
+  for (const auto *elements : fields[0]->elements)    // elements know of their pressure now
     if (const char *const what = elements->beyond_trials())
       error->all(
           FLERR, Error::NOLASTLINE,
@@ -452,13 +453,15 @@ void FixMPMImplicit::step()
                    now.indefinite, list);
 }
 
-/** Statics: points have moved, and are at rest again. What they had, nodes got in step(), less what transfers lose. */
+/** Statics: puts points to rest after they have moved. In step(), nodes got what points had, less what
+ *  transfers lose. */
 void FixMPMImplicit::rest()
 {
   for (auto *field : fields) put_to_rest(*field, taken);
 }
 
-/** As steps begin: the one in which a body turns for the first time has no such error. Once. */
+/** Warns once of bodies that are turned. Called at the start of steps: the step in which a body turns for the
+ *  first time has no such error. */
 void FixMPMImplicit::tell_of_turns()
 {
   for (const auto *field : fields) {

@@ -47,38 +47,41 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace MPM_NS;
 
-// layers of faces in the air that have velocities of the water: those that a point which is just below the surface
-// reaches, also from where it is after half a step
+// layers of faces in the air with velocities of the water: those that a point just below the surface
+// reaches, also from its place after half a step
 static constexpr int AIR_LAYERS = 3;
-// what quadratic splines add to a velocity along itself, in parts of its second difference
+// what quadratic splines add to a velocity component along its own axis, over its second difference
 static constexpr double SMOOTHED = 0.125;
 // residuals that are as small as this share of speed/spacing are rounding
 static constexpr double ROUNDING = 1.0e-14;
-// relative change of the time step with which there are two solves: less is as small in the pressure
+// relative change of the time step from which on there are two
+// solves: a smaller one changes the pressure as little
 static constexpr double DIFFERENT_DT = 0.01;
 // relative difference of densities that counts as none
 static constexpr double SAME_DENSITY = 1.0e-9;
-// volume of a point over that of a cell which is too much
+// ratio of the volume of a point to that of a cell that is too large
 static constexpr double LARGEST_POINT = 1.01;
 // with surface tension, see MPMFlowPressure::nearest
 static constexpr double NEAREST_SURFACE = 1.0e-4;
-// the tolerance of points that spread, which is not seen but by other numbers of processes
+// tolerance of the spreading of points, which shows only with other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
-// share of what comes in that may have no room, by the tolerance of the pressure
+// share of the inflow that may have no room, because of the tolerance of the pressure
 static constexpr double NOT_IN = 0.05;
-// accelerations over that of the weight for which the first step of a fluid at rest is made: at the edges of a block of water
-// that is released the pressure makes such ones
+// accelerations over that by gravity that limit the first step of a fluid at rest: the pressure causes
+// them at the edges of a block of water that is released
 static constexpr double FIRST_FALL = 4.0;
-// share of FLIP by default in a flow with solids or bodies: apic alone smooths velocities at their surfaces in each step, which brakes
-// what sinks or sways by the number of steps
+// share of FLIP by default in a flow with solids or bodies: apic alone smooths velocities at their
+// surfaces in each step, which brakes sinking and swaying bodies in proportion to the number of steps
 static constexpr double FLIP_OF_BODIES = 0.98;
-// what is kept of what the lattice does not see of velocities, with transfer auto, where that is less than the first of these shares of h^2 d2v_c/dx_c^2
-// (root mean squares); nothing where it is more than the second one. Vortices, waves, and drops that swing, 16 cells or more in a wave, have 0.03 to 0.06;
-// what is left of flow in a fluid at rest, and what falls or splashes, has 0.2 to 3
+// transfer auto: share that is kept of the part of velocities that the lattice does not see, if this
+// part is below SMOOTH times h^2 d2v_c/dx_c^2 (root mean squares); nothing is kept above NOISY.
+// Vortices, waves, and oscillating drops with 16 cells or more in a wave have 0.03 to 0.06; remains of
+// flow in a fluid at rest, and fluid that falls or splashes, have 0.2 to 3
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
-// entries of the vector with gas; and those about parts of steps, at its end
+// entries of the vector with gas; entries about parts of steps, at its end
 static constexpr int GAS_VALUES = 5, PART_VALUES = 2;
-// passes that find the gradients of velocities that points begin with: a pass leaves up to 0.58 of what is missing
+// passes that fit the gradients of velocities with which points
+// begin: a pass leaves up to 0.58 of what is missing
 static constexpr int FITS = 30;
 
 /* ----------------------------------------------------------------------
@@ -518,7 +521,7 @@ void FixMPMIncompressible::setup_pre_neighbor()
   gone = 0.0;
 }
 
-/** Mass of points that have none yet; who else moves them. */
+/** Gives a mass to points that have none yet, and checks for other fixes that move points. */
 void FixMPMIncompressible::check_points()
 {
   bigint mine[3] = {0, 0, 0},
@@ -559,7 +562,8 @@ void FixMPMIncompressible::check_points()
   check_others();
 }
 
-/** Groups have the points that there were at the time of their command; one that is empty is no liquid. */
+/** Checks the groups of liquids. They have the points that there were at the time of their command; an empty
+ *  group is no liquid. */
 void FixMPMIncompressible::check_liquids()
 {
   std::vector<int> mine(liquids.size(), 0), all(liquids.size(), 0);
@@ -577,7 +581,7 @@ void FixMPMIncompressible::check_liquids()
   told_of_liquids = true;
 }
 
-/** Solids have laws, and perhaps other densities. */
+/** Checks solids, which have laws and perhaps other densities. */
 void FixMPMIncompressible::check_solids()
 {
   solids->check_points();
@@ -601,7 +605,7 @@ double FixMPMIncompressible::density_of(int i) const
   return of;
 }
 
-/** Densities of faces, by the mass and the volume that points give them. */
+/** Densities of faces, from the mass and the volume that points give them. */
 void FixMPMIncompressible::find_lightness(const MPMFlowPoints &points)
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
@@ -616,7 +620,8 @@ void FixMPMIncompressible::find_lightness(const MPMFlowPoints &points)
   pressure->lightness = &lightness;
 }
 
-/** What the volume of a pocket by the flow through its surface does not know of. */
+/** Refuses what the volume of a pocket, which follows from the flow through its surface, does not account
+ *  for. */
 void FixMPMIncompressible::check_gas() const
 {
   const char *const other = bodies     ? "bodies of fix mpm/rigid"
@@ -647,7 +652,7 @@ double FixMPMIncompressible::value_of_gas(int k) const
   return (k == 3 ? gas->volume() : gas->energy() / force->nktv2p);
 }
 
-/** Others in the same box that this flow would go through. */
+/** Checks for other fixes in the same box whose points this flow would go through. */
 void FixMPMIncompressible::check_others() const
 {
   for (const auto *other : modify->get_fix_by_style("^mpm/incompressible$"))
@@ -665,7 +670,7 @@ void FixMPMIncompressible::check_others() const
           "the other",
           id, style, other->id, other->style);
   told_of_bodies = true;
-  if (modify->get_fix_by_style("^mpm$").empty())    // which would tell
+  if (modify->get_fix_by_style("^mpm$").empty())    // fix mpm would warn of these itself
     warn_of_forgotten_points(lmp, style, "the flow goes through them");
 }
 
@@ -693,7 +698,7 @@ void FixMPMIncompressible::setup(int)
   forces_known = true;
 }
 
-/** Points that begin in a wall: at its surface they are put outside in the first step, farther in they are a mistake. */
+/** Refuses points that begin deep in a wall. Points near its surface are moved out of it in the first step. */
 void FixMPMIncompressible::check_depths()
 {
   bigint mine = 0, all;
@@ -706,7 +711,7 @@ void FixMPMIncompressible::check_depths()
                style, id, all);
 }
 
-/** What points fill. */
+/** Notes the volume that points fill. */
 void FixMPMIncompressible::note_filling()
 {
   last.wet = (double) pressure->nwet();
@@ -717,8 +722,8 @@ void FixMPMIncompressible::note_filling()
 }
 
 /* ----------------------------------------------------------------------
-   points that begin with a velocity have its gradient, too, or the lattice would get a mean over a cell. Those that go on
-   have what they had
+   Points that begin with a velocity get its gradient, too, because the lattice would otherwise get a mean
+   over a cell. Points that continue keep what they had.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::fit_gradients()
@@ -742,8 +747,8 @@ void FixMPMIncompressible::fit_gradients()
 }
 
 /* ----------------------------------------------------------------------
-   after exchange and borders: the order of points must not depend on what was before, so that a run that goes on from
-   a restart file sums in the same order
+   Called after exchange and borders. The order of points must not depend on an earlier order, so that a run
+   that continues from a restart file sums in the same order.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::pre_neighbor()
@@ -757,7 +762,8 @@ void FixMPMIncompressible::setup_pre_force(int vflag)
   pre_force(vflag);
 }
 
-/** LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include), see FixMPM::pre_force(). */
+/** LAMMPS has set to zero only the forces of atoms in the neighbor lists (neigh_modify include), see
+ *  FixMPM::pre_force(). */
 void FixMPMIncompressible::pre_force(int)
 {
   if (!neighbor->includegroup) return;
@@ -796,10 +802,11 @@ MPMFlowPoints FixMPMIncompressible::points_now(double dt) const
 }
 
 /* ----------------------------------------------------------------------
-   Forces act for the duration of this step, in two parts: 1/(1 + R) before points move, and R/(1 + R) in what comes once more.
-   What the motion in the step before has made of divergence, the pressure has to take in 1/(1 + R) of the duration of that
-   step. Where the two durations differ, there is one solve for the velocities, and one with forces of the duration before, of
-   which the pressure is, and, in proportion to the durations, what comes once more
+   Forces act for the duration of this step, in two parts: 1/(1 + R) before points move, and R/(1 + R) in what
+   comes once more. The pressure has to remove the divergence that the motion in the step before has made,
+   within 1/(1 + R) of the duration of that step. Where the two durations differ, there is one solve for the
+   velocities, and one with the forces of the former duration. The latter gives the pressure and, in
+   proportion to the durations, what comes once more.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::initial_integrate(int)
@@ -851,7 +858,7 @@ void FixMPMIncompressible::initial_integrate(int)
   check_speed();
   if (gas) gas->move(velocity.data(), dt);
   if (grains) grains->end(velocity);
-  if (grains || inflow) pressure->set_mobility(nullptr);    // points spread among grains, too
+  if (grains || inflow) pressure->set_mobility(nullptr);    // points also spread among grains
 
   if (sharp) find_paths();
   if (spread > 0.0) find_shift();
@@ -878,7 +885,8 @@ void FixMPMIncompressible::initial_integrate(int)
   note_filling();
 }
 
-/** Number of ranks whose cells are not those of their points, MPMFlowUpdate::squares of the last step, and the energy of spreading, of all ranks. */
+/** Sums over all ranks: number of ranks whose cells are not those of their points, MPMFlowUpdate::squares of
+ *  the last step, and the energy of spreading. */
 void FixMPMIncompressible::sum_last_step(bool valid, double *all) const
 {
   const double mine[4] = {valid ? 0.0 : 1.0, unseen[0], unseen[1], energy_of_spread};
@@ -888,15 +896,16 @@ void FixMPMIncompressible::sum_last_step(bool valid, double *all) const
 /* ----------------------------------------------------------------------
    Velocities at the end of a duration, from those at its start in star, and the pressure.
 
-   Where implicit viscosity does not converge, the duration is halved, as its equations have dt nu/h^2, and the rest is gone in
-   parts of this length, each from the velocities at the end of the one before. Points and the lattice stay as they are until
-   the last part is done, and move with its velocities. All other equations are those of any duration: what does not converge
-   there would not in parts, either. Potentials add up to those of the mean pressure
+   Where implicit viscosity does not converge, the duration is halved, because its equations contain dt
+   nu/h^2. The rest is done in parts of this length, each from the velocities at the end of the part before.
+   Points and the lattice stay as they are until the last part is done, and then move with its velocities. All
+   other equations are independent of the duration: if these do not converge, parts would not help. Potentials
+   add up to those of the mean pressure.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::find_flow(double duration)
 {
-  double done = 0.0, part = 1.0;    // sums of powers of 1/2, exact
+  double done = 0.0, part = 1.0;    // sums of powers of 1/2, which are exact
   last.parts = 0.0;
   while (done < 1.0) {
     if (stress) start_of_part = star;
@@ -927,7 +936,8 @@ void FixMPMIncompressible::find_flow(double duration)
   if (curved) find_tension(duration);
 }
 
-/** The same for a duration in one part; returns how the implicit viscosity went, without which velocities are of no use. */
+/** The same for a duration in one part. Returns the outcome of the implicit viscosity; if it has not
+ *  converged, the velocities are of no use. */
 SolveReport FixMPMIncompressible::find_part(double duration)
 {
   if (grains) before_forces = star;
@@ -983,7 +993,7 @@ SolveReport FixMPMIncompressible::find_part(double duration)
     of_stress = find_stress(duration, rounding);
     if (!of_stress.converged()) return of_stress;
   }
-  if (inflow) star.swap(without_hold);    // next to mouths, too, what is held does not fall
+  if (inflow) star.swap(without_hold);    // next to mouths, held velocities do not fall, either
   go_on_into_air();
   if (inflow) {
     inflow->hold(velocity, nullptr);
@@ -1002,8 +1012,8 @@ void FixMPMIncompressible::find_tension(double duration)
 }
 
 /* ----------------------------------------------------------------------
-   Viscous stresses, with what they add to the pressure, at the end of a step that so far has none. What a surface at any
-   place does is left to the pressure alone: a fluid at rest stays there
+   Viscous stresses, with what they add to the pressure, at the end of a step without them. The effect
+   of the place of a surface is left to the pressure alone, so that a fluid at rest stays at rest.
 ------------------------------------------------------------------------- */
 
 SolveReport FixMPMIncompressible::find_stress(double dt, double rounding)
@@ -1026,7 +1036,7 @@ SolveReport FixMPMIncompressible::find_stress(double dt, double rounding)
   return report;
 }
 
-/** Velocities of faces by the momentum of points, and shares that are filled, complete. */
+/** Velocities of faces from the momentum of points, and filled shares; both are complete. */
 void FixMPMIncompressible::find_velocities()
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
@@ -1044,7 +1054,7 @@ void FixMPMIncompressible::find_velocities()
   if (regions) regions->normalize(share);
 }
 
-/** What forces change, but for walls, which take their share. */
+/** Adds what forces change; walls take their share. */
 void FixMPMIncompressible::add_forces(double dt)
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
@@ -1061,7 +1071,7 @@ void FixMPMIncompressible::add_forces(double dt)
   cells.reflect_velocities(star.data());
 }
 
-/** In the first step of a run, as fix mpm/dt looks at all others. */
+/** Called in the first step of a run, as fix mpm/dt checks all others. */
 void FixMPMIncompressible::check_stiffness()
 {
   tagint tag;
@@ -1096,7 +1106,8 @@ void FixMPMIncompressible::add_viscosity(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   forces on walls, and pressures for points, so that these interpolate zero at the surface and what it is at walls
+   Forces on walls, and pressures for points, such that these interpolate zero at the surface and the pressure
+   of walls at walls.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::find_pressures(double pressure_to_psi)
@@ -1117,7 +1128,8 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
         [this](int64_t number) {
           return pressure->is_wet(number);
         },
-        [&](const MPMFlowLattice::Cell &cell, double *push) {    // by forces, at its faces
+        [&](const MPMFlowLattice::Cell &cell,
+            double *push) {    // change by forces, at the faces of the cell
           for (int c = 0; c < dim; c++) {
             double force_of_points = 0.0, mass = 0.0;
             for (const int64_t k : {(int64_t) cell.number, (int64_t) cell.near[2 * c + 1]}) {
@@ -1139,14 +1151,16 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
 }
 
 /* ----------------------------------------------------------------------
-   Faces in the air that points give momentum to keep it, with what the pressure changes at the water next to them: who is
-   about to fall into the water, or flies off, does not feel it before, and a drop that spins goes on with it
+   Faces in the air to which points give momentum keep it, together with what the pressure changes at the
+   water next to them. Points that are about to fall into the water, or fly off, do not get its velocity
+   before, and a drop that spins goes on spinning.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::go_on_into_air()
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
-  if (viscous)    // what viscosity changes goes on, too: else the layer of points at a surface would fall freely
+  // changes by viscosity go on into the air, too: otherwise the layer of points at a surface would fall freely
+  if (viscous)
     for (std::size_t k = 0; k < star.size(); k++) star[k] -= shift[k];
   for (std::size_t k = 0; k < velocity.size(); k++)
     if (known[k] > 0.0) velocity[k] -= star[k];
@@ -1174,9 +1188,10 @@ void FixMPMIncompressible::go_on_into_air()
 }
 
 /* ----------------------------------------------------------------------
-   Interpolation with quadratic splines adds h^2/8 of the second derivative along a component to it. That much less of the second
-   differences along all axes, of all components, leaves what is free of divergence free of it. Where a neighbor has no
-   velocity, far out in the air, there is no such difference
+   Interpolation with quadratic splines adds h^2/8 of its second derivative along its own axis to a component.
+   Here as much of the second differences along all axes is taken from all components, which keeps a field
+   without divergence free of divergence. Where a neighbor has no velocity, far out in the air, there is no
+   such difference.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::find_paths()
@@ -1201,7 +1216,7 @@ void FixMPMIncompressible::find_paths()
   cells.reflect_paths(paths.data());
 }
 
-/** Displacements by which points that have come too close spread again. */
+/** Finds displacements by which points that are too close spread again. */
 void FixMPMIncompressible::find_shift()
 {
   shift.resize(star.size());
@@ -1219,8 +1234,8 @@ void FixMPMIncompressible::find_shift()
   cells.reflect_velocities(shift.data(), false);
 }
 
-/** What comes in must have a way out, or a surface that rises: else the pressure has no solution, and what was found is that of
- *  less inflow. */
+/** Checks that what comes in has a way out, or a surface that rises: otherwise the pressure has no solution,
+ *  and the one found is that of less inflow. */
 void FixMPMIncompressible::check_inflow() const
 {
   double mine[2] = {0.0, 0.0}, all[2];
@@ -1242,7 +1257,8 @@ void FixMPMIncompressible::check_speed()
     most[0] = std::max(most[0], std::fabs(v));
   };
 
-  // next to a wall that moves its velocity is in between; the images beyond are twice as fast, but nothing moves with them
+  // the velocity of a moving wall is between those of faces next to it and of images beyond, which are
+  // twice as fast, but move nothing
 
   for (const auto &cell : cells.cells)
     for (int c = 0; c < dim; c++) look_at(velocity[(int64_t) cell.number * dim + c]);
@@ -1252,14 +1268,14 @@ void FixMPMIncompressible::check_speed()
         if (wall.sticks) look_at(wall.v[c]);
   MPI_Allreduce(most, all, 1, MPI_DOUBLE, MPI_MAX, world);
 
-  // with lists of grains alone LAMMPS does not see how far points go, which must not be further than a period
+  // with lists of grains alone, LAMMPS does not see how far points go, which must be less than a period
 
   gone += all[0] * update->dt;
   for (int d = 0; d < dim; d++)
     if (neighbor->includegroup && domain->periodicity[d] && gone > 0.25 * domain->prd[d])
       next_reneighbor = update->ntimestep;
   if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * h) return;
-  // what hits a wall flat is several times faster after the step: no limit by the speeds before can see that
+  // what hits a wall flat is several times faster after the step: no limit by earlier speeds can foresee that
 
   const bool is_set = !modify->get_fix_by_style("^mpm/dt$").empty();
   error->all(FLERR, Error::NOLASTLINE,
@@ -1304,8 +1320,8 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   if (tension > 0.0)
     dt = std::min(dt, MPMFlowTension::stable_dt(tension * acceleration_of_stress(), h));
 
-  // At the start of a run there are no forces. Those at the end of the last run count by the limit that they gave, also if
-  // it was the run that has written the restart file; at the start of the first one there is the weight
+  // At the start of a run there are no forces yet. Those at the end of the last run count by the limit that
+  // they gave, also if that run has written the restart file; at the start of the first run, gravity counts
 
   double g[3] = {0.0, 0.0, 0.0};
   if (!forces_known && limit_before > 0.0)
@@ -1330,7 +1346,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
       return 0.0;
     }
   }
-  double moving = regions ? regions->largest_speed() : 0.0;    // what is next to it moves with it
+  double moving = regions ? regions->largest_speed() : 0.0;    // points next to it move with it
   for (const auto &axis_walls : walls)
     for (const auto &face : axis_walls)
       if (face.sticks && viscosity > 0.0) moving = std::max(moving, MathExtra::len3(face.v));
@@ -1343,10 +1359,11 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
 }
 
 /* ----------------------------------------------------------------------
-   scalar: number of iterations; vector: these, what is left of the divergence (relative), largest |div v|, volume that
-   points fill, number of wet cells, kinetic energy, largest speed, force on the six walls, iterations of the implicit viscosity,
-   force on the regions, and energy that spreading has added; with gas: number of pockets that have some, highest and lowest pressure, volume, and energy;
-   parts of the last step, and halvings so far
+   scalar: number of iterations; vector: this number, what is left of the divergence (relative), largest |div
+   v|, volume that points fill, number of wet cells, kinetic energy, largest speed, force on the six walls,
+   iterations of the implicit viscosity, force on the regions, and energy that spreading has added; with gas:
+   number of pockets that have some, highest and lowest pressure, volume, and energy; parts of the last step,
+   and halvings so far
 ------------------------------------------------------------------------- */
 
 double FixMPMIncompressible::compute_scalar()
@@ -1386,7 +1403,8 @@ double FixMPMIncompressible::compute_vector(int k)
   return all;
 }
 
-/** The duration of the last step, and the limit of the one to come, with forces; what share is kept by; halvings; motion of regions; gas. */
+/** Writes the duration of the last step, the limit of the next one with its forces, the share that points
+ *  keep, halvings, motion of regions, and gas. */
 void FixMPMIncompressible::write_restart(FILE *fp)
 {
   tagint tag;

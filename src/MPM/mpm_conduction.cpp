@@ -12,68 +12,76 @@
      C_i = sum_p C_p N_ip,  T_i = sum_p C_p N_ip [T_p + g_p (x_i - x_p)]/C_i,
      C_i dT_i/dt = - sum_p V_p k_p (sum_j T_j grad N_jp) . grad N_ip + sum_p V_p s_p N_ip + faces,
 
-   with the gradient g_p of each point but for the transfers pic and xpic, and sources s_p. Then points get
+   with the gradient g_p of each point, except for the transfers pic and xpic, and sources s_p. Then points
+   get
 
      T_p = sum_i N_ip T_i                                                  (pic, affine)
      T_p = sum_i N_ip T_i + e (T_p - sum_i N_ip T_i of the start)          (relax)
      T_p = sum_i N_ip (T_i - T_i of the start + u_i)                       (xpic)
      g_p = D^-1 sum_i N_ip T_i (x_i - x_p),  D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T
 
-   with the terms u of MPMNodeScalar::add_terms() for the temperatures of nodes that would give points theirs (XPIC, C.C.
-   Hammerquist, J.A. Nairn, Comput. Methods Appl. Mech. Eng. 318 (2017) 724, of the momentum there). All of them keep sum_p C_p T_p: the
-   sum of weights is one, and sum_i N_ip (x_i - x_p) = 0.
+   with the terms u of MPMNodeScalar::add_terms() for the temperatures of nodes that would give points theirs
+   (XPIC, C.C. Hammerquist, J.A. Nairn, Comput. Methods Appl. Mech. Eng. 318 (2017) 724, where it is for
+   momentum). All transfers keep sum_p C_p T_p, because the sum of weights is one, and sum_i N_ip (x_i - x_p)
+   = 0.
 
-   Without g_p, nodes at faces, whose points are all on one side, would have the temperature of another place: an
-   error of first order in the heat that flows. With pic each step smoothes, as a conductivity of the order of h^2/dt
-   does, and with affine of the order of h^4 k^2/dt for a wave number k, which is too much in many short steps: a bar with 20 cells
-   that is heated from one end was 8 % too warm with steps of 1/100 of the explicit limit. What nodes do
-   not see of the temperatures of points goes, by conduction, in about the time h^2 rho c/k in which heat crosses a
-   cell: with relax a share 1 - e of it, e = exp(-R dt k/(rho c h^2)), goes in a step, so that what this smoothes does
-   not depend on the time step and is of second order. e is that of the material that conducts least: only if it is the
-   same for all points is heat kept. Nodes next to an interface have the temperature of points with much capacity, to
-   which others would be pulled, at a rate that is not that of their conduction: with 100 times the capacity on one side 30 % more heat
-   went through a layer of 3 cells. R is made smaller by the ratio of the capacities.
+   Without g_p, nodes at faces, whose points are all on one side, would have the temperature of another place:
+   an error of first order in the heat that flows. Each step smoothes temperatures, with pic as a conductivity
+   of the order of h^2/dt does, and with affine as one of the order of h^4 k^2/dt for a wave number k. This is
+   too much in many short steps: a bar with 20 cells that is heated from one end was 8 % too warm with steps
+   of 1/100 of the explicit limit. The part of the temperatures of points that nodes do not see decays by
+   conduction in about the time h^2 rho c/k in which heat crosses a cell. With relax, a share 1 - e of it goes
+   in a step, with e = exp(-R dt k/(rho c h^2)), so that this smoothing does not depend on the time step and
+   is of second order. e is that of the material that conducts least, because heat is kept only if e is the
+   same for all points. Nodes next to an interface have the temperature of the points with much capacity.
+   Others would be pulled to it at a rate that is not that of their conduction: with 100 times the capacity on
+   one side, 30 % more heat went through a layer of 3 cells. Therefore R is reduced by the ratio of the
+   capacities.
 
-   Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, that of capacities of
-   C_p diag(N); the greatest eigenvalue of the sum is not above the greatest of the parts,
+   Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, and the matrix of
+   capacities one of C_p diag(N). The greatest eigenvalue of the sum is not above the greatest one of the
+   parts,
 
      V_p k_p/C_p max_d sum_i (dN_ip/dx_d)^2/N_ip,
 
-   as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The
-   sum is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever
-   points are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. With a tensor k it is the greatest
-   eigenvalue that counts. A function of GIMP of a point with the half size s (in cells, at most 1/2) has at most 2/s + 1/(1 - s), and with
-   domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip = sum_c g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N
-   grad N^T/N <= sum_c g_c g_c^T/w_c.
+   as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The sum
+   is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever points
+   are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. With a tensor k it is the
+   greatest eigenvalue that counts. A function of GIMP of a point with the half size s (in cells, at most 1/2)
+   has at most 2/s + 1/(1 - s), and with domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip = sum_c
+   g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N grad N^T/N <= sum_c g_c g_c^T/w_c.
 
-   Linear functions and Bernstein polynomials have no such bound: a node that a point hardly reaches has next to no capacity, while the
-   gradient there is not small. For them the greatest rate is at most the greatest sum of absolute values of a row of C^-1 K, which is not
-   above
+   Linear functions and Bernstein polynomials have no such bound: a node that a point hardly reaches has next
+   to no capacity, while the gradient there is not small. For them the greatest rate is at most the greatest
+   sum of absolute values of a row of C^-1 K, which is not above
 
      sum_p V_p sum_d |dN_ip/dx_d| sum_e |k_de| (2/h)/C_i,
 
-   as sum_j |dN_jp/dx_d| is at most 2/h. Inside of a body this is 4 d k/(rho c h^2) in d dimensions. At its surface nodes with next to no
-   capacity have any rate, up to 1e16 times that. So that there is a limit, points that reach such a node conduct less, by the
-   factor that makes its sum four times the usual one: the matrix stays symmetric, and heat is kept.
+   as sum_j |dN_jp/dx_d| is at most 2/h. Inside of a body this is 4 d k/(rho c h^2) in d dimensions. At its
+   surface, nodes with next to no capacity can have any rate, up to 1e16 times as much. To limit it, points
+   that reach such a node conduct less, by the factor that makes the sum of the node four times the usual one:
+   the matrix stays symmetric, and heat is kept.
 
-   Bernstein polynomials: a point whose room is divided by a side of cells conducts with its parts in each cell (mpm_cut_rooms.cpp), by
-   which the sums are integrals wherever points are. Parts with a node whose rate is more than 1.4 times what is allowed conduct nothing, instead of
-   a little, which would be an insulating layer at a surface; these nodes, and those that have less than a quarter of their conduction left,
+   Bernstein polynomials: a point whose room is divided by a side of cells conducts with its parts in each
+   cell (mpm_cut_rooms.cpp), by which the sums are integrals wherever points are. Parts with a node whose rate
+   is more than 1.4 times what is allowed conduct nothing, because a little conduction would make an
+   insulating layer at a surface. These nodes, and those with less than a quarter of their conduction left,
    are idle: no heat comes in there, so that the body ends at the side of the cell.
 
-   Melting. Where the conductivity jumps at the temperature of melting, points that are partly molten have that temperature, and with it the
-   conductivity of one phase. If that is not the phase that grows, the front was up to 0.8 node spacings off. Heat flows along the gradient of the
-   integral of k over the temperature, of which the mean of k over the temperatures around a point is the difference over a
-   distance (V.R. Voller, C.R. Swaminathan, Numer. Heat Transfer B 24 (1993) 161, at faces of cells). Those are temperatures of the nodes, which
-   have no plateau at a front. With a quarter of a node spacing on either side it is the same for all tables of a jump; with twice that
-   fronts are off by 0.1 cells more.
+   Melting. Where the conductivity jumps at the temperature of melting, partly molten points have that
+   temperature, and with it the conductivity of one phase. If that was not the phase that grows, the front was
+   up to 0.8 node spacings off. Heat flows along the gradient of the integral of k over the temperature, and
+   the mean of k over the temperatures around a point is its difference over a distance (V.R. Voller, C.R.
+   Swaminathan, Numer. Heat Transfer B 24 (1993) 161, at faces of cells). The temperatures are those of the
+   nodes, which have no plateau at a front. With a quarter of a node spacing on either side, results are the
+   same for all tables of a jump; with twice that, fronts are off by 0.1 cells more.
 
-   Total frame. Nodes are places X of the reference configuration, where the conductivity is J F^-1 k F^-T and the volume
-   V_p/J: the same sums with V_p F^-1 k F^-T. Around an axis of symmetry points are rings with their whole volume and capacity; nothing flows
-   around the axis, so that there is no other term.
+   Total frame. Nodes are places X of the reference configuration, where the conductivity is J F^-1 k F^-T and
+   the volume V_p/J: the same sums with V_p F^-1 k F^-T. Around an axis of symmetry, points are rings with
+   their whole volume and capacity; nothing flows around the axis, so that there is no other term.
 
-   Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so that
-   it is that of the points to round-off.
+   Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so
+   that it is that of the points to round-off.
 ------------------------------------------------------------------------- */
 
 #include "mpm_conduction.h"
@@ -100,18 +108,18 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// of nodes that points hardly reach, in units of the bound of rates inside of a body
+// greatest rate of nodes that points barely reach, over the bound of rates inside of a body
 static constexpr double MOST_AT_LIGHT_NODES = 4.0;
-// of the means of a conductivity that jumps at melting, on either side, in node spacings
+// half of the range over which a conductivity that jumps at melting is averaged, in node spacings
 static constexpr double HALF_RANGE = 0.25;
-// Bernstein polynomials: where less than this is left of the conductivity, there is none
+// Bernstein polynomials: points with less than this share of their conductivity left do not conduct
 static constexpr double TOO_LITTLE = 0.7;
 // nodes that have less than this share of the conduction around them get no heat through surfaces
 static constexpr double LEAST_LEFT = 0.25;
-// of a side of cells, in cells: next to it a point is on either side
+// distance from a side of cells, in cells, within which a point is on both sides
 static constexpr double ON_SIDE = 1.0e-9;
-static constexpr double SAME =
-    2.0;    // ratio of conductivities for which means across interfaces matter little
+// ratio of conductivities for which means across interfaces matter little
+static constexpr double SAME = 2.0;
 
 /* ---------------------------------------------------------------------- */
 
@@ -173,8 +181,8 @@ bool MPMConduction::is_present(const Thermal &t) const
   return present[index_of(t.fix)];
 }
 
-/** Materials of which this rank has points: what depends on those of all ranks. Materials of other fields, and those that are
- *  not used at all, change nothing. Collective. */
+/** Updates what depends on the materials of which any rank has points; mine: those of this rank. Materials of
+ *  other fields, and unused ones, change nothing. Collective. */
 void MPMConduction::keep_present(const std::vector<signed char> &mine)
 {
   std::vector<signed char> all(mine.size());
@@ -279,8 +287,8 @@ double MPMConduction::volume_of(int i) const
   return atom->vfrac[i] * field.points->jacobian(i);
 }
 
-/** Materials of different conductivity in one field get means next to their interfaces, where these are numbers and
- *  the functions smooth. */
+/** Materials of different conductivity in one field get means next to their interfaces, if conductivities are
+ *  numbers and functions are smooth. */
 void MPMConduction::init_layers()
 {
   layers.reset();
@@ -373,7 +381,8 @@ const Conduction &MPMConduction::conduction_of(const Thermal &t, int i, Conducti
   return room = mean_conduction(*t.fix->material, t.fix->history[i], ranges[i].low, ranges[i].high);
 }
 
-/** Of the temperatures of nodes. Raises the rate of the fastest point by the means that follow. */
+/** Finds the ranges of the means of conductivities that jump, from the temperatures of nodes. Raises the rate
+ *  of the fastest point by these means. */
 void MPMConduction::find_ranges()
 {
   if (std::none_of(thermals.begin(), thermals.end(), [](const Thermal &t) {
@@ -407,7 +416,7 @@ void MPMConduction::find_ranges()
 }
 
 /* ----------------------------------------------------------------------
-   conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
+   Conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
 ------------------------------------------------------------------------- */
 
 void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
@@ -432,7 +441,8 @@ void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
   MathExtra::times3_transpose(half, inverse, k);
 }
 
-/** Not below the greatest eigenvalue of a symmetric matrix whose rows have these sums of absolute values. */
+/** Upper bound of the greatest eigenvalue of a symmetric matrix: the greatest sum of absolute values of a
+ *  row. */
 static double greatest_row(int dim, const double k[3][3])
 {
   double most = 0.0;
@@ -444,7 +454,7 @@ static double greatest_row(int dim, const double k[3][3])
   return most;
 }
 
-/** Bound of sum_i grad N grad N^T/N of a point [1/area]; 0: there is none. */
+/** Bound of sum_i grad N grad N^T/N of a point [1/area]; 0 if there is none. */
 double MPMConduction::steepness(int i) const
 {
   const double h = field.lattice.h;
@@ -464,7 +474,8 @@ double MPMConduction::steepness(int i) const
   return greatest_row(dim, sum);
 }
 
-/** Bound of the rate of a point with this volume; largest diffusivity for functions that points do not bound. */
+/** Bound of the rate of a point with this volume, or its largest diffusivity for functions that points do not
+ *  bound. */
 double MPMConduction::bound(const Thermal &t, int i, double volume) const
 {
   Conduction room;
@@ -501,7 +512,7 @@ void MPMConduction::extend_topology()
   }
 }
 
-/** Rows of the matrix of rates, for functions that points alone do not bound. */
+/** Adds the rows of the matrix of rates, for functions that points alone do not bound. */
 void MPMConduction::add_rows(Left left)
 {
   scalar.add_rows([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
@@ -527,7 +538,8 @@ void MPMConduction::add_rows(Left left)
   }
 }
 
-/** Nodes with a much greater rate than those inside of a body have next to no capacity: points conduct less there. */
+/** Reduces the conduction of points at nodes with a much greater rate than inside of a body, which have next
+ *  to no capacity. */
 double MPMConduction::bound_by_rows(double greatest_of_rank)
 {
   const double usual = 4.0 * field.lattice.dim / (field.lattice.h * field.lattice.h);
@@ -560,7 +572,7 @@ double MPMConduction::bound_by_rows(double greatest_of_rank)
   const int dim = field.lattice.dim;
   for (const auto &run : field.map->runs)
     for (int i = run.first; thermal(run.material) && i < run.last; i++) {
-      // on a side of cells round-off decides which of them the kernels take
+      // on a side of cells, round-off decides in which of them the kernels see the point
       const double *const place = field.frame->places()[i];
       bool on_side[3] = {false, false, false};
       for (int d = 0; d < dim; d++) {
@@ -603,8 +615,8 @@ const std::vector<double> &MPMConduction::face_capacity()
   return capacity_at_faces;
 }
 
-/** Calls loop(plain) with what is known as a constant: loops over points then have neither branches nor calls for what all of
- *  them have alike. */
+/** Calls loop(plain) with plain as a constant: loops over points then have neither branches nor calls for
+ *  what is the same for all points. */
 template <class Loop> static void if_plain(bool plain, const Loop &loop)
 {
   if (plain)
@@ -613,7 +625,7 @@ template <class Loop> static void if_plain(bool plain, const Loop &loop)
     loop(std::false_type());
 }
 
-/** The first DIM reals of n rows of four. */
+/** Copies the first DIM reals of n rows of four. */
 template <int DIM> static void copy_rows(int n, const double *from, double *to)
 {
   for (int p = 0; p < n; p++)
@@ -639,8 +651,9 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
   return most_by_rows;
 }
 
-/** Where material ends at faces. A last cell with a single layer of points conducts along one combination of its nodes alone, that of the
- *  functions at the end of the layer: heat with other weights, as at a face some way off, would stay in these nodes. */
+/** Finds where material ends at faces. A last cell with a single layer of points conducts only along one
+ *  combination of its nodes, that of the functions at the end of the layer. Heat with other weights, as at a
+ *  face some way off, would stay in these nodes. */
 void MPMConduction::find_ends()
 {
   static constexpr double REACH = 5.0;    // node spacings: the cell of a face and the next one
@@ -741,8 +754,8 @@ double MPMConduction::end_nodes()
   return simple ? fastest_point * steepest : fastest_point;
 }
 
-/** XPIC: the place of the temperatures before gets by how much these are above those of the series, so that points get the new
- *  temperature less this. */
+/** XPIC: before becomes the difference of the temperatures from those of the series, so that points get the
+ *  new temperature less this difference. */
 void MPMConduction::find_unseen()
 {
   std::vector<double> &unseen = scalar.before;
@@ -760,7 +773,7 @@ void MPMConduction::find_unseen()
 
 /* ---------------------------------------------------------------------- */
 
-/** Are fluxes along gradients, with a number for each material? */
+/** Are fluxes along gradients, with one number for each material? */
 bool MPMConduction::is_plain() const
 {
   return !total && !layers && shares.empty() &&
@@ -769,7 +782,7 @@ bool MPMConduction::is_plain() const
       });
 }
 
-/** Gradients of n points become fluxes times volumes, and values 0. */
+/** Turns gradients of n points into fluxes times volumes, and values into 0. */
 void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q,
                             Left left) const
 {
@@ -799,7 +812,7 @@ void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::R
   }
 }
 
-/** Factors of the gradients of n points. */
+/** Factors that turn gradients of n points into fluxes times volumes. */
 void MPMConduction::conduct_plainly(const Thermal &t, int first, int n, double *factors) const
 {
   const double *const V = volumes.data() + first;
@@ -824,7 +837,7 @@ void MPMConduction::find_changes()
       });
 }
 
-/** What points whose rooms are in several cells conduct there. */
+/** Adds the conduction of points whose rooms are in several cells. */
 void MPMConduction::conduct_parts()
 {
   for (const auto &part : cuts.parts) {
@@ -836,7 +849,7 @@ void MPMConduction::conduct_parts()
   }
 }
 
-/** Points that see a node from several corners of their domain have it once. */
+/** Visits the terms of points. A node that a point sees from several corners of its domain counts once. */
 void MPMConduction::each_term(const MPMDiffusion::Term &use) const
 {
   const MPMStencil stencil(field);
@@ -993,7 +1006,8 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 
 /* ---------------------------------------------------------------------- */
 
-/** Of all conductivities, also those that points have at present by their temperature or a random field. */
+/** Greatest of all conductivities, including those that points have at present by their temperature or a
+ *  random field. */
 double MPMConduction::greatest_possible() const
 {
   if (std::none_of(thermals.begin(), thermals.end(), [this](const Thermal &t) {
@@ -1009,8 +1023,9 @@ double MPMConduction::greatest_possible() const
   return all;
 }
 
-/** Domains have the bound of the last step, and before the first one what they have inside of a body that is not deformed.
- *  Functions that points alone do not bound have that of light nodes, which are there as soon as a point comes to another cell. */
+/** Points with domains have the bound of the last step and, before the first step, that inside of an
+ *  undeformed body. Functions that points alone do not bound have the rate of light nodes, which appear as
+ *  soon as a point comes to another cell. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
   if (!active) return 0.0;
@@ -1027,7 +1042,8 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
     double here = 0.0;
     if (bounded) {
       here = bound(*t, i, volume_of(i));
-      // of interfaces what is possible, and not what is there at present: the same after a restart
+      // at interfaces what is possible counts, not what is there at
+      // present, so that it is the same after a restart
       if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
     } else if (!field.domains || conducted == 0.0) {
       double k[3][3], x[24], least = 1.0;

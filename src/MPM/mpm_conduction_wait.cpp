@@ -9,31 +9,34 @@
 /* ----------------------------------------------------------------------
    Conduction in one of several steps of the motion: keyword every.
 
-   With auto, conduction waits for another step while there are at most MOST_STEPS, and the time t since the last conduction
-   fulfills, with what was known at that,
+   With auto, conduction waits for another step while there are at most MOST_STEPS, and the time t since the
+   last conduction satisfies, with what was known at that time,
 
      t <= SHARE t_1                    with the explicit limit t_1 of conduction within bodies
      t |v| <= WAY h                    for all points: bodies move and strain little on the lattice
      t |dT/dt| <= LUMP (Tmax - Tmin)   for all points, dT/dt by the last conduction: temperatures, and with them thermal
                                        stresses, do not change in large lumps
 
-   The first one makes the error of Euler's method in time less than that of the lattice in space: for a wave number k
-   they are t k^2 K/(2 rho c) < SHARE h^2 k^2/6 of the rate, which is too fast by that, and about h^2 k^2/12, by which the lattice is too
-   slow. Where exchange through a surface or a contact is faster than conduction
-   across a cell it follows with that, as in long steps (MPMHeatFaces::limit()).
+   The first condition makes the error of Euler's method in time smaller than that of the lattice in space.
+   For a wave number k, Euler's method is too fast by the share t k^2 K/(2 rho c) < SHARE h^2 k^2/6 of the
+   rate, and the lattice is too slow by about h^2 k^2/12. Where exchange through a surface or a contact is
+   faster than conduction across a cell, it follows with the rate of conduction, as in long steps
+   (MPMHeatFaces::limit()).
 
-   What varies from step to step is met in each of them: variables, and regions that move. So is all that is implicit, and heat that others give
-   in each step.
+   Conduction is in each step if something varies from step to step, such as variables and regions that move,
+   if anything is implicit, or if others give heat in each step.
 
-   The sums of ranks differ by round-off, which must not make another number of steps: times that are equal on paper are told
-   apart by NEARLY.
+   Sums of ranks differ by round-off, which must not change the number of steps: NEARLY is the tolerance for
+   times that are equal in exact arithmetic.
 
-   Heat that friction gives to nodes in a step without conduction goes to points at once, as nodes are others in the next step:
+   Heat that friction gives to nodes in a step without conduction goes to points at once, because nodes do not
+   outlive the step:
 
      Q_p = sum_i Q_i m_p N_ip/m_i,
 
-   of which the sum over points is sum_i Q_i. With one capacity for each mass this is the change of the temperature of nodes, Q_i/C_i,
-   at the point, as after conduction. Only points next to nodes that got heat are visited.
+   of which the sum over points is sum_i Q_i. With one capacity for each mass this is the change of the
+   temperature of nodes, Q_i/C_i, at the point, as after conduction. Only points next to nodes that got heat
+   are visited.
 ------------------------------------------------------------------------- */
 
 #include "atom.h"
@@ -60,11 +63,11 @@ static constexpr double SHARE = 0.3;
 static constexpr double WAY = 0.1;
 static constexpr double LUMP = 0.02;
 static constexpr double NEARLY = 1.0 + 1.0e-6;
-// of the greatest temperature: differences that are none
+// differences that are below this share of the greatest temperature count as none
 static constexpr double ROUND_OFF = 1.0e-9;
 static constexpr double BIG = std::numeric_limits<double>::max();
 
-/** One step of fix mpm more; true when it is not yet time for the conduction. Collective. */
+/** Counts one more step of fix mpm; true while it is not yet time for the conduction. Collective. */
 bool FixMPMHeat::wait()
 {
   const double dt = fields[0]->field.step_dt();
@@ -86,7 +89,7 @@ bool FixMPMHeat::wait()
   return true;
 }
 
-/** Start of a run: is there what conduction cannot wait for, with every auto? */
+/** For the start of a run with every auto: is there anything for which conduction cannot wait? */
 bool FixMPMHeat::needs_each_step() const
 {
   const bool moves = std::any_of(surfaces.begin(), surfaces.end(), [this](const auto &s) {
@@ -98,7 +101,8 @@ bool FixMPMHeat::needs_each_step() const
       !find_fixes<FixMPMImplicit>(lmp).empty();
 }
 
-/** After a conduction: for how long may the next one wait? 0: it must be in the next step. Collective. */
+/** Called after a conduction: time for which the next one may wait. 0: it must be in the next step.
+ *  Collective. */
 double FixMPMHeat::longest_wait() const
 {
   if (each_step) return 0.0;
@@ -125,7 +129,7 @@ double FixMPMHeat::longest_wait() const
 }
 
 /* ----------------------------------------------------------------------
-   heat of friction in a step that waits
+   Heat of friction in a step that waits
 ------------------------------------------------------------------------- */
 
 double MPMConduction::keep_given()
@@ -172,7 +176,7 @@ double MPMConduction::keep_given()
 }
 
 /* ----------------------------------------------------------------------
-   what tells for how long conduction may wait
+   What determines for how long conduction may wait
 ------------------------------------------------------------------------- */
 
 void MPMConduction::add_motion(Motion &motion) const

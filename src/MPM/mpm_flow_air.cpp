@@ -11,8 +11,8 @@
 using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
-   both in one message, [cell][velocity, known]; a layer adds to what is not known yet, which are few, once all of it is
-   found
+   Velocities and flags go in one message, [cell][velocity, known]. A layer is added to the faces that are
+   still unknown, which are few, once all of it is found.
 ------------------------------------------------------------------------- */
 
 void MPMFlowAir::extend(int layers, std::vector<double> &velocity, std::vector<double> &known)
@@ -36,7 +36,8 @@ void MPMFlowAir::extend(int layers, std::vector<double> &velocity, std::vector<d
       const auto &cell = cells.cells[face.cell];
       double sum = 0.0, n = 0.0;
       for (int s = 0; s < 2 * dim; s++) {
-        if (cell.walls >> s & 1) continue;    // nothing beyond, and not the face in the wall itself
+        if (cell.walls >> s & 1)
+          continue;    // nothing is beyond, and the face in the wall itself does not count
         const double *const other = &all[(int64_t) cell.near[s] * width + face.axis];
         sum += other[dim] * other[0];
         n += other[dim];

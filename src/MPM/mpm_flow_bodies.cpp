@@ -71,7 +71,7 @@ void MPMFlowBodies::begin(double duration, const double *gravity, const MPMFlowP
   }
 }
 
-/** Impulse on a body by potentials value(row), over the density; the same on all ranks. */
+/** Impulse on a body of the potentials value(row), over the density; the same on all ranks. */
 template <class Value>
 MPMFlowBodies::Six MPMFlowBodies::sum(const Body &body, const Value &value) const
 {
@@ -89,7 +89,7 @@ MPMFlowBodies::Six MPMFlowBodies::sum(const Body &body, const Value &value) cons
   return all;
 }
 
-/** An impulse, over the density, changes the velocities of a body, and walls have them. */
+/** Changes the velocities of a body by an impulse over the density, and gives them to its walls. */
 void MPMFlowBodies::push(Body &body, const Six &impulse) const
 {
   for (int i = 0; i < 6; i++) body.impulse[i] += density * impulse[i];

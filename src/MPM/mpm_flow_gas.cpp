@@ -18,11 +18,11 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// share of what the volume differs from that which points leave, by which it changes in a step
+// share of its difference from the volume that points leave free by which a volume changes in a step
 static constexpr double FOLLOWS = 0.02;
-// least volume of a pocket, in cells; and in a step, over that before it
+// least volume of a pocket, in cells; least volume after a step, over that before it
 static constexpr double LEAST_VOLUME = 0.1, LEAST_CHANGE = 0.2;
-// cells along each axis of a pocket that takes air from outside with it
+// cells along each axis of a pocket that takes air from outside with it when it closes
 static constexpr int LEAST_SIZE = 2;
 
 MPMFlowGas::MPMFlowGas(LAMMPS *lmp, const MPMFlowLattice &cells, const MPMFlowPressure &water,
@@ -43,7 +43,7 @@ double MPMFlowGas::stiffness(int pocket) const
   return of.amount > 0.0 ? law.gamma * pressure(of) / of.volume : 0.0;
 }
 
-/** Volumes that points leave: of dry cells, and of wet ones next to these. */
+/** Volumes that points leave free: of dry cells, and of wet ones next to these. */
 void MPMFlowGas::find_left(const std::vector<double> &share)
 {
   const int n = pockets.n(), naround = cells.lattice.dim == 2 ? 9 : 27;
@@ -76,7 +76,7 @@ void MPMFlowGas::find_left(const std::vector<double> &share)
     left[k] = cells.lattice.cell_volume() * std::max(LEAST_VOLUME, left[k] + pockets.room_of(k));
 }
 
-/** Rates by which volumes grow with velocities of faces. */
+/** Rates at which volumes grow with velocities of faces. */
 std::vector<double> MPMFlowGas::growth(const double *velocity)
 {
   const int n = pockets.n();
@@ -110,7 +110,7 @@ void MPMFlowGas::find(const std::vector<double> &share, const double *velocity)
       states[k].volume = std::max(least, states[k].volume + FOLLOWS * (left[k] - states[k].volume));
 }
 
-/** All pockets that are not open have gas of the pressure p. */
+/** Gives gas of the pressure p to all pockets that are not open. */
 void MPMFlowGas::begin(const std::vector<double> &rates)
 {
   states.assign(pockets.n(), State());
@@ -123,8 +123,8 @@ void MPMFlowGas::begin(const std::vector<double> &rates)
 }
 
 /* ----------------------------------------------------------------------
-   Gas of pockets that were goes to those that are. Air of outside that is closed in comes to have the pressure that it had; what
-   opens in the fluid has no gas, and the pressure outside
+   Hands the gas of the former pockets to the present ones. Outside air that is closed in keeps its pressure.
+   A pocket that opens within the fluid has no gas, and the pressure outside.
 ------------------------------------------------------------------------- */
 
 void MPMFlowGas::hand_on(const std::vector<double> &rates)

@@ -34,7 +34,7 @@ void MPMFlowGasRows::begin(double of_step, double pressure_to_psi,
   fill();
 }
 
-/** Pressures of pockets to their faces. */
+/** Copies pressures of pockets to their faces. */
 void MPMFlowGasRows::fill()
 {
   const int dim = cells.lattice.dim;
@@ -88,7 +88,7 @@ void MPMFlowGasRows::arrange(const MPMFlowRows &rows)
     places.push_back({place_of[entry.wet], entry.pocket, entry.weight});
 }
 
-/** s.x of pockets. */
+/** Products s.x of pockets. */
 const double *MPMFlowGasRows::sum(const double *x)
 {
   const int n = gas.n();
@@ -120,7 +120,7 @@ double MPMFlowGasRows::at_wall(int axis, int side) const
   return sum * std::pow(cells.lattice.h, cells.lattice.dim - 1);
 }
 
-/** All of the surface of a pocket is zero as a vector: a wall has what water and the box have not. */
+/** The surface of a pocket is zero as a vector sum: a region has the part that water and box do not have. */
 void MPMFlowGasRows::add_to_region(double *force) const
 {
   const int dim = cells.lattice.dim;

@@ -23,13 +23,13 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// filled share of a face from which on it has its full weight
+// filled share of a face from which on the face has its full weight
 static constexpr double HALF = 0.5;
 // sum of weights below which a grain is in the air
 static constexpr double NOTHING = 1.0e-10;
-// splines that volumes of grains are mapped with
+// order of the splines by which volumes of grains are mapped
 static constexpr int ORDER = 2;
-// relative change of the slip for the slope of the drag
+// relative change of the slip in finding the slope of the drag
 static constexpr double CHANGE = 1.0e-4;
 
 MPMFlowGrains::MPMFlowGrains(LAMMPS *lmp, MPMFlowLattice &cells, const std::string &flow,
@@ -43,7 +43,7 @@ MPMFlowGrains::MPMFlowGrains(LAMMPS *lmp, MPMFlowLattice &cells, const std::stri
   }
 }
 
-/** In the order of tags, so that sums do not depend on what was before. */
+/** Lists grains in the order of tags, so that sums do not depend on the order of atoms. */
 void MPMFlowGrains::list()
 {
   std::vector<std::pair<tagint, std::pair<int, int>>> all;
@@ -59,7 +59,7 @@ void MPMFlowGrains::list()
   }
 }
 
-/** Factors of the weights of faces, also of images beyond walls, which are those of the faces within. */
+/** Factors of the weights of faces. Images beyond walls have those of the faces inside. */
 void MPMFlowGrains::find_filled(const std::vector<double> &of_points)
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
@@ -74,7 +74,7 @@ void MPMFlowGrains::find_filled(const std::vector<double> &of_points)
     if (filled[k] == 0.0) filled[k] = std::fabs(images[k]);
 }
 
-/** Weights of a grain; false: there is no fluid around it. */
+/** Finds the weights of a grain; false if there is no fluid around it. */
 template <int dim> bool MPMFlowGrains::find(Grain &g, const std::vector<double> &share) const
 {
   double t[3];
@@ -108,7 +108,7 @@ void MPMFlowGrains::interpolate(const Grain &g, const double *values, double *v)
 }
 
 namespace {
-/** Quadratic splines about the middles of cells, which reach first, first + 1, and first + 2. */
+/** Quadratic splines about the middles of cells, of the cells first, first + 1, and first + 2. */
 template <int dim> struct Splines {
   int first[3];
   double share[3][3], r[3];    // r: from the middle of the first cell, in spacings
@@ -118,7 +118,7 @@ template <int dim> struct Splines {
   {
     for (int d = 0; d < dim; d++) {
       const int up = w.f[d] < 0.5 ? 0 : 1;
-      const double x = w.f[d] - up;    // from the nearest one
+      const double x = w.f[d] - up;    // from the nearest cell
       first[d] = w.base[d] + up - 1;
       r[d] = x + 1.0;
       share[d][0] = 0.5 * (0.5 - x) * (0.5 - x);
@@ -150,7 +150,7 @@ template <int dim> void MPMFlowGrains::add_volume(const Grain &g)
   });
 }
 
-/** moment: sum N r of this, in spacings. */
+/** Share of solid around a grain. moment: sum N r of the same, in spacings. */
 template <int dim> double MPMFlowGrains::share_around(const Grain &g, double *moment) const
 {
   const Splines<dim> splines(cells, g.w, g.slot);
@@ -165,8 +165,8 @@ template <int dim> double MPMFlowGrains::share_around(const Grain &g, double *mo
 }
 
 /* ----------------------------------------------------------------------
-   F = K w + M [(U' - U)/dt - g] with w = U' - v, v = v* + dt F/m. K w is linear about the slip that is left when U' = U, by its slope, so that
-   laws that grow with the square of the slip do not swing
+   F = K w + M [(U' - U)/dt - g] with w = U' - v, v = v* + dt F/m. K w is linearized about the slip that is
+   left when U' = U, so that laws that grow with the square of the slip do not oscillate.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowGrains::find_force(Grain &g)
@@ -198,8 +198,9 @@ template <int dim> void MPMFlowGrains::find_force(Grain &g)
         held * (stiff * (g.before[d] - v[d]) - steeper * left * slip[d] - g.displaced * gravity[d]);
   g.rate = held * (stiff + g.displaced / duration);
 
-  // What a grain displaces has mass and weight in the fluid of the lattice. Where it is not to have these, it gets back what it does not
-  // need of both: the force of the pressure around a grain, which is what moves and bears the fluid in its place
+  // The fluid that a grain displaces has mass and weight on the lattice. If it is not to have these, it
+  // gets back the parts of both that it does not need: the force of the pressure around a grain, which
+  // moves and bears the fluid in its place
 
   const double without = fix.displaces() ? g.displaced : 0.0;
   const int width = 3 * dim + 1;
@@ -293,7 +294,8 @@ void MPMFlowGrains::end(const std::vector<double> &velocity)
 }
 
 /* ----------------------------------------------------------------------
-   The force on the faces next to a wall bends the pressure, of which the half of a cell at the wall has none
+   The force on the faces next to a wall bends the pressure, but the half of a cell at the wall has no such
+   force.
 ------------------------------------------------------------------------- */
 
 double MPMFlowGrains::at_wall(int axis, int side, const std::vector<double> &before,

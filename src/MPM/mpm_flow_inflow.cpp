@@ -24,14 +24,16 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// ends of mouths that are that close to a face, in spacings, are there
+// ends of mouths this close to a face, in spacings, are at the face
 static constexpr double AT_FACE = 1.0e-6;
-// component of the direction of a flow along an axis of the lattice
+// least component of the direction of a flow that counts as along an axis of the lattice
 static constexpr double ALONG = 1.0 - 1.0e-9;
 
-// difference of shares of faces, and of squares of distances in spacings, that are alike; relative difference of velocities in mouths that is small
+// differences of shares of faces, and of squares of distances in spacings, that count as none; relative
+// difference of velocities in mouths that is small
 static constexpr double ALIKE = 1.0e-6, LIKE_POINTS = 0.05;
-// least open part of a face over the share of a section in it: that of a corner that columns of points just fit in
+// least open part of a face over the share of a section in it: that
+// of a corner into which columns of points just fit
 static constexpr double LEAST_OPEN = 0.25;
 
 MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, const Fix &flow) :
@@ -45,7 +47,8 @@ MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, const Fix
   }
 }
 
-/** Faces across a mouth, and the share of each that is in its section, by the columns of its points. */
+/** Finds the faces across a mouth, and the share of each that is in its section, from the columns of its
+ *  points. */
 void MPMFlowInflow::find_section(Mouth &one) const
 {
   const int dim = cells.lattice.dim;
@@ -64,7 +67,7 @@ void MPMFlowInflow::find_section(Mouth &one) const
                half = 0.5 * mouth.length / h;
   one.first = (int) std::ceil(middle - half - AT_FACE);
   one.last = (int) std::floor(middle + half + AT_FACE);
-  if (!cells.lattice.periodic[one.axis]) {    // walls hold themselves
+  if (!cells.lattice.periodic[one.axis]) {    // walls hold their own faces
     one.first = std::max(one.first, 1);
     one.last = std::min(one.last, cells.lattice.ncell[one.axis] - 1);
   }
@@ -89,8 +92,9 @@ void MPMFlowInflow::find_section(Mouth &one) const
     one.section.push_back({{index[0], index[1]}, area / face});
 }
 
-/** As a section of whole cells, those of which it has most, as many as its area tells, with the same flow. What is alike by symmetry comes or goes together, if the
- *  velocity then is about that of the points. */
+/** Replaces the section by whole cells with the same flow: the cells of which it has most, as many as its
+ *  area amounts to. Cells that are alike by symmetry are taken or left out together, if the velocity is then
+ *  about that of the points. */
 void MPMFlowInflow::round_off(Mouth &one) const
 {
   auto &section = one.section;
@@ -109,7 +113,7 @@ void MPMFlowInflow::round_off(Mouth &one) const
         }
         return sum;
       };
-  std::vector<std::array<double, 3>> order;    // what is less comes first
+  std::vector<std::array<double, 3>> order;    // largest shares first, then the nearest ones
   for (std::size_t k = 0; k < section.size(); k++)
     order.push_back(
         {-std::round(section[k].share / ALIKE), std::round(away(section[k]) / ALIKE), (double) k});
@@ -128,7 +132,8 @@ void MPMFlowInflow::round_off(Mouth &one) const
   section.swap(whole);
 }
 
-/** What flows through a face that a region cuts is its velocity times the share that is open, which has all of the section. */
+/** The flow through a face that a region cuts is its velocity times its open share. This part gets the flow
+ *  of all of the section. */
 void MPMFlowInflow::find(const MPMFlowRegions *regions)
 {
   const int dim = cells.lattice.dim;
@@ -159,7 +164,7 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
         source[number] += part.share * std::fabs(v) / h;
       });
       const int before =
-          one.side ? 1 : 0;    // cells from the upstream one to that before the last face
+          one.side ? 1 : 0;    // cells from the upstream one to the one before the last face
       for (int at = one.first - before; clamps && at <= one.last - before; at++)
         clamp(one, at, part);
     }
@@ -167,7 +172,7 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
   found = true;
 }
 
-/** All faces of a cell along a mouth. */
+/** Holds all faces of a cell that are along a mouth. */
 void MPMFlowInflow::clamp(const Mouth &mouth, int at, const Section &part)
 {
   const int dim = cells.lattice.dim;
@@ -181,7 +186,7 @@ void MPMFlowInflow::clamp(const Mouth &mouth, int at, const Section &part)
       if (cells.lattice.periodic[d])
         next[d] = cells.lattice.wrap(d, next[d]);
       else if (next[d] == cells.lattice.ncell[d])
-        continue;    // a wall
+        continue;    // this face is a wall
       const int64_t number = cells.grid.locate(next);
       if (number >= 0) held.push_back({number * dim + d, mouth.velocity[d]});
     }

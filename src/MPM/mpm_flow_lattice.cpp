@@ -24,7 +24,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double FARTHEST = 4.0e6;    // index that a block can have, see MPMField
+static constexpr double FARTHEST = 4.0e6;    // largest index that a block can have, see MPMField
 
 MPMFlowLattice::MPMFlowLattice(LAMMPS *lmp, const MPM_NS::Lattice &of, int groupbit) :
     Pointers(lmp), grid(of), lattice(grid.lattice), groupbit(groupbit), halo(lmp)
@@ -112,8 +112,8 @@ void MPMFlowLattice::sort()
 }
 
 /* ----------------------------------------------------------------------
-   cells that points can reach are known to all ranks that share them; with one more layer around these, an owner has
-   the neighbors of its cells
+   Cells that points can reach are known to all ranks that share them. With one more layer around these, an
+   owner has the neighbors of its cells.
 ------------------------------------------------------------------------- */
 
 void MPMFlowLattice::find_cells()
@@ -145,7 +145,7 @@ void MPMFlowLattice::find_cells()
     }
   }
 
-  // what ranks share is what they reach and the layers around it; where there are periodic images, all of their blocks
+  // ranks share what they reach and the layers around it; where there are periodic images, all of their blocks
 
   std::vector<uint64_t> shared;
   constexpr int STENCIL = 2, LOWER = 1;    // of points that have a width
@@ -205,7 +205,8 @@ void MPMFlowLattice::find_cells()
   nbuild++;
 }
 
-/** Whose part of the box has the middle of a cell: ranks have about as many of the cells that several reach. */
+/** Rank whose part of the box has the middle of a cell: ranks then own about equally many of the cells that
+ *  several reach. */
 int MPMFlowLattice::rank_around(int number) const
 {
   int index[3], unused[3];
@@ -244,7 +245,7 @@ int MPMFlowLattice::find_block(const double *x, int base[3]) const
   return number < 0 ? -1 : (int) (number / NODES_PER_BLOCK);
 }
 
-/** Number of a cell or of what it is a periodic image of; the block must be there. */
+/** Number of a cell, or of the cell of which it is a periodic image; the block must exist. */
 int MPMFlowLattice::canonical(const int index[3]) const
 {
   int wrapped[3] = {0, 0, 0};
@@ -291,7 +292,8 @@ void MPMFlowLattice::list_cells()
   }
 }
 
-/** Images of each axis are of all cells that there are along the others, those beyond walls among them. */
+/** Lists the images of each axis: of all cells that exist along the other axes, including those beyond
+ *  walls. */
 void MPMFlowLattice::list_images()
 {
   images.clear();

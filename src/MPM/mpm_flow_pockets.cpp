@@ -19,9 +19,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// places along each axis of a cell with a wall in it that tell how much of it is open
+// places along each axis of a cell cut by a wall at which its open share is sampled
 static constexpr int SAMPLES = 8;
-// cells of a box that a rank can have
+// largest number of cells of a box for a rank
 static constexpr double MOST_CELLS = 2.0e9;
 
 MPMFlowPockets::MPMFlowPockets(LAMMPS *lmp, const MPMFlowLattice &of) : Pointers(lmp), cells(of)
@@ -47,7 +47,7 @@ void MPMFlowPockets::index_of(int64_t place, int *index) const
   index[0] = (int) (place / ncell[2] / ncell[1]);
 }
 
-/** To another cell along an axis; false: there is a wall. */
+/** Moves index to another cell along an axis; false if there is a wall. */
 bool MPMFlowPockets::step(int *index, int axis, int by) const
 {
   index[axis] += by;
@@ -55,7 +55,7 @@ bool MPMFlowPockets::step(int *index, int axis, int by) const
   return index[axis] >= 0 && index[axis] < ncell[axis];
 }
 
-/** Pocket next to a cell. */
+/** Label of a pocket next to a cell. */
 int MPMFlowPockets::next_to(const int *index) const
 {
   int pocket = NONE;
@@ -67,7 +67,7 @@ int MPMFlowPockets::next_to(const int *index) const
   return pocket;
 }
 
-/** All cells that faces join with the first one. */
+/** Labels all cells that faces join with the first one. */
 void MPMFlowPockets::fill(int64_t first, int label)
 {
   Info info;
@@ -136,7 +136,8 @@ bool MPMFlowPockets::find(const MPMFlowPressure &water)
   return !same;
 }
 
-/** Pockets nearest to where one was that is no longer there, through whatever is in between, and numbers of their cells there. */
+/** Pockets nearest to the place of a pocket that is no longer there, through whatever is in between, and
+ *  numbers of their cells there. */
 std::map<int, bigint> MPMFlowPockets::nearest(int before) const
 {
   std::map<int, bigint> found;
@@ -168,7 +169,7 @@ std::map<int, bigint> MPMFlowPockets::nearest(int before) const
   return found;
 }
 
-/** What became of the pockets before: those with which they have cells in common. */
+/** Finds what became of the pockets before: those with which they have cells in common. */
 void MPMFlowPockets::compare()
 {
   std::map<std::pair<int, int>, bigint> common;
@@ -187,7 +188,8 @@ void MPMFlowPockets::compare()
   for (const auto &[pair, many] : common) of_before.push_back({pair.first, pair.second, many});
 }
 
-/** Of cells of the lattice; a dry one with its middle in a wall belongs to a pocket next to it. */
+/** Finds the pockets of cells of the lattice. A dry cell with its middle in a wall belongs to a pocket next
+ *  to it. */
 void MPMFlowPockets::find_lattice(const MPMFlowPressure &water)
 {
   of_lattice.assign(cells.size(), NONE);

@@ -20,16 +20,17 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// distance in which points make room for others, in spacings
+// distance over which points make room for others, in spacings
 static constexpr double SPREAD = 8.0;
-// share of the surroundings of a cell, and mean of its neighbors, from which on it is wet
+// share of the surroundings of a cell, and mean share of its neighbors, from which on the cell is wet
 static constexpr double HALF = 0.5, SURROUNDED = 0.6;
-// excess of points in a cell that a region cuts, which need not be one: points there are in steps, and walls are not
+// excess of points in a cell cut by a region that may not be real: points come in steps there, and walls do not
 static constexpr double UNSURE = 0.25;
-// open share of the surroundings of a cell below which its neighbors tell whether it is wet, if it has a least share of water
+// open share of the surroundings of a cell below which its neighbors decide whether it is wet, if it has
+// a least share of water
 static constexpr double ROOM = 0.5, LEAST = 0.2;
 
-/** Depth below a flat surface, in spacings, of which this share of a hat is filled. */
+/** Depth below a flat surface, in spacings, at which a hat function is filled by this share. */
 static double depth(double share)
 {
   if (share < 0.5) return std::sqrt(2.0 * std::max(share, 0.0)) - 1.0;
@@ -39,10 +40,12 @@ static double depth(double share)
 double MPMFlowPressure::distance(int64_t wet_cell, int64_t dry) const
 {
   const double in = depth(share_of[wet_cell]), out = depth(share_of[dry]);
-  return in > 0.0 ? std::max(nearest, in / (in - out)) : 0.5;    // surrounded: nobody knows
+  return in > 0.0 ? std::max(nearest, in / (in - out))
+                  : 0.5;    // surrounded: the place of the surface is unknown
 }
 
-/** 1/h^2 times what the difference of psi, or psi itself where the other cell is dry, has to be multiplied with. */
+/** Factor of the difference of psi, or of psi itself where the other cell is dry: 1/h^2 over the distance in
+ *  spacings. */
 double MPMFlowPressure::weight_to(int64_t wet_cell, int64_t other) const
 {
   const double h = cells.lattice.h;
@@ -54,7 +57,7 @@ double MPMFlowPressure::open(int64_t cell, int axis) const
   return regions ? regions->open(cell, axis) : 1.0;
 }
 
-/** Open share of a side of a cell; of a wall of the box, too. */
+/** Open share of a side of a cell, also of one in a wall of the box. */
 double MPMFlowPressure::open_side(const MPMFlowLattice::Cell &cell, int side) const
 {
   const int64_t of = side % 2 ? cell.near[side] : cell.number;
@@ -71,8 +74,8 @@ double MPMFlowPressure::flux_of_side(const double *velocity, const MPMFlowLattic
   return regions ? regions->open(of, axis) * u + regions->flux(of, axis) : u;
 }
 
-/** Are the neighbors of a cell filled so well that what is between them is water? At a flat surface, their mean is that of
- *  the cell itself. */
+/** Are the neighbors of a cell filled so well that the cell between them is water? At a flat surface, their
+ *  mean is the share of the cell itself. */
 bool MPMFlowPressure::is_surrounded(const MPMFlowLattice::Cell &cell) const
 {
   double sum = 0.0, sides = 0.0;
@@ -85,7 +88,8 @@ bool MPMFlowPressure::is_surrounded(const MPMFlowLattice::Cell &cell) const
   return sum > SURROUNDED * sides;
 }
 
-/** What is left of a cell next to a wall can be too little for points to tell that it is full: it is wet if most of what it is open to is. */
+/** A cell next to a wall can have too little room for points to show that it is full: it is wet if most of
+ *  its open sides are next to wet cells. */
 void MPMFlowPressure::follow_neighbors()
 {
   std::vector<int> changed;
@@ -127,7 +131,7 @@ void MPMFlowPressure::set_mobility(const std::vector<double> *of_faces)
   find_weights();
 }
 
-/** The equations of the wet cells. */
+/** Finds the equations of the wet cells. */
 void MPMFlowPressure::find_weights()
 {
   wet.clear();
@@ -156,7 +160,7 @@ void MPMFlowPressure::find_weights()
   rows_are_there = levels_are_there = false;
 }
 
-/** Who has which of them, and what ranks send each other. */
+/** Finds which rank has which rows, and what ranks send each other. */
 void MPMFlowPressure::find_rows()
 {
   if (rows_are_there) return;
@@ -166,7 +170,7 @@ void MPMFlowPressure::find_rows()
   rows_are_there = true;
 }
 
-/** The equations by rows; screen: 1/length^2. */
+/** Sorts the equations by rows; screen: 1/length^2. */
 void MPMFlowPressure::weigh_rows(double screen, std::vector<double> &of_cell,
                                  std::vector<double> &of_sides) const
 {
@@ -181,7 +185,7 @@ void MPMFlowPressure::weigh_rows(double screen, std::vector<double> &of_cell,
   }
 }
 
-/** Values of rows to all cells of all ranks. */
+/** Copies values of rows to all cells of all ranks. */
 void MPMFlowPressure::to_cells(const std::vector<double> &of_rows,
                                std::vector<double> &of_cells) const
 {
@@ -190,7 +194,8 @@ void MPMFlowPressure::to_cells(const std::vector<double> &of_rows,
   cells.publish(of_cells.data(), 1);
 }
 
-/** The same equations for the multigrid preconditioner: owners of cells give what flows through their upper faces. */
+/** Gives the same equations to the multigrid preconditioner: owners of cells give the weights of their upper
+ *  faces. */
 void MPMFlowPressure::find_levels()
 {
   if (levels_are_there) return;
@@ -199,7 +204,7 @@ void MPMFlowPressure::find_levels()
   for (const auto &one : wet) {
     const int64_t number = cells.cells[one.cell].number;
     double outside = 0.0,
-           inside = 0.0;    // apart: a closed pool has nothing outside, to the last digit
+           inside = 0.0;    // summed apart: a closed pool has nothing outside, to the last digit
     for (int s = 0; s < 2 * dim; s++) {
       (one.near[s] < 0 ? outside : inside) += one.weight[s];
       if (s % 2 && one.near[s] >= 0) coefficients.face[number * dim + s / 2] = one.weight[s];
@@ -246,8 +251,9 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
 }
 
 /* ----------------------------------------------------------------------
-   psi that is that of the surface next to it, and the mean of all surfaces elsewhere: solved for is the rest. The norm of the
-   right side is to be that of what drives a flow, and not of a pressure divided by small distances
+   The lift is the psi of the surface next to a cell, and the mean of all surfaces elsewhere; only the rest is
+   solved for. The norm of the right side is then that of what drives a flow, and not that of a pressure
+   divided by small distances.
 ------------------------------------------------------------------------- */
 
 void MPMFlowPressure::find_lift(const std::vector<double> &surface)
@@ -278,7 +284,8 @@ void MPMFlowPressure::find_lift(const std::vector<double> &surface)
     lift[number] = weight > 0.0 ? sum / weight : all[1] > 0.0 ? all[0] / all[1] : 0.0;
   }
   cells.publish(lift.data(), 1);
-  for (const auto &one : wet) {    // what surfaces push is that of the cells next to them
+  for (const auto &one :
+       wet) {    // at surfaces the terms of a cell add up to zero, by the choice of its lift
     const int number = cells.cells[one.cell].number;
     for (int s = 0; s < 2 * dim; s++)
       if (one.near[s] >= 0)
@@ -286,7 +293,7 @@ void MPMFlowPressure::find_lift(const std::vector<double> &surface)
   }
 }
 
-/** Of owned cells; null: before is zero. */
+/** Subtracts the gradient for owned cells. A null before stands for zero. */
 void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const double *before,
                                         double *after, double *known,
                                         const std::vector<double> *surface) const
@@ -304,7 +311,7 @@ void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const dou
       const double weight = light(here, d) *
           (in ? weight_to(here, lower) : weight_to(lower, here)) *
           (mobility ? (*mobility)[face] : 1.0);
-      double step = of[here] - of[lower];    // that of a dry cell is zero
+      double step = of[here] - of[lower];    // a dry cell has zero
       if (surface && in != below) step += in ? -(*surface)[face] : (*surface)[face];
       after[face] = (before ? before[face] : 0.0) - h * weight * step;
     }
@@ -322,7 +329,7 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
                                     const SolveGoal &goal)
 {
   const double h = cells.lattice.h;
-  if (lightness) {    // points know no density
+  if (lightness) {    // spreading of points has no density
     lightness = nullptr;
     find_weights();
   }
@@ -346,7 +353,7 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
   return report;
 }
 
-/** What flows out of a cell through its sides and does not come into it, per area of a side. */
+/** Net flow out of a cell through its sides, per area of a side. */
 double MPMFlowPressure::outflow(const double *velocity, const MPMFlowLattice::Cell &cell) const
 {
   double sum = 0.0;
@@ -388,7 +395,8 @@ void MPMFlowPressure::extend_into_air(std::vector<double> &values,
     for (int s = 0; s < 2 * cells.lattice.dim; s++) {
       const int other = cell.near[s];
       if (cell.walls >> s & 1 || !is_wet(other) || open_side(cell, s) == 0.0) continue;
-      const double in = distance(other, cell.number);    // from the wet one to the surface
+      const double in =
+          distance(other, cell.number);    // from the middle of the wet cell to the surface
       const double at = surface ? (*surface)[(int64_t) (s % 2 ? other : cell.number) * dim + s / 2]
                                 : 0.0;
       sum += at + (psi[other] - at) * (in - 1.0) / in;

@@ -26,27 +26,29 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// distance in which a wall is looked at, and in which closed faces have its normal velocity, in spacings
+// distance up to which a wall is looked at, and up to which closed faces have its normal velocity, in spacings
 static constexpr double FAR = 4.0, HELD = 3.5;
 // distance between two regions from which on there is a gap, in spacings
 static constexpr double LEAST_GAP = 0.05;
-// open share of a face that is none but rounding
+// open share of a face that is only rounding
 static constexpr double NO_SHARE = 1.0e-9;
-// points are kept so far outside of walls, in spacings
+// distance that points are kept outside of walls, in spacings
 static constexpr double MARGIN = 1.0e-6;
 // open share of the surroundings of a cell below which the cells around count, too
 static constexpr double LITTLE_ROOM = 0.3;
 // places along an axis at which the open share of surroundings is found
 static constexpr int PLACES = 8;
-// walls that are floors, by the cosine to the surface; open share from which on a cell is whole; shares of water between which a cell
-// has a surface; least slope of shares that tells where it goes, and what keeps the system for it regular
+// least cosine between a floor and the surface; open share from which on a cell is whole; a cell has a
+// surface with a share of water above SURFACE and below 1 - SURFACE; least slope of shares that shows
+// the direction of the surface, and what keeps its equations regular
 static constexpr double FLOOR = 0.7, WHOLE = 0.75, SURFACE = 0.1, LEAST_SLOPE = 0.3,
                         REGULAR = 1.0e-3;
 // layers of closed cells that points near walls reach
 static constexpr int LAYERS = 2;
 
 namespace {
-/** Share of a segment, and of a triangle, in which a linear function is positive. */
+/** Share of a segment, and of a triangle, in which a linear function with these values at the ends is
+ *  positive. */
 double positive(double a, double b)
 {
   if (a >= 0.0 && b >= 0.0) return 1.0;
@@ -59,7 +61,7 @@ double positive(double a, double b, double c)
   if (a >= 0.0 && b >= 0.0 && c >= 0.0) return 1.0;
   if (a <= 0.0 && b <= 0.0 && c <= 0.0) return 0.0;
   const int n = (a > 0.0) + (b > 0.0) + (c > 0.0);
-  const double sign = n == 1 ? 1.0 : -1.0;    // what is alone at one side
+  const double sign = n == 1 ? 1.0 : -1.0;    // makes the corner that is alone on its side positive
   a *= sign;
   b *= sign;
   c *= sign;
@@ -73,13 +75,14 @@ double positive(double a, double b, double c)
   return n == 1 ? share : 1.0 - share;
 }
 
-/** The same of a square with these corners, one after the other: the mean of both ways to make triangles of it. */
+/** The same for a square with these corners in order: the mean over both ways to divide it into triangles. */
 double positive(double a, double b, double c, double d)
 {
   return 0.25 * (positive(a, b, c) + positive(a, c, d) + positive(a, b, d) + positive(b, c, d));
 }
 
-/** Length, and its moment about the middle, of what is positive of a linear function on a segment of length one, to sum[2]. */
+/** Adds to sum[2] the length, and its moment about the middle, of the part of a segment of length one in
+ *  which a linear function is positive. */
 void add_positive(double a, double b, double *sum)
 {
   const double length = positive(a, b);
@@ -87,10 +90,11 @@ void add_positive(double a, double b, double *sum)
   sum[1] += 0.5 * length * (1.0 - length) * (a > b ? -1.0 : 1.0);
 }
 
-/** Area, and its moments, of what is positive of a linear function with the values f at the corners of a triangle, times weight, to sum[3]. */
+/** Adds to sum[3] the area and its moments, times weight, of the part of a triangle in which a linear
+ *  function with the values f at the corners is positive. */
 void add_positive(const double f[3], const double corner[3][2], double weight, double *sum)
 {
-  double x[4][2];    // of what is positive, a triangle or a square
+  double x[4][2];    // corners of the positive part, a triangle or a square
   int n = 0;
   for (int k = 0; k < 3; k++) {
     const int next = (k + 1) % 3;
@@ -109,7 +113,7 @@ void add_positive(const double f[3], const double corner[3][2], double weight, d
   }
 }
 
-/** The same of a square of area one with these corners, one after the other, about its middle. */
+/** The same for a square of area one with these corners in order, about its middle. */
 void add_positive(double a, double b, double c, double d, double *sum)
 {
   const double f[4] = {a, b, c, d};
@@ -191,7 +195,7 @@ void MPMFlowRegions::find(double duration)
 
   duration_of_motion = duration;
 
-  // others may have looked at regions since the last step
+  // other commands may have looked at regions since the last step
 
   for (auto &wall : walls) {
     if (!wall.moves) continue;    // those of bodies are at rest
@@ -219,7 +223,8 @@ void MPMFlowRegions::find(double duration)
     std::copy_n(wall.shift, 3, wall.last);
     std::copy_n(wall.spin, 3, wall.last + 3);
     std::copy_n(wall.center, 3, wall.last + 6);
-    if (!wall.has_last) std::copy_n(wall.last, 9, wall.older);    // as if it had moved like that
+    if (!wall.has_last)
+      std::copy_n(wall.last, 9, wall.older);    // as if it had moved like that before
     wall.has_last = true;
   }
   find_shares();
@@ -232,7 +237,7 @@ void MPMFlowRegions::find(double duration)
   nbuild = cells.nbuild;
 }
 
-/** Distance from the nearest wall, positive in the flow, at most far. */
+/** Distance from the nearest wall, positive in the flow and at most far. */
 double MPMFlowRegions::distance(const double *x, double far, int &nearest) const
 {
   double least = far;
@@ -357,7 +362,7 @@ void MPMFlowRegions::set_velocity(int w, const double *u)
     if (held.wall == w) velocity_at(w, held.x, held.velocity);
 }
 
-/** offset: from the lower corner of a cell, in spacings. */
+/** Place in a cell; offset: from its lower corner, in spacings. */
 void MPMFlowRegions::place(const int *index, const double *offset, double *x) const
 {
   const auto &lattice = cells.lattice;
@@ -368,7 +373,7 @@ void MPMFlowRegions::place(const int *index, const double *offset, double *x) co
 }
 
 /* ----------------------------------------------------------------------
-   for all cells that this rank has, so that nothing has to be told to others
+   This is done for all cells that this rank has, so that nothing has to be communicated.
 ------------------------------------------------------------------------- */
 
 void MPMFlowRegions::find_shares()
@@ -450,7 +455,7 @@ void MPMFlowRegions::find_shares()
   for (const double f : fluxes) speed = std::max(speed, std::fabs(f));
 }
 
-/** Lists of owned cells and faces. */
+/** Lists the owned cells and faces that walls cut or hold. */
 void MPMFlowRegions::find_cuts()
 {
   const double h = cells.lattice.h, far = FAR * h, face_area = std::pow(h, dim - 1);
@@ -460,8 +465,8 @@ void MPMFlowRegions::find_cuts()
   helds.clear();
   int nthin = 0, ngaps = 0;
 
-  // Less than a spacing between two regions that face each other: a cell has a part of one wall, so that forces on the other one would be
-  // those on this
+  // Less than a spacing between two regions that face each other: a cell has only a part of one wall, so
+  // that forces on the other wall would count as forces on this one
 
   const auto is_gap = [&](const MPMFlowLattice::Cell &cell) {
     constexpr double AGAINST = -0.5, middle[3] = {0.5, 0.5, 0.5};
@@ -537,8 +542,8 @@ void MPMFlowRegions::find_cuts()
 }
 
 /* ----------------------------------------------------------------------
-   integrals of the normal times the place over the part of a wall that is in a cell: what they are over all of the surface of what is open, its
-   volume, less those over the open faces
+   Integrals of the normal times the place over the part of a wall that is in a cell. They are the integrals
+   over the whole surface of the open part, which are its volume, less those over the open faces.
 ------------------------------------------------------------------------- */
 
 void MPMFlowRegions::find_moments(Cut &cut) const
@@ -567,17 +572,17 @@ void MPMFlowRegions::find_moments(Cut &cut) const
     }
     square += cut.area[d] * cut.area[d];
   }
-  const double open =
-      (faces + levels[cell.number] / h * std::sqrt(square) * h / volume) / dim;    // in the cell
+  const double open = (faces + levels[cell.number] / h * std::sqrt(square) * h / volume) /
+      dim;    // open share of the cell
   for (int d = 0; d < dim; d++)
     for (int e = 0; e < dim; e++) {
-      const int k = 1 + (e > (d == 0 ? 1 : 0));    // the first or second one of the other axes
+      const int k = 1 + (e > (d == 0 ? 1 : 0));    // index of e among the axes other than d
       const auto *const low = of_face[d][0], *const high = of_face[d][1];
       cut.moment[d][e] = volume * (d == e ? open - 0.5 * (low[0] + high[0]) : low[k] - high[k]);
     }
 }
 
-/** Change of the velocity of what is at a place of a wall since the last step. */
+/** Change, since the last step, of the velocity of what is at a place of a wall. */
 void MPMFlowRegions::find_change(Cut &cut, const double *x) const
 {
   const auto &wall = walls[cut.wall];
@@ -587,7 +592,7 @@ void MPMFlowRegions::find_change(Cut &cut, const double *x) const
   MathExtra::sub3(x, wall.older + 6, arm);
   MathExtra::cross3(wall.older + 3, arm, turn);
   for (int d = 0; d < 3; d++) cut.change[d] = now[d] - wall.older[d] - turn[d];
-  MathExtra::cross3(wall.spin, now, turn);    // along its way
+  MathExtra::cross3(wall.spin, now, turn);    // by the motion of the wall along its way
   for (int d = 0; d < 3; d++) cut.change[d] += duration_of_motion * turn[d];
 }
 
@@ -603,26 +608,27 @@ std::vector<double> MPMFlowRegions::motion() const
 
 void MPMFlowRegions::set_motion(const std::vector<double> &all)
 {
-  if (all.size() != 10 * walls.size()) return;    // other regions
+  if (all.size() != 10 * walls.size()) return;    // these are other regions
   for (int w = 0; w < n(); w++) {
     walls[w].has_last = all[10 * w] > 0.0;
     std::copy_n(&all[10 * w + 1], 9, walls[w].last);
   }
 }
 
-/** Is a place in a wall, and has it come there with the motion of the last two steps? */
+/** Is a place in a wall, and has it come there by the motion of the last two steps? */
 MPMFlowRegions::Meets MPMFlowRegions::meets(int wall, const double *x) const
 {
   const double far = FAR * cells.lattice.h;
   if (distance_from(walls[wall], x, far) >= 0.0) return AWAY;
-  double v[3], before[3];    // as far from the wall now as x was then
+  double v[3], before[3];    // the place that was as far from the wall as x is now
   velocity_at(wall, x, v);
   for (int d = 0; d < 3; d++) before[d] = x[d] + 2.0 * duration_of_motion * v[d];
   return distance_from(walls[wall], before, far) >= 0.0 ? COMES : INSIDE;
 }
 
-/** Bodies touch nothing, and a stone would go on through the floor without a word. What is so at the start of a run is meant, also where
- *  water comes later, and with it the cells in which that is seen. */
+/** Warns of bodies that have come into walls or regions. Bodies touch nothing, so that a stone would go on
+ *  through the floor unnoticed. Overlap at the start of a run is intended, also where water, and with it the
+ *  cells in which overlap is seen, comes later. */
 void MPMFlowRegions::warn_of_bodies()
 {
   constexpr int FACES = 6;
@@ -669,7 +675,7 @@ void MPMFlowRegions::warn_of_bodies()
   }
 }
 
-/** Is there a wall between the middles of opposite faces that are open? */
+/** Is there a wall between the middles of opposite faces that are both open? */
 bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
 {
   constexpr double OPEN = 0.75, TOWARDS = 0.5;
@@ -692,11 +698,12 @@ bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
   return false;
 }
 
-/** A corner that ends in the cell is as thin there, but lets nothing through: next to it the wall is thicker than a cell. */
+/** A corner of a wall that ends in the cell is as thin there, but lets nothing through: next to the cell, the
+ *  wall is thicker than a cell. */
 bool MPMFlowRegions::is_corner(const MPMFlowLattice::Cell &cell, int axis) const
 {
-  constexpr int NEAR =
-      2;    // cells: one of 60 degrees is as thick there, wherever it ends in the cell
+  // cells up to which a corner of 60 degrees gets that thick, wherever it ends in the cell
+  constexpr int NEAR = 2;
   for (int e = 0; e < dim; e++) {
     if (e == axis) continue;
     for (int along = -NEAR; along <= NEAR; along++) {
@@ -760,9 +767,9 @@ void MPMFlowRegions::normalize(std::vector<double> &share) const
 }
 
 /* ----------------------------------------------------------------------
-   Of the surroundings of a cell next to a wall only a part is open, above a floor the upper one, so that what is filled of it does not
-   tell how deep the middle of the cell is below a surface. Where whole cells around have a surface, it goes on
-   as a plane
+   Only a part of the surroundings of a cell next to a wall is open, above a floor the upper part. Their
+   filled share therefore does not show how deep the middle of the cell is below a surface. Where whole cells
+   around have a surface, it is continued as a plane.
 ------------------------------------------------------------------------- */
 
 void MPMFlowRegions::continue_surface(std::vector<double> &share) const
@@ -775,7 +782,7 @@ void MPMFlowRegions::continue_surface(std::vector<double> &share) const
     mine = share[cell.number];
     if (rooms[cell.number] >= WHOLE || closed[cell.number]) continue;
 
-    // gradient of the shares of whole cells, least squares
+    // gradient of the shares of whole cells, by least squares
 
     const int *const at = cells.around.data() + (int64_t) k * naround;
     double n = 0.0, mean = 0.0, middle[3] = {0.0, 0.0, 0.0};
@@ -814,7 +821,7 @@ void MPMFlowRegions::continue_surface(std::vector<double> &share) const
     distance(x, FAR * cells.lattice.h, wall);
     normal_at(wall, x, normal);
     if (slope <
-        LEAST_SLOPE * std::min(1.0, 2.0 * mean / n)) {    // all as deep: a film along the wall
+        LEAST_SLOPE * std::min(1.0, 2.0 * mean / n)) {    // equal depths: a film along the wall
       for (int d = 0; d < 3; d++) up[d] = -normal[d];
       slope = 1.0;
     }
@@ -892,7 +899,7 @@ double MPMFlowRegions::depth(const double *x, double far) const
 }
 
 /* ----------------------------------------------------------------------
-   owners of wet cells have the slopes of psi away from a neighbor that is closed; those of the next layer are the same
+   Owners of wet cells have the slopes of psi away from closed neighbors; the next layer has the same slopes.
 ------------------------------------------------------------------------- */
 
 void MPMFlowRegions::extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const

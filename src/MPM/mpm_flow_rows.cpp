@@ -15,7 +15,7 @@
 using namespace LAMMPS_NS;
 
 static constexpr int ROWS_TAG = 4712;    // and the next one, for both halves
-// what ranks tell each other of a cell
+// flags that ranks send each other for a cell
 static constexpr char MINE = 1, WANTED = 2;
 
 void MPMFlowRows::begin()
@@ -72,7 +72,8 @@ void MPMFlowRows::arrange()
     }
 }
 
-/** Both of two ranks list the cells that they share in the same order, and know after one message which of them the other needs. */
+/** Two ranks list the cells that they share in the same order. After one message, both know which of these
+ *  cells the other one needs. */
 void MPMFlowRows::find_peers()
 {
   const auto &halo = cells.halo_of_cells();

@@ -31,16 +31,18 @@ using namespace MPM_NS;
 
 // shear by which the stiffness of a law is found
 static constexpr double PROBE = 1.0e-6;
-// stiffness of a solid that is stretched over that at rest, where an interface goes to its balance with the fluid in a step
+// stiffness of a stretched solid over that at rest, up to which an interface reaches its balance with
+// the fluid in one step
 static constexpr double STIFFER = 3.0;
-// least part of the largest share of fluid next to a point that counts as the share against shear along an interface
+// least share of fluid that counts against shear along an
+// interface, over the largest share of fluid next to a point
 static constexpr double LEAST_SHARE = 0.5;
 // share of fluid next to a point from which on strains along the interface are those of the solid alone
 static constexpr double MIXED = 0.1;
 // share of fluid next to a point that counts as none
 static constexpr double LEAST_FLUID = 1.0e-6;
 
-/** Points of one material on their way through its law. */
+/** Points of one material that wait for its law. */
 struct MPMFlowSolids::Pending {
   Batch batch = {};
   int n = 0, point[BATCH];
@@ -51,10 +53,11 @@ struct MPMFlowSolids::Pending {
 };
 
 namespace {
-/** Components of a symmetric tensor xx yy zz xy xz yz. */
+/** Places of components of a symmetric tensor, stored as xx yy zz xy xz yz. */
 constexpr int SYMMETRIC[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
-/** Kinds of boxes of gradients, by axes that one of them has: cells, and those of the shears xy, xz, yz. */
+/** Kinds of boxes of gradients, by the axes of one of their gradients: cells, and boxes of the shears xy, xz,
+ *  yz. */
 constexpr int AXES[4][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 2}};
 constexpr int kinds(int dim)
 {
@@ -65,20 +68,22 @@ constexpr int kind_of(int c, int d)
   return c == d ? 0 : c + d;
 }
 
-/** What a point of some width has in boxes of one spacing, those that are cells and those around their corners, edges, and faces:
- *  weights along each axis, and gradients of the velocity as means of those of boxes. A box has the difference of two faces: a
- *  normal gradient that of its cell, a shear that of the faces on both sides of a corner (in 3d an edge). */
+/** Shares of a point of some width in boxes of one spacing, which are cells or are around their corners,
+ *  edges, and faces: weights along each axis, and gradients of the velocity as means of those of boxes. The
+ *  gradient of a box is the difference of two faces: a normal gradient that of its cell, a shear that of the
+ *  faces on both sides of a corner (in 3d an edge). */
 template <int dim> struct Boxes {
   enum Place { CELL, NODE };
-  int first[2][3];    // [place][axis] of two boxes in a row
+  int first[2][3];    // [place][axis]: first one of two adjacent boxes
   double share[2][3][2];
 
   void find(const double *t, double width)
   {
     for (int place = CELL; place <= NODE; place++)
       for (int d = 0; d < dim; d++) {
-        const double shift =
-            place == NODE ? 0.5 : 0.0;    // of the lower end of a box from that of its number
+        const double shift = place == NODE
+            ? 0.5
+            : 0.0;    // from the lower end of the cell with its number to that of a box
         const double low = t[d] + shift - 0.5 * width, box = std::floor(low);
         first[place][d] = (int) box;
         share[place][d][0] = std::min(1.0, (box + 1.0 - low) / width);
@@ -86,7 +91,8 @@ template <int dim> struct Boxes {
       }
   }
 
-  /** f(number of the cell that has a box as itself or at its lower side, share), boxes being at places along each axis. */
+  /** Calls f(number of the cell that is a box, or has it at its lower side; share) for the boxes at these
+   *  places along each axis. */
   template <class F>
   void visit_boxes(const Grid &grid, const Grid::Block &block, const Place *places,
                    const F &f) const
@@ -109,7 +115,8 @@ template <int dim> struct Boxes {
     for (int e = 0; e < dim; e++) places[e] = c != d && (e == c || e == d) ? NODE : CELL;
   }
 
-  /** f(number of the cell, coefficient of the velocity of its face normal to c in the gradient along d, in 1/spacing). */
+  /** Calls f(number of a cell, coefficient of the velocity of its face normal to c in the gradient along d,
+   *  in 1/spacing). */
   template <class F>
   void visit_gradients(const Grid &grid, const Grid::Block &block, int c, int d, const F &f) const
   {
@@ -132,7 +139,8 @@ template <int dim> struct Boxes {
         }
   }
 
-  /** The same of a mean over boxes with other weights: weight(number of the cell of a box). Nothing where they are none. */
+  /** The same for a mean over boxes with other weights, weight(number of the cell of a box). No calls where
+   *  these are all zero. */
   template <class W, class F>
   void visit_gradients_by(const Grid &grid, const Grid::Block &block, int c, int d, const W &weight,
                           const F &f) const
@@ -163,7 +171,7 @@ template <int dim> struct Boxes {
   }
 };
 
-/** Of a symmetric tensor, what is not shear of the planes with this normal. */
+/** Removes the shear of planes with this normal from a symmetric tensor. */
 template <int dim> void take_shear_off(const double *n, double T[3][3])
 {
   double along[3], normal = 0.0;
@@ -283,8 +291,9 @@ double MPMFlowSolids::density_of(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   Minus the stress times the gradient of functions of faces. Beyond walls forces are those on velocities that images have,
-   so that they do the work of the stress. What is the same along all axes of the lattice is left to the pressure
+   Minus the stress times the gradient of functions of faces. Beyond walls, forces act on the velocities of
+   images, so that they do the work of the stress. The part that is the same along all axes of the lattice is
+   left to the pressure.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
@@ -344,8 +353,8 @@ void MPMFlowSolids::give_forces(std::vector<double> &forces)
 }
 
 /* ----------------------------------------------------------------------
-   The gradient is that at the middle of the way of a point, where it has the velocity with which it moves: the map of the
-   step is then of second order. It keeps volume, as the flow does
+   The gradient is that at the middle of the path of a point, where the point has the velocity with which it
+   moves: the map of the step is then of second order. It keeps volume, as the flow does.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt, double viscosity)
@@ -427,7 +436,8 @@ void MPMFlowSolids::deform(const double *velocity, double dt, double viscosity)
 }
 
 /* ----------------------------------------------------------------------
-   Shares of solid in what points fill of boxes of one spacing around corners of cells, over which the lattice has means of shears
+   Shares of solid in the volume of points in boxes of one spacing around corners of cells. The lattice has
+   means of shears over these boxes.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowSolids::find_shares()
@@ -461,7 +471,8 @@ template <int dim> void MPMFlowSolids::find_shares()
   cells.reflect_cells(solid_share.data());
 }
 
-/** Shares of fluid in the boxes of a point, and the normal. False where there is none. */
+/** Finds the shares of fluid in the boxes of a point, and the normal. False where there is no fluid or no
+ *  normal. */
 template <int dim>
 bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, double width,
                                    Interface &to) const
@@ -487,7 +498,7 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
   to.most = most;
   if (most < LEAST_FLUID) return false;
 
-  // the normal, by splines of cells, which reach all of these boxes: next to no fluid gives a direction, too
+  // the normal, by splines of cells, which reach all of these boxes: even next to no fluid gives a direction
 
   int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
   double spline[3][3], slope[3][3];
@@ -520,13 +531,16 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
 }
 
 /* ----------------------------------------------------------------------
-   Next to a fluid, the gradient of the velocity in a box is a mean of those of both. What shears planes along the interface: the fluid has
-   that of the solid and, as the stress along the interface is the same on both sides, what the stress of the law does to its viscosity
-   more; the rest is that of the solid. Without this both would have the same, and solids would hold a layer of the fluid of up to a half
-   of a spacing. The stress is that of the end of the step: a solid that is as good as rigid then leaves all to the fluid, whatever the
-   duration of the step. The other strains are the same on both sides at the interface, but fluid in a box that is away from it has
-   others. The solid takes those of boxes in the proportion of their solid (weight_of()), and gives them its stress: a corner of solid in a
-   box would make all of the box stiff
+   Next to a fluid, the velocity gradient in a box is a mean of those of fluid and solid. Shear of planes
+   along the interface: the stress along the interface is the same on both sides, so the fluid has the shear
+   of the solid plus that which the stress of the law causes by its viscosity; the rest is that of the solid.
+   Without this both would have the same shear, and solids would hold a layer of fluid of up to half a
+   spacing. The stress is that at the end of the step: a nearly rigid solid then leaves all shear
+   to the fluid, whatever the duration of the step.
+
+   The other strains are the same on both sides at the interface, but fluid in a box away from it has others.
+   The solid takes those of boxes in proportion to their solid (weight_of()), and gives them its stress:
+   otherwise a corner of solid in a box would make all of the box stiff.
 ------------------------------------------------------------------------- */
 
 template <int dim>
@@ -535,7 +549,8 @@ void MPMFlowSolids::leave_to_fluid(int i, const Interface &interface, double sti
 {
   const auto &fluid = interface.fluid;
   const auto &n = interface.n;
-  // the part along the interface of the traction now, and what the law adds in the step if the solid has all of the strain
+  // the part of the present traction along the interface, and what the law adds to it in the step if the
+  // solid has all of the strain
 
   const double *const tau = MPMPoints::get(atom)->tau[i];
   double traction[3] = {}, normal = 0.0, square = 0.0;
@@ -549,7 +564,7 @@ void MPMFlowSolids::leave_to_fluid(int i, const Interface &interface, double sti
   }
   if (!(square > 0.0)) return;
 
-  // this stress, at the end of the step, makes what the fluid has more, and is less for it
+  // this stress, at the end of the step, causes the additional shear of the fluid, and is reduced by it
 
   double share = 0.0;
   for (int c = 0; c < dim; c++)
@@ -563,7 +578,7 @@ void MPMFlowSolids::leave_to_fluid(int i, const Interface &interface, double sti
       A[c][d] -= fluid[kind_of(c, d)] * dt / resistance * traction[c] * n[d];
 }
 
-/** Present state of the points that wait for their law. */
+/** Loads the present state of the points that wait for their law. */
 void MPMFlowSolids::load(int m, double dt)
 {
   auto &p = *pending[m];
@@ -603,8 +618,9 @@ void MPMFlowSolids::update_points(int m, double dt)
 }
 
 /* ----------------------------------------------------------------------
-   The stiffness of a law against waves of shear: a small shear along a of planes with the normal n changes the stress that acts along
-   a on them. Directions are those along axes and diagonals. In steps of this duration a viscosity of the law is as good as a stiffness
+   Stiffness of a law against shear waves: a small shear along a of planes with the normal n changes the
+   stress along a on these planes. Directions are those of axes and diagonals. In steps of this duration a
+   viscosity of the law acts like a stiffness.
 ------------------------------------------------------------------------- */
 
 void MPMFlowSolids::probe(int m)
@@ -652,7 +668,7 @@ void MPMFlowSolids::probe(int m)
           change += shear.a[c] * shear.n[d] * (p.batch.stress[e][k] - rest[e][k]);
         }
       const double stiffness =
-          change / PROBE * p.volume[k] / atom->rmass[p.point[k]];    // NaN: of a state that is none
+          change / PROBE * p.volume[k] / atom->rmass[p.point[k]];    // NaN: the state is not valid
       if (stiffness > p.stiffest || std::isnan(stiffness)) {
         p.stiffest = std::isnan(stiffness) ? std::numeric_limits<double>::infinity() : stiffness;
         p.tag = atom->tag[p.point[k]];

@@ -35,7 +35,7 @@ void MPMFlowSpread::scale(const std::vector<double> &diagonal, const std::vector
 }
 
 /* ----------------------------------------------------------------------
-   with a diagonal of one: u_odd = f_odd + C u_even, and (1 - C C) u_even = f_even + C f_odd
+   Scaled to a diagonal of one: u_odd = f_odd + C u_even, and (1 - C C) u_even = f_even + C f_odd
 ------------------------------------------------------------------------- */
 
 SolveReport MPMFlowSpread::solve(const std::vector<double> &diagonal,

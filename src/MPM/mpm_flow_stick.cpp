@@ -15,10 +15,10 @@
 
 using namespace LAMMPS_NS;
 
-// distance in which walls are looked at; shortest one from a face to a wall that stresses are made for; the same for velocities that
-// go on into walls [spacings]
+// distance up to which walls are looked at; shortest distance from a face to a wall that stresses use;
+// the same for velocities continued into walls [spacings]
 static constexpr double FAR = 2.5, NEAREST = 0.05, NEAREST_HELD = 0.25;
-// layers of faces in walls that points next to them reach
+// layers of faces in walls that points next to the walls reach
 static constexpr int LAYERS = 2;
 
 void MPMFlowStick::find(bool again)
@@ -49,7 +49,7 @@ MPMFlowStick::Gap MPMFlowStick::between(int64_t upper, int64_t lower) const
 }
 
 /* ----------------------------------------------------------------------
-   owners of faces in walls look at the faces around that are farther out
+   Owners of faces in walls take velocities from the faces around that are farther out.
 ------------------------------------------------------------------------- */
 
 void MPMFlowStick::hold(std::vector<double> &velocity)

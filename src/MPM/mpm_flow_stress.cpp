@@ -17,11 +17,11 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// nearest place of the surface to the middle of a cell that masses are made for, in spacings
+// shortest distance of the surface from the middle of a cell that masses use, in spacings
 static constexpr double NEAREST = 0.1;
-// least share of a cell next to a region that stresses are made for
+// least share of a cell next to a region with stresses
 static constexpr double LEAST_ROOM = 0.05;
-// of neighbors among the cells around one
+// strides of neighbors among the cells around one
 static constexpr int STRIDE[2][3] = {{3, 1, 0}, {9, 3, 1}};
 
 MPMFlowStress::MPMFlowStress(LAMMPS *lmp, const MPMFlowLattice &cells,
@@ -48,7 +48,7 @@ bool MPMFlowStress::is_wall(int64_t face) const
   return stick && stick->is_wall(face);
 }
 
-/** Of wet cells along each axis: up to the middle between two of them, to a wall, or to the surface. */
+/** Lengths of wet cells along each axis: up to the middle between two of them, to a wall, or to the surface. */
 void MPMFlowStress::find_lengths()
 {
   length.assign(cells.size() * dim, 0.0);
@@ -66,8 +66,8 @@ void MPMFlowStress::find_lengths()
 }
 
 /* ----------------------------------------------------------------------
-   faces next to water, with their masses: from middle to middle of cells or to the surface along their axis, and as long as
-   the cells on their sides along the others
+   Faces next to water, with their masses. Along its axis, a face reaches from middle to middle of its cells
+   or to the surface; along the other axes, it is as long as the cells on its sides.
 ------------------------------------------------------------------------- */
 
 void MPMFlowStress::find_faces()
@@ -99,7 +99,7 @@ void MPMFlowStress::find_faces()
           if (!(cell.walls >> (2 * d + s) & 1)) continue;
           double distance = 0.5, v = wall.v[c];
           bool sticks = wall.sticks;
-          if (stick) {    // a region can be in front of the wall
+          if (stick) {    // a region can be in front of the wall of the box
             const int64_t image = (int64_t) cell.near[2 * d + s] * dim + c;
             const auto gap = stick->between(face.at, image);
             if (gap.length < distance) {
@@ -122,7 +122,8 @@ void MPMFlowStress::find_faces()
 }
 
 /* ----------------------------------------------------------------------
-   normal stresses where it is wet, shear stresses where three of the four cells around are, but for edges in walls
+   Normal stresses are in wet cells, shear stresses where three of the four cells around are wet, except at
+   edges in walls.
 ------------------------------------------------------------------------- */
 
 void MPMFlowStress::find_stresses()
@@ -185,7 +186,7 @@ void MPMFlowStress::find_stresses()
   for (auto &area : areas) cells.publish(area.data(), width);
 }
 
-/** Volume and areas of a shear stress: walls cut off what is behind them. third: length along the edge. */
+/** Volume and areas of a shear stress: walls cut off the part behind them. third: length along the edge. */
 void MPMFlowStress::find_edge(Edge &edge, double third)
 {
   edge.volume = third;
@@ -201,7 +202,8 @@ void MPMFlowStress::find_edge(Edge &edge, double third)
   for (int k = 0; k < 2; k++) areas[k][edge.at] = edge.area[k];
 }
 
-/** In vectors is what is there, which is little of the lattice where a thread flows. */
+/** Numbers the stresses that exist. Vectors have only these, which are few on the lattice where a thread
+ *  flows. */
 void MPMFlowStress::find_rows()
 {
   unknowns.clear();
@@ -216,7 +218,7 @@ void MPMFlowStress::find_rows()
   for (auto &edge : edges) edge.row = row_of(edge.at);
 }
 
-/** The stresses at the faces of owned cells. */
+/** Finds the stresses that act on the faces of owned cells. */
 void MPMFlowStress::find_forces()
 {
   auto face = faces.begin();
@@ -279,14 +281,14 @@ void MPMFlowStress::strain(const double *u, double *out, double sign) const
   }
 }
 
-/** To the lattice, with those of other ranks. */
+/** Copies values to the lattice, and gets those of other ranks. */
 void MPMFlowStress::spread(const double *x)
 {
   for (std::size_t i = 0; i < unknowns.size(); i++) stress[unknowns[i]] = x[i];
   cells.renew(stress.data(), width);
 }
 
-/** By blocks of the lattice. */
+/** Products are summed by blocks of the lattice. */
 void MPMFlowStress::products(int n, const double *const *a, const double *const *b, double *value)
 {
   mine.assign(n, 0.0);

@@ -13,9 +13,9 @@
 
 using namespace LAMMPS_NS;
 
-// least slope of smoothed shares, per spacing, from which there is a normal; that of a surface is 0.28
+// least slope of smoothed shares, per spacing, that gives a normal; that of a surface is 0.28
 static constexpr double LEAST_SLOPE = 0.02;
-// of neighbors among the cells around one
+// strides of neighbors among the cells around one
 static constexpr int STRIDE[2][3] = {{3, 1, 0}, {9, 3, 1}};
 
 double MPMFlowTension::stable_dt(double tension, double h)
@@ -23,7 +23,7 @@ double MPMFlowTension::stable_dt(double tension, double h)
   return std::sqrt(h * h * h / (4.0 * 3.14159265358979323846 * tension));
 }
 
-/** Zero for a right angle, to the last digit. */
+/** Exactly zero for a right angle. */
 static double cotangent(double angle)
 {
   const double c = std::cos(angle);
@@ -37,7 +37,8 @@ MPMFlowTension::MPMFlowTension(const MPMFlowLattice &cells, const MPMFlowPressur
 {
 }
 
-/** What is below the surface is full: only there points that are not even would be seen as if they were curvature. */
+/** Smoothed shares. Cells below the surface count as full: there, only unevenly spaced points would be seen,
+ *  as if they were curvature. */
 void MPMFlowTension::find_smooth(const std::vector<double> &share)
 {
   smooth.assign(cells.size(), 0.0);
@@ -55,7 +56,7 @@ void MPMFlowTension::find_smooth(const std::vector<double> &share)
     }
 }
 
-/** div n at middles of cells, in one over spacings; zero where there is no normal. */
+/** div n at the middles of cells, in 1/spacing; zero where there is no normal. */
 void MPMFlowTension::find_curvature()
 {
   const int dim = cells.lattice.dim;

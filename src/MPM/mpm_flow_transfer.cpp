@@ -19,10 +19,10 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// points are kept that far inside of walls, in spacings: no rounding takes them out of the box
+// points are kept this far inside of walls, in spacings, so that rounding does not take them out of the box
 static constexpr double INSIDE = 1.0e-6;
-// most that the velocity of a point changes over a spacing, in spacings per step: what flows changes by less, but points
-// that splash can come to have any gradient, by which they would tell faces that are up to 1.5 spacings away any velocity
+// largest change of the velocity of a point over a spacing, in spacings per step. Flows change by less, but
+// points that splash can get any gradient, which would give any velocity to faces up to 1.5 spacings away
 static constexpr double STEEPEST = 0.75;
 
 namespace {
@@ -52,13 +52,14 @@ template <int dim> struct Places {
   }
 };
 
-/** Powers of the spacing in units of the rows of gradients. */
+/** Power of the spacing in the unit of row e of gradients. */
 template <int dim> double unit_of(int e, double h)
 {
   return e < dim * dim ? h : h * h;
 }
 
-/** Factor for velocity gradients G [distance/time over a spacing] that are steeper than that in a step of duration dt. */
+/** Factor that limits velocity gradients G [distance/time over a spacing] to STEEPEST in a step of duration
+ *  dt. */
 template <int dim> double limit_of(const double *G, double inv_h, double dt)
 {
   double most = 0.0;
@@ -71,13 +72,13 @@ template <int dim> double limit_of(const double *G, double inv_h, double dt)
   return most > STEEPEST ? STEEPEST / most : 1.0;
 }
 
-/** What points whose places have the same base give, until it is added to the cells. */
+/** Sums of what points whose places have the same base give, until they are added to the cells. */
 template <int dim> struct Gifts {
   static constexpr int ROWS = MPMFlowStencil<dim>::ROWS;
-  static constexpr int WIDE =
-      4;    // cells along an axis that the width of points can reach: base - 1 and on
+  // cells along an axis that the width of points can reach, from base - 1 on
+  static constexpr int WIDE = 4;
   static constexpr int FILLED = dim == 3 ? WIDE * WIDE * WIDE : WIDE * WIDE;
-  // [c][row][k]: of faces, with one more than there are, as four are the operands of vectors
+  // [c][row][k]: of faces, with one k more than there are, because vector operations take four
   double momentum[dim][ROWS][4], mass[dim][ROWS][4], force[dim][ROWS][4];
   double filled[FILLED];
   int base[3], slot;
@@ -220,7 +221,7 @@ template <int dim> struct Faces {
   }
 };
 
-/** The faces of one field, for one place after the other. */
+/** The faces of one field, for one place after another. */
 template <int dim> class FacesNear {
  public:
   FacesNear(const MPM_NS::Grid &grid, const double *values) : grid(grid), values(values) {}
@@ -241,8 +242,9 @@ template <int dim> class FacesNear {
   MPMFlowNear<dim, Faces<dim>> near;
 };
 
-/** Velocities of several fields at a place, and of the first one the gradients [flow_slopes(dim)] times the spacing (its square), if asked for: those of components c are linear along
- *  each of the other axes between two layers of faces. bend: [dim] second derivatives along c, times the square of the spacing. */
+/** Velocities of several fields at a place and, if asked for, the gradients [flow_slopes(dim)] of the first
+ *  one times the spacing (or its square). Components c are linear along each of the other axes between two
+ *  layers of faces. bend: [dim] second derivatives along c, times the square of the spacing. */
 template <int dim, int nfield, bool slopes>
 void interpolate(const Faces<dim> *fields, const StaggeredWeights &w, double (*v)[dim], double *G,
                  double *bend)
@@ -282,7 +284,7 @@ void interpolate(const Faces<dim> *fields, const StaggeredWeights &w, double (*v
   });
 }
 
-/** The same of one field; G: null if not asked for. */
+/** The same for one field; G: null if not asked for. */
 template <int dim>
 void interpolate(const Faces<dim> &faces, const StaggeredWeights &w, double *v, double *G)
 {
@@ -292,7 +294,7 @@ void interpolate(const Faces<dim> &faces, const StaggeredWeights &w, double *v, 
   std::copy_n(one[0], dim, v);
 }
 
-/** The same of one to three fields. */
+/** The same for one to three fields. */
 template <int dim, bool slopes>
 void interpolate_all(int nfield, const Faces<dim> *fields, const StaggeredWeights &w,
                      double (*v)[dim], double *G, double *bend)
@@ -305,7 +307,7 @@ void interpolate_all(int nfield, const Faces<dim> *fields, const StaggeredWeight
     interpolate<dim, 3, slopes>(fields, w, v, G, bend);
 }
 
-/** Velocity and gradients, G: [flow_slopes(dim)], at a place that is so far away. */
+/** Moves a velocity and its gradients, G: [flow_slopes(dim)], to a place that is shift away. */
 template <int dim> void move_in_field(const double *shift, double *v, double *G)
 {
   for (int c = 0; c < dim; c++) {
@@ -319,7 +321,8 @@ template <int dim> void move_in_field(const double *shift, double *v, double *G)
   }
 }
 
-/** Of an incompressible fluid, without what its pressure has. G: gradients of the velocity, in units of the lattice. */
+/** Adds the viscous stress of an incompressible fluid, without its pressure. G: gradients of the velocity, in
+ *  units of the lattice. */
 template <int dim> void add_viscous(double viscosity, double h, const double *G, double *stress)
 {
   static constexpr int PAIRS[3][2] = {{0, 1}, {0, 2}, {1, 2}};
@@ -430,8 +433,9 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.of_shift[1] += work;
       }
 
-      // The midpoint rule in the field of velocities, where divergences are none. With all of the change once more,
-      // velocities are those in the middle of the step where points have been at its start, and paths are straight
+      // The midpoint rule in the field of velocities, which has no divergence.
+      // With all of the change once more, velocities are those in the middle of
+      // the step where points were at its start, and paths are straight
 
       double middle[3] = {x[0], x[1], x[2]}, at_middle[dim];
       const double *start = now;

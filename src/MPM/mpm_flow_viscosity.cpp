@@ -12,12 +12,13 @@
 
 using namespace LAMMPS_NS;
 
-// nearest place of the surface that forces across it are made for, in spacings
+// shortest distance of the surface that forces across it use, in spacings
 static constexpr double NEAREST = 0.25;
-// wet cells of the four around an edge that is in the fluid: where a surface goes from one layer of cells to the next there are three, and
-// without the shear at that edge what is above it would slide freely
+// least number of wet cells of the four around an edge that is in the fluid.
+// Where a surface steps from one layer of cells to the next there are three,
+// and without the shear at that edge what is above it would slide freely
 static constexpr int LEAST_AT_EDGE = 3;
-// least height of what shear acts on, in spacings: that of half a cell, as where a surface is in the middle of one
+// least height of what shear acts on, in spacings: half a cell, as where a surface is in the middle of a cell
 static constexpr double LEAST_HEIGHT = 0.5;
 
 void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
@@ -36,7 +37,7 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
     const auto wet = [&](int offset) {
       return water.is_wet(at[offset]);
     };
-    // from the middle of a wet cell to a side of it or the surface before that, beyond one half of a spacing
+    // from the middle of a wet cell to a side of it, or to the surface before that; elsewhere half a spacing
     const auto reach = [&](int offset, int to) {
       return wet(offset) && !wet(to) ? std::max(0.0, water.distance(at[offset], at[to])) : 0.5;
     };

@@ -15,11 +15,11 @@
 
 using namespace LAMMPS_NS;
 
-// depth in regions to which values go on; farthest way along a wall, in regions [spacings]
+// depth in regions up to which values are continued; longest way along a wall, in regions [spacings]
 static constexpr double DEEPEST = 1.6, FARTHEST = 3.0;
-// least slope of values that has a direction, per spacing
+// least slope of values that gives a direction, per spacing
 static constexpr double LEAST_SLOPE = 1.0e-6;
-// passes in which values behind walls that depend on each other are found
+// passes that find values behind walls that depend on each other
 static constexpr int PASSES = 3;
 
 void MPMFlowWetting::find_walls()
@@ -54,7 +54,7 @@ void MPMFlowWetting::complete(std::vector<double> &values, bool find, bool skip_
 }
 
 /* ----------------------------------------------------------------------
-   linear function between the middles of cells, so far from that of a cell [spacings]
+   Linear function between the middles of cells, at a place that is way from the middle of a cell [spacings].
 ------------------------------------------------------------------------- */
 
 double MPMFlowWetting::value_at(const std::vector<double> &values, const MPMFlowLattice::Cell &cell,
@@ -94,7 +94,9 @@ void MPMFlowWetting::fill_regions(std::vector<double> &values, bool find, bool s
       const auto &cell = cells.cells[one.cell];
       double way[3];
       for (int d = 0; d < 3; d++) way[d] = 2.0 * one.depth * one.out[d];
-      if (find && cotangent != 0.0) {    // less and less at the mirror image, along the wall
+      if (find &&
+          cotangent !=
+              0.0) {    // direction along the wall in which values at the mirror image decrease
         double slope[3] = {0.0, 0.0, 0.0}, normal = 0.0, square = 0.0;
         for (int d = 0; d < dim; d++) {
           double up[3] = {way[0], way[1], way[2]}, down[3] = {way[0], way[1], way[2]};
@@ -132,7 +134,8 @@ double MPMFlowWetting::along_wall(const std::vector<double> &layer, const AtWall
 }
 
 /* ----------------------------------------------------------------------
-   the one layer behind walls of the box has what is at the wall, shifted by the cotangent, in steps of a spacing at the most
+   The one layer behind walls of the box has the values at the wall, shifted by the cotangent, in steps of at
+   most a spacing.
 ------------------------------------------------------------------------- */
 
 void MPMFlowWetting::fill_walls(std::vector<double> &values, bool find)

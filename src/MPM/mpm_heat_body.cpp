@@ -7,36 +7,43 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Heat q through a flat surface with the normal n, per area, is in equilibrium with a constant flux in the material if
-   each node i gets q n.G_i, G_i = sum_p V_p grad N_ip, the sum over the points as it is: with these weights a temperature
-   that varies linearly stays as it is wherever points and nodes are, also at nodes that points hardly reach. At edges G_i has a
-   part of the other surface, too, which n.G_i has not, if that is at a right angle. And
+   Heat q per area through a flat surface with the normal n is in equilibrium with a constant flux in the
+   material if each node i gets q n.G_i, where G_i = sum_p V_p grad N_ip is the actual sum over the points.
+   With these weights, a temperature that varies linearly stays as it is wherever points and nodes are, also
+   at nodes that points hardly reach. At edges, G_i also has a part of the other surface, which n.G_i does not
+   have if that surface is at a right angle. And
 
      sum_i n.G_i x_i/sum_i n.G_i
 
-   along a line of nodes is the place at which the volume of the points ends. With weights from the functions at the surface
-   instead, nodes next to it got up to a tenth of the heat too much or too little. As |G|^2 <= C_i sum_p V_p^2 |grad N|^2/(N C_p), the
-   response of the temperature of the surface, sum_i w_i T_i with w_i = n.G_i/sum n.G, to heat is bounded, too.
+   along a line of nodes is the place at which the volume of the points ends. With weights from the functions
+   at the surface instead, nodes next to it got up to a tenth of the heat too much or too little. Because
+   |G|^2 <= C_i sum_p V_p^2 |grad N|^2/(N C_p), the response to heat of the temperature of the surface, sum_i
+   w_i T_i with w_i = n.G_i/sum n.G, is bounded, too.
 
-   The sums are over all points of the field. Where some of them do not conduct, a node may have next to no capacity: |G|^2 is
-   at most what is above with V_i = sum_p V_p N instead of C_i, and with the factor min(1, 2 f) of the share f of V_i that conducts,
-   w^2/C_i is bounded again. What these factors leave of the weights is the share of the area through which heat goes.
+   The sums are over all points of the field. Where some of them do not conduct, a node may have next to no
+   capacity. |G|^2 then has the bound above with V_i = sum_p V_p N instead of C_i, and a factor min(1, 2 f),
+   with the share f of V_i that conducts, makes w^2/C_i bounded again. The part of the weights that these
+   factors leave is the share of the area through which heat goes.
 
-   Linear functions have no such bound: a point just inside of a cell gives the node behind it a gradient, but next to no capacity. There
-   the factor is min(1, 2 V_i/V) of what the volume V of a node with this surface is, as at faces of the box (mpm_heat_faces.cpp),
-   which makes the place at which a temperature is taken wrong by a part of a cell. And where the volume of the points ends is known to
-   half of their spacing only, as all places of a point in a cell are the same to its gradients.
+   Linear functions have no such bound: a point just inside of a cell gives the node behind it a gradient, but
+   next to no capacity. There the factor is min(1, 2 V_i/V), where V is the volume of a node with this
+   surface, as at faces of the box (mpm_heat_faces.cpp). The place at which a temperature is taken is then
+   wrong by a part of a cell. And the end of the volume of the points is known only to half of their spacing,
+   because the gradients are the same for all places of a point in a cell.
 
-   Nor have Bernstein polynomials, whose nodes at the sides of cells and in the middle see a surface differently, too. Its place, normal, and area are
-   those of lines of quadratic B-splines on the same nodes, of sums over boxes, for points may be anywhere in a cell. Across such a line
-   nodes of the field have the integrals 4/3 and 2/3: the line gives its area to these, and what a line of the field gets of it
-   has the weights of the functions where the surface crosses it, with the factor above.
+   Bernstein polynomials have no such bound, either, and their nodes at the sides and in the middle of cells
+   see a surface differently. The place, normal, and area of the surface are those of lines of quadratic
+   B-splines on the same nodes, from sums over boxes, because points may be anywhere in a cell. Across such a
+   line, nodes of the field have the integrals 4/3 and 2/3. The line gives its area to these, and the part
+   that a line of the field gets has the weights of the functions where the surface crosses it, with the
+   factor above.
 
-   The area of a line is that of the whole line where the body fills all that is behind its surface, and less at the sides of
-   the body and of the box. The sum of n.G has the noise of sums over points that are no integrals.
+   The area of a line is that of the whole line where the body fills all that is behind its surface, and less
+   at the sides of the body and of the box. The sum of n.G has the noise of sums over points, which are not
+   integrals.
 
-   A surface that is inclined crosses lines of nodes along several axes. The lines along the axis a count with the share
-   s_a = n_a^4/sum_b n_b^4 of the area, each h^(d-1)/|n_a|.
+   A surface that is inclined crosses lines of nodes along several axes. The lines along the axis a count with
+   the share s_a = n_a^4/sum_b n_b^4 of the area, each h^(d-1)/|n_a|.
 ------------------------------------------------------------------------- */
 
 #include "mpm_heat_body.h"
@@ -58,14 +65,17 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using MathSpecial::square;
 
-static constexpr double LEAST =
-    0.01;    // weights of a line that has a surface, as a share of a full one
-static constexpr double ENOUGH = 0.5;    // of the volume of a node, that conducts, for its weight
-// sums over points are not exactly integrals: a line from here on is full, and what is between
+// least sum of weights of a line that has a surface, over that of a full line
+static constexpr double LEAST = 0.01;
+// share of the volume of a node that has to conduct for its full weight
+static constexpr double ENOUGH = 0.5;
+// sums over points are not exactly integrals: a line counts as full
+// from FULL on, with a transition from NOT_FULL
 static constexpr double FULL = 0.95, NOT_FULL = 0.8;
-// length of the mean of unit normals from which on a surface is not an edge: that of two that differ by 36 degrees
+// length of the mean of unit normals from which on a surface is no
+// edge: that of two normals that differ by 36 degrees
 static constexpr double STRAIGHT = 0.95;
-// gaps up to which all heat goes through, and from which on none, in node spacings
+// gaps up to which all heat goes through, and from which on none does, in node spacings
 static constexpr double TOUCHES = 0.2, IS_APART = 0.4, MORE_WITH_LINEAR = 0.1;
 
 MPMHeatBody::MPMHeatBody(LAMMPS *lmp, MPMField &field, MPMConduction *conduction) :
@@ -138,7 +148,8 @@ double MPMHeatBody::node_circle(int64_t node) const
   return field.frame->node_circle((int) (node / NODES_PER_BLOCK), (int) (node % NODES_PER_BLOCK));
 }
 
-/** Of lines along the axis of symmetry that of their nodes, which next to the axis have a mean radius. */
+/** Length of the circle around the axis of symmetry. Lines along this axis have that of their nodes, which
+ *  next to the axis have a mean radius. */
 double MPMHeatBody::circle(int axis, const int *index, double at) const
 {
   if (!field.options.axisymmetric) return 1.0;
@@ -189,8 +200,8 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *
   return !linear || weigh_by_functions(first, at, part, into[axis], w, line);
 }
 
-/** Weights w of the functions at the surface, in proportion to the volume of a node if that is less than half of what it has where
- *  material fills this part of the line. */
+/** Weights w of the functions at the surface. The weight of a node is reduced in proportion to its volume if
+ *  this is less than half of what it is where material fills this part of the line. */
 bool MPMHeatBody::weigh_by_functions(int first, double at, double part, double into,
                                      const double *w, Line &line) const
 {
@@ -207,7 +218,8 @@ bool MPMHeatBody::weigh_by_functions(int first, double at, double part, double i
 }
 
 /* ----------------------------------------------------------------------
-   Bernstein polynomials: cells have two node spacings, with nodes at their sides (even numbers) and in the middle
+   Bernstein polynomials: cells have two node spacings, with nodes at their sides (even numbers) and in the
+   middle
 ------------------------------------------------------------------------- */
 
 bool MPMHeatBody::spreads() const
@@ -220,7 +232,7 @@ static double width(int index)
   return index % 2 ? 2.0 / 3.0 : 4.0 / 3.0;
 }
 
-/** Integral of the polynomial of a node from without up to this depth, all in node spacings. */
+/** Integral of the polynomial of a node from outside up to this depth, all in node spacings. */
 static double volume_at_depth(int index, double depth)
 {
   if (index % 2) {
@@ -279,7 +291,7 @@ bool MPMHeatBody::spread(const int *base, double at, const double *into, const L
     all += part.area;
     parts.push_back(part);
   }
-  // shares of a line, of which the sum over places is one at the most, bound its rate
+  // shares of a line are not scaled: they bound its rate, with a sum over places of at most one
   for (auto &part : parts) part.area /= all;
   return !parts.empty();
 }
@@ -322,7 +334,7 @@ bool MPMHeatBody::find_response(Line &line) const
   return true;
 }
 
-/** Nodes without weight may have no capacity, and are not in the system. */
+/** Nodes without weight are left out: they may have no capacity, and are not in the system. */
 void MPMHeatBody::Line::add_term(double stiffness, const MPMDiffusion::Term &use) const
 {
   if (!(stiffness > 0.0)) return;

@@ -7,25 +7,26 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Surfaces are where a number at the nodes changes its sign between two nodes along an axis: the distance from a region,
-   or the depth in the body by the share of the volume of the node that it fills (of what is inside of the box), for free
-   surfaces. Lines of nodes through these places have the temperature T = sum_k w_k T_k of the surface, and get the heat
-   (mpm_heat_body.cpp).
+   Surfaces are where a number at the nodes changes its sign between two nodes along an axis: the distance
+   from a region, or, for free surfaces, the depth in the body by the share of the volume of a node (inside of
+   the box) that the body fills. Lines of nodes through these places have the temperature T = sum_k w_k T_k of
+   the surface, and get the heat (mpm_heat_body.cpp).
 
-   With the power P = f (T_out - T) of a line, f = area * coefficient, T would follow the temperature outside with the rate r =
-   f R/s, where R is its response to heat and s the share of the area that the line has. As in mpm_heat_contact.cpp,
-   this rate is limited to l: where r is larger,
+   With the power P = f (T_out - T) of a line, f = area * coefficient, T would follow the temperature outside
+   with the rate r = f R/s, where R is its response to heat and s the share of the area that the line has. As
+   in mpm_heat_contact.cpp, this rate is limited to l: where r is larger,
 
      P = (l/r) f (T_out - T) - (1 - l/r) s D/R,   D: rate of T by all other heat,
 
    which is f (T_out - T) when nothing changes, and with r -> infinity prescribes the temperature.
 
-   D has no heat of other lines of surfaces and contacts. Along a surface, lines of several axes through it share the area, and all
-   of them together are one. At edges, lines of surfaces with other normals have nodes in common with a line, and its power in the
-   steady state would depend on l, and so on the time step: with the others' heat D' in D, P = F + (r/l - 1) D'/R. Equations for all lines that
-   cross, as at faces of the box (mpm_heat_faces.cpp), would couple all of an inclined surface. Instead lines at edges get so little area
-   that r is at most the rate of conduction. Then they are never limited, P = F, and the temperature of the surface is in these few cells
-   that of a place about a quarter of a cell beyond it.
+   D contains no heat of other lines of surfaces and contacts. Along a surface, lines of several axes through
+   it share the area, and together count as one. At edges, lines of surfaces with other normals have nodes in
+   common with a line, and its power in the steady state would depend on l, and thus on the time step: with
+   the heat D' of the other lines in D, P = F + (r/l - 1) D'/R. Equations for all lines that cross, as at
+   faces of the box (mpm_heat_faces.cpp), would couple all of an inclined surface. Instead, lines at edges get
+   so little area that r is at most the rate of conduction. They are then never limited, P = F, and in these
+   few cells the temperature of the surface is that of a place about a quarter of a cell beyond it.
 ------------------------------------------------------------------------- */
 
 #include "mpm_heat_surface.h"
@@ -44,14 +45,15 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double FAR =
-    4.0;    // distances from regions beyond are not needed, in node spacings
-static constexpr double COVERED = 0.5;    // free surfaces that are as near to a region are not free
+static constexpr double FAR = 4.0;    // node spacings: larger distances from regions are not needed
+// free surfaces this near to a region, in node spacings, are not free
+static constexpr double COVERED = 0.5;
 static constexpr double ALL_ROOM = 0.999;
-static constexpr int INSIDE = 3;                      // nodes from which on a body is whole
-static constexpr double LEAST_FILLED = 0.02;          // of a line, for a surface
-static constexpr double LEAST_ROOM = 0.02;            // of a line of nodes at a face of the box
-static constexpr double OPEN = 0.15, HIDDEN = 0.4;    // share of other bodies at a free surface
+static constexpr int INSIDE = 3;                // nodes inwards that show how full a body is
+static constexpr double LEAST_FILLED = 0.02;    // least fullness of a line with a surface
+static constexpr double LEAST_ROOM = 0.02;    // least room of a line of nodes at a face of the box
+// shares of other bodies at a free surface up to which it is open, and from which on it is hidden
+static constexpr double OPEN = 0.15, HIDDEN = 0.4;
 
 /* ---------------------------------------------------------------------- */
 
@@ -91,7 +93,7 @@ bool MPMHeatSurfaces::near_wall(Wall &wall, const int *b) const
 
 void MPMHeatSurfaces::extend_topology()
 {
-  // with one rank, too, for lines through the surface of a region next to the last nodes that points reach
+  // also with one rank, for lines through the surface of a region next to the last nodes that points reach
   const bool all = has_free && comm->nprocs > 1;
   if (!all && walls.empty()) return;
   const auto &blocks = body.field.grid.blocks;
@@ -100,7 +102,7 @@ void MPMHeatSurfaces::extend_topology()
     if (!wall.moves()) wall.region->prematch();
   for (int ib = 0; ib < nblocks; ib++) {
     const int b[3] = {blocks[ib].b[0], blocks[ib].b[1], blocks[ib].b[2]};
-    // a region that moves may come here until blocks are found again
+    // a moving region may come here before blocks are found again
     if (all || std::any_of(walls.begin(), walls.end(), [&](Wall &wall) {
           return wall.moves() || near_wall(wall, b);
         }))
@@ -114,7 +116,7 @@ void MPMHeatSurfaces::topology_changed()
 }
 
 /* ----------------------------------------------------------------------
-   also the distances of nodes from regions
+   Also finds the distances of nodes from regions.
 ------------------------------------------------------------------------- */
 
 void MPMHeatSurfaces::mark_near()
@@ -147,7 +149,8 @@ void MPMHeatSurfaces::mark_near()
 }
 
 /* ----------------------------------------------------------------------
-   calls f(axis, index, node, next) for pairs of neighbors, none of them a periodic image; next: -1 if it has no block
+   Calls f(axis, index, node, next) for pairs of neighbors, none of them a periodic image; next: -1 if it has
+   no block.
 ------------------------------------------------------------------------- */
 
 template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
@@ -172,7 +175,7 @@ template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
 }
 
 /* ----------------------------------------------------------------------
-   surface of a region: material is where the distance is not negative
+   Surface of a region: material is where the distance is not negative
 ------------------------------------------------------------------------- */
 
 void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
@@ -185,7 +188,7 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
     const double part = distance[node] / (distance[node] - distance[next]);
     double x[3], into[3];
     lattice.node_position(index, x);
-    // on the surface itself rounding decides on the side
+    // on the surface itself, rounding would decide on the side
     x[a] += (part + (distance[next] < 0.0 ? -0.05 : 0.05)) * h;
     wall.surface.normal(x, FAR * h, 1.0e-4 * h, into);
     Place place;
@@ -204,8 +207,8 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
   });
 }
 
-/** Adds a place, or those of the lines of the field that it is for: heat goes to the end of the body, and not to a region some way off,
- *  see MPMConduction::find_ends(). */
+/** Adds a place or, where lines of the field share it, their places: heat goes to the end of the body, and
+ *  not to a region some way off, see MPMConduction::find_ends(). */
 void MPMHeatSurfaces::keep(const Place &whole, const int *index)
 {
   if (!body.spreads()) {
@@ -230,7 +233,7 @@ void MPMHeatSurfaces::look_behind(MPMHeatThin &thin, const Place &place, const i
   thin.take(place.condition, body, at, into, place.area);
 }
 
-/** What fixed faces of the box leave of the volume of a node, as a share of it. */
+/** Share of the volume of a node that fixed faces of the box leave. */
 double MPMHeatSurfaces::room(int64_t node) const
 {
   int index[3];
@@ -253,8 +256,9 @@ void MPMHeatSurfaces::find_filled()
 }
 
 /* ----------------------------------------------------------------------
-   The rank that counts a node of a neighbor has points of it there, and hence, in reach of this body, the node of this body,
-   too. Other ranks may have the latter alone: what the neighbor has there comes from that rank.
+   The rank that counts a node of a neighbor has points of the neighbor there, and hence, in reach of this
+   body, also the node of this body. Other ranks may have only the node of this body, and get the share of the
+   neighbor from that rank.
 ------------------------------------------------------------------------- */
 
 void MPMHeatSurfaces::find_covered()
@@ -282,7 +286,7 @@ void MPMHeatSurfaces::find_covered()
 }
 
 /* ----------------------------------------------------------------------
-   free surfaces: where half of the volume of a node that is inside of the box is filled
+   Free surfaces: where half of the volume of a node that is inside of the box is filled
 ------------------------------------------------------------------------- */
 
 void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
@@ -294,7 +298,7 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
   find_filled();
   find_covered();
   bool known =
-      true;    // nodes that were looked at; a rank with points next to a surface knows them all
+      true;    // were all nodes known? A rank with points next to a surface knows all that it needs
   const auto at = [&](const int *index) {
     int64_t node = grid.locate(index);
     if (node < 0) {
@@ -308,8 +312,8 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
   each_pair([&](int a, const int *index, int64_t node, int64_t next) {
     const double here = filled[node], there = next < 0 ? 0.0 : filled[next];
     known = next >= 0 || body.knows_all();
-    // lines at the side of a body have only a part of the volume, also inside of it: each node is compared with the
-    // fullest of those further inside
+    // lines at the side of a body have only a part of the volume, also inside of it: each node is
+    // compared with the fullest of those further inside
     const int inward = here < there ? 1 : -1;
     double full[2], part_full[2];
     for (int k = 0; k < 2; k++) {
@@ -406,7 +410,7 @@ double MPMHeatSurfaces::begin_step()
   double most = 0.0;
   for (auto &place : places) {
     const auto &condition = conditions[place.condition].condition;
-    if (!body.find_response(place.line)) {    // material that does not conduct
+    if (!body.find_response(place.line)) {    // the material does not conduct
       place.share = place.area = 0.0;
       continue;
     }

@@ -7,11 +7,12 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   A node whose function reaches both surfaces of a body gets parts of V grad N of both, which cancel: what is left of
-   them belongs to a smaller area. That happens where the body is thinner than the functions are wide, 3 node spacings for
-   quadratic ones and 4 for cubic ones. Looking that deep along the normal tells: there is no material just
-   behind. At edges and corners there is, as far as they are not sharper than a right angle, so that
-   the area of the lines, which is small there, too, would not tell.
+   A node whose function reaches both surfaces of a body gets parts of V grad N of both, which cancel: what is
+   left belongs to a smaller area. That happens where the body is thinner than the functions are wide, 3 node
+   spacings for quadratic functions and 4 for cubic ones. It is found by looking that deep along the normal:
+   in a thin body, there is no material just behind this depth. At edges and corners there is, as far as they
+   are not sharper than a right angle. The area of the lines would not show the difference, because it is
+   small at edges, too.
 ------------------------------------------------------------------------- */
 
 #include "mpm_heat_thin.h"
@@ -26,18 +27,18 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int LOOK_EVERY = 50;    // steps
-static constexpr double BEHIND =
-    0.3;    // so far behind the width of the functions, in node spacings
-static constexpr double EMPTY =
-    0.2;    // share of the volume of nodes that is filled there at the most
-static constexpr double KNOWN = 0.5;         // share of the nodes there that must be known
-static constexpr double LEAST_ROOM = 0.1;    // of the nodes, in the box
-static constexpr double MUCH =
-    0.05;    // share of the area: less of it would not change the sum by 3 %
+// node spacings behind the width of the functions at which material is looked for
+static constexpr double BEHIND = 0.3;
+// greatest filled share of the volume of nodes at an empty place
+static constexpr double EMPTY = 0.2;
+static constexpr double KNOWN = 0.5;         // least share of the nodes there that are known
+static constexpr double LEAST_ROOM = 0.1;    // least share of the nodes there that is in the box
+// share of the area that is too thin: less would not change the sum by 3 %
+static constexpr double MUCH = 0.05;
 
 /* ----------------------------------------------------------------------
-   Is there material at this place? 1: no, 0: yes, -1: unknown. Where no points have been summed up, nothing is known;
-   nodes of one rank that have no block have no points
+   Is the place empty of material? 1: yes, 0: no, -1: unknown. Nothing is known where no points have been
+   summed up; with one rank, nodes that have no block have no points.
 ------------------------------------------------------------------------- */
 
 static int is_empty(const MPMHeatBody &body, const double *at)
@@ -63,7 +64,7 @@ static int is_empty(const MPMHeatBody &body, const double *at)
     if (node >= 0) share += w * body.share[node];
   }
   if (known < KNOWN) return -1;
-  // material on a face of the box goes on behind it
+  // material at a face of the box goes on behind it
   return room > LEAST_ROOM && share < EMPTY * room;
 }
 

@@ -30,33 +30,40 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double PROJECTED = 1.0e-12;    // relative change by one action more
+static constexpr double PROJECTED = 1.0e-12;    // relative change by one more action
 static constexpr int MOST_REPEATS = 200;
-static constexpr int MOST_TIED =
-    48;    // nodes in a group that lines of walls tie, all of which are told one by one
-static constexpr int APART =
-    7;    // spacings between those of larger groups that are told at a time
-static constexpr double ENOUGH = 0.9;    // of the slope that may be left, with the other sign
+// nodes in a group tied by lines of walls, up to which each has its own unit vector
+static constexpr int MOST_TIED = 48;
+// in larger groups, spacings between nodes that share a unit vector
+static constexpr int APART = 7;
+static constexpr double ENOUGH = 0.9;    // share of the slope that may be left, with the other sign
 static constexpr int MOST_CUTS = 12;
 static constexpr double MOST_ACCURATE = 1.0e-10;    // linear solution
-static constexpr double SYMMETRIC = 1.0e-3;         // of tangents, for conjugate gradients
-static constexpr double ROUND_OFF = 2.0e-16;        // of strains: forces are not known better
-static constexpr int TURN = 1000;                   // iterations in which GMRES must gain something
-static constexpr int IN_A_PART = 15;                // Newton iterations, of a step that has failed
-static constexpr int DO_WELL = 15;                  // iterations with levels of other tangents
-static constexpr int TOO_OLD = 300;    // of these, after which levels of the present ones are tried
-static constexpr double SLIP = 1.0e-5;               // of friction, in node spacings
-static constexpr double SOFT = 0.1, HARDER = 0.1;    // the same at first, and its change
-static constexpr double NEARLY = 1.0e-3;             // of all forces, for that change
-static constexpr double MAY_GROW =
-    100.0;    // forces that are not in balance, where lines of nodes begin to stick or slip
-static constexpr double STALLS = 0.5;     // of forces that are left, after an iteration
-static constexpr int MOST_SLOW = 2;       // of these, until bodies decide what touches and slides
-static constexpr double AT_ONCE = 0.1;    // node spacings that walls move nodes alone
-static constexpr int ROUNDS = 2;          // of friction of walls that press on each other
-static constexpr double LOST = 1.0e12;    // times the first residual
-static constexpr double REACHED = 1.0e-9;    // in points
-// unknowns of a system that is factorized as a whole, which is faster than levels, by dimension
+static constexpr double SYMMETRIC =
+    1.0e-3;    // greatest asymmetry of tangents, for conjugate gradients
+static constexpr double ROUND_OFF = 2.0e-16;    // of strains, which limits the accuracy of forces
+static constexpr int TURN = 1000;               // iterations in which GMRES must gain something
+// Newton iterations in a part of a step that failed as a whole
+static constexpr int IN_A_PART = 15;
+// iterations up to which levels are kept for the next tangents
+static constexpr int DO_WELL = 15;
+static constexpr int TOO_OLD = 300;    // iterations with old levels, after which new ones are tried
+static constexpr double SLIP = 1.0e-5;    // of friction, in node spacings
+// the slip at first, and the factor by which it decreases
+static constexpr double SOFT = 0.1, HARDER = 0.1;
+static constexpr double NEARLY = 1.0e-3;    // residual over all forces at which the slip decreases
+// growth of the residual that is accepted where lines of nodes begin to stick or slip
+static constexpr double MAY_GROW = 100.0;
+// share of the residual left after an iteration that counts as slow
+static constexpr double STALLS = 0.5;
+// such iterations, until bodies decide what touches and slides
+static constexpr int MOST_SLOW = 2;
+static constexpr double AT_ONCE = 0.1;    // node spacings up to which walls move their nodes alone
+static constexpr int ROUNDS = 2;    // in which friction of walls that press on each other is found
+static constexpr double LOST = 1.0e12;    // growth over the first residual at which an attempt ends
+// in points: nodes with less reach count as without points
+static constexpr double REACHED = 1.0e-9;
+// largest system, by dimension, that is factorized as a whole, which is faster than levels
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};
 // the same with averages of the pressure, for which levels need many iterations
 static constexpr int WHOLE_WITH_AVERAGES[] = {0, 0, 60000, 15000};
@@ -111,7 +118,7 @@ void MPMImplicit::init()
       joint = std::make_unique<Joint>(*this, *pressure);
 }
 
-/** use(member, n, record) for all nodes, where n is their place in vectors. */
+/** Calls use(member, n, record) for all nodes, where n is their place in vectors. */
 template <class Use> void MPMImplicit::each_record(const Use &use)
 {
   for (auto &member : members) {
@@ -121,13 +128,14 @@ template <class Use> void MPMImplicit::each_record(const Use &use)
   }
 }
 
-/** use(n) for all nodes with a mass that this rank owns. */
+/** Calls use(n) for all nodes with a mass that this rank owns. */
 template <class Use> void MPMImplicit::each_owned(const Use &use) const
 {
   for (std::size_t k = 0; k < heavy_owned; k++) use(heavy[k]);
 }
 
-/** use(n, k) for all entries k of vectors, those of nodes n with a mass. The width is a constant in the innermost loop. */
+/** Calls use(n, k) for all entries k of vectors that belong to nodes n with a mass. The width is a constant
+ *  in the innermost loop. */
 template <class Use> void MPMImplicit::each_entry(const Use &use) const
 {
   const auto all = [&](auto dim) {
@@ -173,7 +181,7 @@ void MPMImplicit::take_nodes()
     list->assign(nreals(), 0.0);
   each_record([&](const Member &, int64_t n, double *record) {
     mass[n] = record[3] > 0.0 ? record[3] : 0.0;
-    if (field.domains && reach[n] < REACHED) {    // as if no point came there
+    if (field.domains && reach[n] < REACHED) {    // as if no point reached it
       std::fill_n(record, 8, 0.0);
       mass[n] = 0.0;
     }
@@ -186,7 +194,7 @@ void MPMImplicit::take_nodes()
   find_heavy();
 }
 
-/** Records of nodes, which hold trial motions meanwhile, have what they had at the start of the step. */
+/** Restores the records of nodes, which hold trial motions during the step, to the start of the step. */
 void MPMImplicit::give_back_start()
 {
   each_record([&](const Member &, int64_t n, double *record) {
@@ -199,9 +207,10 @@ void MPMImplicit::give_back_start()
 }
 
 /* ----------------------------------------------------------------------
-   A node that corners of domains, or nodes of elements, come to by a small share e has forces of the order e, and a stiffness of the order
-   e^2: it moves by 1/e of what these do. Forces of nodes say how well those of corners are in balance when they are divided by e. Where e is round-off
-   of the places of corners, which may be on a plane of nodes, the node is left alone: corners then stand still by this share
+   A node that corners of domains, or nodes of elements, reach with a small share e has forces of the order e
+   and a stiffness of the order e^2: it moves 1/e times as far as these corners do. Its forces divided by e
+   show how well the forces of the corners are in balance. Where e is only round-off of the places of corners,
+   which may lie on a plane of nodes, the node is left alone: corners then do not move by this share.
 ------------------------------------------------------------------------- */
 
 void MPMImplicit::find_reach()
@@ -218,8 +227,9 @@ void MPMImplicit::find_reach()
 }
 
 /* ----------------------------------------------------------------------
-   constraints. Walls that meet act one after the other, and what the last one does may undo something of what the first
-   one did: repeated, orthogonal projections become that on what all of them leave free (J. von Neumann, 1933)
+   Constraints. Walls that meet act one after the other, and the last one may undo part of what the first one
+   did. When they are repeated, orthogonal projections converge to the projection onto what all of them leave
+   free (J. von Neumann, 1933).
 ------------------------------------------------------------------------- */
 
 void MPMImplicit::act(double *velocities)
@@ -254,7 +264,7 @@ void MPMImplicit::find_constraints()
     rubs = any;
   }
 
-  // is P P = P for a vector that is no special one, and the same on all ranks?
+  // is P P = P for an arbitrary vector, and the same on all ranks?
 
   std::vector<double> once(nreals()), twice;
   for (repeats = 1; repeats <= MOST_REPEATS; repeats *= 2) {
@@ -288,7 +298,7 @@ void MPMImplicit::find_constraints()
    bodies that touch each other
 ------------------------------------------------------------------------- */
 
-/** Does anything touch? And what walls do by themselves. */
+/** Finds whether anything touches, and what the walls do by themselves. */
 void MPMImplicit::find_touching()
 {
   touching = false;
@@ -308,7 +318,7 @@ void MPMImplicit::find_touching()
   ties->factorize();
 }
 
-/** v <- P_w v, see project(). */
+/** v <- P_w v with the projection of the walls alone, scaled as in project(). */
 void MPMImplicit::take_by_walls(double *v)
 {
   double scale = 1.0;
@@ -322,7 +332,7 @@ void MPMImplicit::take_by_walls(double *v)
     for (int64_t k = 0; k < nreals(); k++) v[k] = (v[k] - of_walls[k]) / scale;
 }
 
-/** Displacements of what walls hold, and was not at them at the start of the step. */
+/** Displacements that bring nodes to the walls that hold them, where they were not at the start of the step. */
 void MPMImplicit::find_closing()
 {
   int mine = 0, any = 0;
@@ -338,7 +348,8 @@ void MPMImplicit::find_closing()
   for (auto *contact : contacts) contact->close_gaps(false);
 }
 
-/** x <- P x. Where walls move, x is made as large as their velocity, so that the difference keeps its digits. */
+/** x <- P x. Where walls move, x is scaled to the size of their velocity, so that the difference keeps its
+ *  digits. */
 void MPMImplicit::project(double *x)
 {
   if (!constrained) return;
@@ -371,7 +382,8 @@ void MPMImplicit::project_forces(double *f)
   });
 }
 
-/** Friction after the motion u, with the forces that press by the residual, in which that of other walls has a part. */
+/** Friction after the motion u, from the pressing forces in the residual, which contains the friction of
+ *  other walls. */
 void MPMImplicit::find_friction(const std::vector<double> &u)
 {
   friction.assign(nreals(), 0.0);
@@ -381,22 +393,23 @@ void MPMImplicit::find_friction(const std::vector<double> &u)
     std::fill(friction.begin(), friction.end(), 0.0);
     for (auto *contact : contacts) {
       contact->take_forces(of_pushes);
-      // bodies that stick have no slip in u, and that of what slides has to be measured in the same way
+      // bodies that stick have no slip in u, so the slip of sliding ones has to be measured in the same way
       contact->add_friction(contact->is_regularised() ? slide_of(u) : u.data(), friction.data());
     }
     for (double &force : friction) force *= rub_share;
   }
 }
 
-/** Are systems those in which the forces that press stay as they are, so that bodies that slide leave them symmetric? The balance of forces has friction by the
- *  present ones, to which iterations come as soon as friction changes them by less than they change friction. */
+/** Do the linear systems keep the pressing forces fixed, so that sliding bodies leave them symmetric? The
+ *  balance of forces has friction by the present pressing forces. The iterations converge to it if friction
+ *  changes these forces by less than they change friction. */
 bool MPMImplicit::holds_bounds() const
 {
   return tied && now.asymmetry <= SYMMETRIC;
 }
 
-/** u becomes what walls allow that have gone this share of their way. Where that is far, u is left as it is, and held gets the way in
- *  addition: true, on all ranks. */
+/** Moves u to what walls allow after this share of their way. If that is far, u stays as it is and the way is
+ *  added to held: true, on all ranks. */
 bool MPMImplicit::meet_walls(std::vector<double> &u, double share)
 {
   trial = u;
@@ -415,8 +428,9 @@ bool MPMImplicit::meet_walls(std::vector<double> &u, double share)
   return true;
 }
 
-/** Sum of forces that are rounding errors: those of a strain, and of its part that comes from large motions of a node spacing. The mean
- *  motion of the mass: nodes at the very end of the functions of points have next to none, and go far. */
+/** Sum of forces that counts as round-off: that of a strain, and of the part of the strain that comes from
+ *  motions larger than a node spacing. The motion is a mean over the mass, because nodes at the very end of
+ *  the functions of points have next to no mass and move far. */
 double MPMImplicit::negligible_forces(const std::vector<double> &u, double stiffness) const
 {
   double mine[2] = {0.0, 0.0}, all[2];
@@ -432,7 +446,7 @@ double MPMImplicit::negligible_forces(const std::vector<double> &u, double stiff
   return ROUND_OFF * stiffness * std::max(1.0, 4.0 * way / field.lattice.h);
 }
 
-/** Nodes that points barely reach get a stiffness by the moduli of the start of the step. Collective. */
+/** Gives nodes that points barely reach a stiffness by the moduli at the start of the step. Collective. */
 void MPMImplicit::begin_loose()
 {
   std::vector<double> moduli;
@@ -445,7 +459,7 @@ void MPMImplicit::begin_loose()
   }
 }
 
-/** What touches, when forces are in balance: false, on all ranks, if nothing has to be changed. */
+/** Decides what touches when forces are in balance. False, on all ranks, if nothing changes. */
 bool MPMImplicit::decide_contact(std::vector<double> &u, double unbalanced)
 {
   int changed = 0, any;
@@ -458,8 +472,8 @@ bool MPMImplicit::decide_contact(std::vector<double> &u, double unbalanced)
   return true;
 }
 
-/** What is held goes its way, and all the rest with it, or the largest of shares 1, 1/2, ... of it after which no point is inside out. False
- *  if there is none. */
+/** Moves what is held along its way, and all the rest with it, by the largest of the shares 1, 1/2, ... after
+ *  which no point is inside out. False if there is none. */
 bool MPMImplicit::close(std::vector<double> &u, const std::vector<double> &du, double &size,
                         double &share)
 {
@@ -473,8 +487,9 @@ bool MPMImplicit::close(std::vector<double> &u, const std::vector<double> &du, d
   return false;
 }
 
-/** Points that walls carry as a whole: whether there may be any, on any rank. Averages of stress, a pressure of nodes, and the forces of the start of the
- *  step know nothing of them. */
+/** Finds points that walls carry as a whole; true if there may be any, on any rank. There are none with
+ *  averages of stress, a pressure of nodes, or forces of the start of the step, which do not account for
+ *  them. */
 bool MPMImplicit::find_carried()
 {
   std::vector<MPMTangent::Part> parts;
@@ -491,7 +506,7 @@ bool MPMImplicit::find_carried()
   return any;
 }
 
-/** Loads on them. Collective. */
+/** Moves the loads on these points from the nodes to the walls. Collective. */
 void MPMImplicit::bear_carried()
 {
   std::vector<double> on_them(nreals());
@@ -506,7 +521,8 @@ void MPMImplicit::check_contacts()
   for (auto *contact : contacts) contact->check_arrival();
 }
 
-/** The sum of the sizes of the vectors of the nodes of this rank; of_corners: of what these are for corners of domains, see find_reach(). */
+/** Sum of the sizes of the vectors of the nodes of this rank. of_corners: sizes as seen by corners of
+ *  domains, see find_reach(). */
 double MPMImplicit::size_of(const std::vector<double> &f, bool of_corners) const
 {
   double mine = 0.0;
@@ -529,12 +545,12 @@ double MPMImplicit::size_of(const std::vector<double> &f, bool of_corners) const
 }
 
 /* ----------------------------------------------------------------------
-   the linear system: P^T (c m + K) P with K = -df_int/du
+   The linear system: P^T (c m + K) P with K = -df_int/du
 ------------------------------------------------------------------------- */
 
 void MPMImplicit::apply(const double *x, double *y)
 {
-  // levels know what walls leave free node by node: their vectors are not quite in the range of P
+  // levels know what walls leave free only node by node: their vectors are not quite in the range of P
   if (by_levels) {
     allowed.assign(x, x + nreals());
     project(allowed.data());
@@ -562,12 +578,12 @@ void MPMImplicit::apply(const double *x, double *y)
   project_forces(y);
 }
 
-/** Levels, or blocks of nodes, which have been inverted. */
+/** Applies the preconditioner: levels, or the inverted blocks of nodes. */
 void MPMImplicit::precondition(const double *r, double *z)
 {
   if (by_levels) {
     multigrid->precondition(r, z);
-    // nodes that are left alone, see find_reach(), have a stiffness, but no mass
+    // nodes that are left alone, see find_reach(), have a stiffness but no mass
     for (int64_t k = 0; by_reach && k < nreals(); k++)
       if (!(mass[k / width] > 0.0)) z[k] = 0.0;
     project(z);
@@ -583,7 +599,7 @@ void MPMImplicit::precondition(const double *r, double *z)
   project(z);
 }
 
-/** Inverse of a symmetric matrix, in place, by its Cholesky factors; where it has none, of its diagonal. */
+/** Inverts a symmetric matrix in place, by its Cholesky factors or, where it has none, by its diagonal. */
 static void invert(int n, double *A)
 {
   double L[3][3] = {{0.0}}, inverse[3][3] = {{0.0}};
@@ -618,7 +634,7 @@ static void invert(int n, double *A)
 }
 
 /* ----------------------------------------------------------------------
-   all fields: each one has a part of the vectors
+   All fields: each one has a part of the vectors
 ------------------------------------------------------------------------- */
 
 void MPMImplicit::change_of_forces(const double *du, double *dforce)
@@ -644,7 +660,7 @@ MPMImplicit::Clock::~Clock()
   of.clock = outer;
 }
 
-/** Those of the stress after the motion u, see MPMTangent::forces(). */
+/** Forces of the stress after the motion u, see MPMTangent::forces(). */
 bool MPMImplicit::find_forces(const double *u, double *force, double &carried)
 {
   bool good = true;
@@ -659,7 +675,7 @@ bool MPMImplicit::find_forces(const double *u, double *force, double &carried)
   return good;
 }
 
-/** Tangents at the motion u; sets their asymmetry. */
+/** Finds the tangents at the motion u and their asymmetry; returns the stiffness. */
 double MPMImplicit::linearize(const double *u)
 {
   const Clock timed(*this, TANGENTS);
@@ -709,8 +725,10 @@ const double *MPMImplicit::part_of(const std::vector<double> &u)
   return partial.data();
 }
 
-/** Forces that are not in balance after the motion u, in residual and, without what walls bear, in free; size: of all forces. along: the product
- *  of free with a vector, if one is given. False, on all ranks, where points are inside out or anything is not finite. Collective. */
+/** Finds the residual after the motion u, that is, the forces that are not in balance: all of them in
+ *  residual, and without what walls bear in free. size: of all forces. along: product of free with the given
+ *  vector, if there is one. False, on all ranks, where points are inside out or anything is not finite.
+ *  Collective. */
 bool MPMImplicit::find_residual(const std::vector<double> &u, double &size,
                                 const std::vector<double> *vector, double *along)
 {
@@ -738,7 +756,7 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size,
   }
   project_forces(free.data());
   for (auto *contact : contacts) contact->take_forces(of_pushes);
-  // all of them in one message
+  // all sums in one message
   double mine[5] = {size_of(free, true), size_of(outer), size_of(change), carried, 0.0}, all[5];
   if (vector)
     for (std::size_t i = 0; i < heavy_owned; i++)
@@ -754,9 +772,9 @@ bool MPMImplicit::find_residual(const std::vector<double> &u, double &size,
 }
 
 /* ----------------------------------------------------------------------
-   u <- u + s du with du in change, whose slope du . free is given. A step is too long where forces along it have turned
-   round and are as large as before; that they grow without turning is what happens where a solid softens first (P2 of the
-   benchmarks), and is none of its business
+   u <- u + s du with du in change, whose slope du . free is given. A step is too long if the forces along it
+   have changed sign and are as large as before. Forces that grow without a change of sign are accepted: this
+   happens where a solid softens first (P2 of the benchmarks).
 ------------------------------------------------------------------------- */
 
 bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
@@ -786,7 +804,7 @@ bool MPMImplicit::search(std::vector<double> &u, double slope, double &size)
   return false;
 }
 
-/** Blocks of the diagonal of the present tangents. */
+/** Finds the blocks of the diagonal of the present tangents. */
 void MPMImplicit::find_blocks()
 {
   const Clock timed(*this, PRECONDITIONERS);
@@ -813,7 +831,7 @@ void MPMImplicit::find_blocks()
   for (auto *contact : contacts) contact->add_friction_blocks(blocks.data());
 }
 
-/** The same, inverted. */
+/** Inverts these blocks. */
 void MPMImplicit::prepare_blocks()
 {
   const Clock timed(*this, PRECONDITIONERS);
@@ -821,7 +839,7 @@ void MPMImplicit::prepare_blocks()
   by_levels = false;
 }
 
-/** The projection of values of a node that is nearest to the symmetric matrix S [n][n]. */
+/** Replaces the symmetric matrix S [n][n] of a node by the nearest projection. */
 static void round_projection(int n, double *S)
 {
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 3, 3>;
@@ -838,9 +856,10 @@ static void round_projection(int n, double *S)
   of = rounded;
 }
 
-/** Levels of the present tangents, from the blocks of the diagonal. What walls leave free of each node is told from unit vectors.
- *  Where walls hold nodes together, see find_ties(), it is for all of these. Pairs of mirror images at faces, and bodies that touch, are not
- *  quite of that kind: levels then take the heavier node of a pair for free, and the lighter one for held. */
+/** Builds the levels of the present tangents from the blocks of the diagonal. Unit vectors show what walls
+ *  leave free of each node. Where walls hold nodes together, see find_ties(), this is the freedom of all of
+ *  these nodes. Pairs of mirror images at faces, and bodies that touch, do not quite fit this scheme: levels
+ *  then take the heavier node of a pair as free, and the lighter one as held. */
 void MPMImplicit::prepare_levels()
 {
   const Clock timed(*this, PRECONDITIONERS);
@@ -863,9 +882,9 @@ void MPMImplicit::prepare_levels()
   fill_levels();
 }
 
-/** Groups of nodes that walls hold together, along lines through surfaces and faces, and the part of P that is in them: from
- *  unit vectors of one node of each group at a time.  Where lines of several surfaces chain many nodes together, along
- *  edges, each has the part of those that are near. */
+/** Finds groups of nodes that walls hold together, along lines through surfaces and faces, and the part of P
+ *  within each group, from unit vectors of one node of each group at a time. Where lines of several surfaces
+ *  chain many nodes together along edges, each node has the part of the nodes near it. */
 void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
 {
   const auto index_of = [&](int64_t node) {
@@ -883,7 +902,7 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
   for (int kind = 0; kind < 2; kind++) {
     for (std::size_t k = 0; k < groups[kind].size();) {
       const int64_t number = groups[kind][k++];
-      // those that have a mass
+      // nodes that have a mass
       const std::size_t head = mine[kind].size();
       mine[kind].push_back({0, 0, 0});
       for (int64_t i = 0; i < number; i++, k++)
@@ -942,7 +961,7 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
       most = std::max(most, of + 1);
     }
 
-  // what each of them gives to the others
+  // the part of P between the nodes of a cluster
 
   struct Local {
     int64_t node;
@@ -983,7 +1002,7 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
           for (int a = 0; a < width && place[of_rows[i][j]] == k; a++)
             rows[i][j].P[width * a + column] = unit[width * local[i].node + a];
     }
-  // a node has nothing of most of the others: what it has none of would only cost time in levels and in the rim
+  // most pairs of nodes have no part of P: they would only cost time in levels and in the rim
   for (std::size_t i = 0; i < local.size(); i++) {
     std::vector<SplineMultigrid::Tie> kept;
     bool held = false;
@@ -1001,7 +1020,7 @@ void MPMImplicit::find_ties(std::vector<SplineMultigrid::Tie> &of_nodes)
   }
 }
 
-/** Levels that have begun get what points and masses have. */
+/** Gives the levels that have begun the values of points and masses. */
 void MPMImplicit::fill_levels()
 {
   const Clock timed(*this, PRECONDITIONERS);
@@ -1029,7 +1048,8 @@ void MPMImplicit::fill_levels()
   multigrid->finish(*this, inertia > 0.0 || rubs ? stiff.data() : nullptr);
 }
 
-/** The same for tangents that are not symmetric. GMRES with restarts can come to where it gains nothing any more. */
+/** The same for tangents that are not symmetric. GMRES with restarts can reach a state in which it gains
+ *  nothing any more. */
 SolveReport MPMImplicit::solve_general(const double *b, double *x, const SolveGoal &goal)
 {
   SolveReport solved;
@@ -1044,9 +1064,9 @@ SolveReport MPMImplicit::solve_general(const double *b, double *x, const SolveGo
   return solved;
 }
 
-/** The correction x by the forces b, without a change of the pressure. Levels take longer to make than to use: those of the first tangents of a step
- *  serve all of its iterations as long as they do well. Nothing outlives the step, as a run that goes on from a restart file
- *  must take the same way. */
+/** Finds the correction x from the forces b, without a change of the pressure. Levels take longer to make
+ *  than to use: those of the first tangents of a step serve all of its iterations as long as they do well.
+ *  Nothing outlives the step, because a run that continues from a restart file must take the same way. */
 SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal)
 {
   const Clock timed(*this, SYSTEMS);
@@ -1072,7 +1092,8 @@ SolveReport MPMImplicit::solve(const double *b, double *x, const SolveGoal &goal
     }
     now.linear += solved.iterations;
     by_levels = false;
-    if (made) break;    // levels of tangents that are not positive definite are none, either
+    if (made)
+      break;    // new levels of tangents that are not positive definite are of no use, either
   }
   by_levels = false;
   find_blocks();
@@ -1085,7 +1106,8 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
   double size = 0.0, accuracy = options.least_accuracy, last = 0.0, stiffness = 0.0;
   const int before = now.iterations;
   now.residuals.clear();
-  // friction begins soft, so that what slips and what sticks is found in small changes, and walls do not tear what they drag
+  // friction begins soft, so that what slips and what sticks
+  // changes little at a time, and walls do not tear what they drag
   double softness = 0.0;
   if (std::any_of(contacts.begin(), contacts.end(), [](const MPMTrialContact *contact) {
         return contact->has_friction() && contact->is_regularised();
@@ -1102,9 +1124,9 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     return HOPELESS;
   }
   bool wall_moves = closes || (options.time == MPMImplicitOptions::STATIC && wall_speed > 0.0);
-  // since walls have moved, and it is known what touches
+  // the residual when walls have moved, and it is known what touches
   double first = wall_moves ? 0.0 : now.unbalanced;
-  int slow = 0;    // iterations that gained next to nothing since bodies have decided
+  int slow = 0;    // iterations with next to no gain since bodies have decided
   while (true) {
     bool changed = false;
     now.residuals.push_back(now.unbalanced);
@@ -1112,7 +1134,7 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
         std::max({options.tolerance * size, options.absolute * lmp->force->ftm2v,
                   negligible_forces(u, stiffness), joint ? joint->negligible_forces() : 0.0});
     enough_force = enough;
-    // sizes of what is left by the larger ones of forces and volumes, in parts of what may be left
+    // with a pressure, the larger one of the residuals of forces and volumes, relative to what may be left
     const double left = joint ? joint->excess() * enough : now.unbalanced;
     if (softness > 0.0 && !wall_moves && now.unbalanced <= std::max(enough, NEARLY * size)) {
       softness *= HARDER;
@@ -1150,8 +1172,8 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
       return FAILED;
     }
 
-    // forcing of S.C. Eisenstat, H.F. Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2: quadratic convergence without
-    // solutions that are more accurate than the tangent is worth
+    // forcing of S.C. Eisenstat, H.F. Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2: quadratic
+    // convergence without linear solutions that are more accurate than the tangent is worth
 
     if (last > 0.0) {
       const double share = left / last, next = 0.9 * share * share,
@@ -1162,7 +1184,7 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
     last = left;
 
     stiffness = linearize(part_of(u));
-    // at first, walls bring what they hold where it has to be, and all the rest goes with that
+    // at first, walls bring what they hold to its place, and all the rest goes with it
 
     if (wall_moves) {
       if (joint)
@@ -1190,8 +1212,8 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
       if (!multigrid && !tied) now.failure += " (use solver multigrid)";
       return now.iterations == before + 1 ? HOPELESS : FAILED;
     }
-    // the energy has no minimum along some way, such as next to a state that is not stable: the solution goes as far as it had
-    // one, and down the slope at least (T. Steihaug, SIAM J. Numer. Anal. 20 (1983) 626)
+    // the energy has no minimum along some direction, for example near an unstable state: the solution goes as
+    // far as it had one, and at least down the slope (T. Steihaug, SIAM J. Numer. Anal. 20 (1983) 626)
 
     if (solved.outcome == SolveReport::INDEFINITE) {
       now.indefinite++;
@@ -1223,10 +1245,10 @@ MPMImplicit::Outcome MPMImplicit::newton(std::vector<double> &u, int most_iterat
 }
 
 /* ----------------------------------------------------------------------
-   Where Newton's method does not find the end of the step at once, it goes there in parts: for shares s of it that grow to one,
-   r(u) = (1 - s) r0 is solved for, where r0 are the forces that are not in balance at the start, and walls go a share of
-   their way. What loads, gravity, ramps, and walls change comes in small portions, and the laws see one step from its start
-   to u as always: where there is no need for parts, they lead to the same end
+   Where Newton's method does not find the end of the step at once, it goes there in parts: for shares s that
+   grow to one, it solves r(u) = (1 - s) r0, where r0 is the residual at the start, and walls go a share of
+   their way. Changes by loads, gravity, ramps, and walls then come in small portions. The laws see one step
+   from its start to u as always, so that parts lead to the same end where they are not needed.
 ------------------------------------------------------------------------- */
 
 void MPMImplicit::approach(std::vector<double> &u)
@@ -1324,7 +1346,7 @@ std::vector<double> MPMImplicit::step(double step_dt)
   if (options.time == MPMImplicitOptions::STATIC) {
     for (int64_t k = 0; k < nreals(); k++) held[k] = dt * wall[k];
   } else {
-    // velocities, and accelerations by the forces of the start of the step, with those of walls
+    // velocities and accelerations by the forces of the start of the step, with those of walls
 
     start = before;
     if (constrained && all_hold) act(start.data());
@@ -1372,12 +1394,13 @@ std::vector<double> MPMImplicit::step(double step_dt)
 }
 
 /* ----------------------------------------------------------------------
-   velocities that node actions bring to those of the step, and with which reactions and works are counted as always: the
-   part of the residual that is left is no impulse.
+   Velocities that node actions turn into those of the step, and with which reactions and works are counted as
+   always: the part of the residual that is left is no impulse.
 
-   Points move with what is in the place of the new velocity, u/dt, and with FLIP change theirs by the difference to what is
-   in that of the old one. In statics both are the same, so that forces work with the displacement. The ledger has the stress of
-   the start of the step in the work of forces, at the mean of old and new velocity, and gets what is different in account()
+   Points move with the value in the place of the new velocity, u/dt. With FLIP, their velocity changes by the
+   difference from the value in the place of the old one. In statics both are the same, so that forces work
+   with the displacement. The ledger counts the work of forces with the stress at the start of the step and
+   the mean of old and new velocity; account() adds the difference.
 ------------------------------------------------------------------------- */
 
 std::vector<double> MPMImplicit::give_back(const std::vector<double> &u)
@@ -1418,7 +1441,7 @@ std::vector<double> MPMImplicit::give_back(const std::vector<double> &u)
       }
       if (midpoint && !impacts && m > 0.0) record[4 + d] = v - (2.0 * v - start[k] - before[k]);
       if (keeps && !impacts && m > 0.0) {
-        // momentum changes by accelerations that are not those of the forces of this step alone
+        // momentum also changes by accelerations that are not those of the forces of this step
         const double pull = inertia * (u[k] - from[k]),
                      end = next[k] =
                          (pull - with.of_inertia * acceleration[k]) / (1.0 - with.of_inertia);
@@ -1429,14 +1452,15 @@ std::vector<double> MPMImplicit::give_back(const std::vector<double> &u)
       if (m > 0.0 && rests && member.owns(n)) kinetic.back() += 0.5 * m * v * v;
     }
   });
-  kinetic.resize(members.size());    // of fields without nodes
+  kinetic.resize(members.size());    // also of fields without nodes
   return kinetic;
 }
 
 /* ----------------------------------------------------------------------
-   The reactions of walls are velocities of the size dt f/m for a while, which in statics with a time step of any length can be
-   large: what node actions make of them is v with a rounding error of that size. Points get v itself, and so does the ledger in
-   statics, which would have that error times the impulses of forces, as long as the step is
+   For a while, the reactions of walls are velocities of the size dt f/m, which can be large in statics with
+   its time steps of any length. What node actions make of them is v with a rounding error of that size.
+   Points therefore get v itself. So does the ledger in statics: it would have that error times the impulses
+   of forces, which are proportional to the length of the step.
 ------------------------------------------------------------------------- */
 
 void MPMImplicit::set_velocities()
@@ -1454,7 +1478,7 @@ void MPMImplicit::finish()
   if (options.keeps_acceleration()) keep_accelerations();
 }
 
-/** Ledger: forces of loads that follow points are external ones. */
+/** For the ledger: forces of loads that follow points are external forces. */
 void MPMImplicit::find_loads(const std::vector<double> &u)
 {
   if (!field.ledger.on) return;
@@ -1471,7 +1495,8 @@ void MPMImplicit::find_loads(const std::vector<double> &u)
   for (int64_t k = 0; k < nreals(); k++) more_loads[k] -= loads[k];
 }
 
-/** Forces of nodes that points barely reach after the motion of the step, and their energy. Collective. */
+/** Counts the forces, and their energy, that nodes which points barely reach have after the motion of the
+ *  step. Collective. */
 void MPMImplicit::account_loose(const std::vector<double> &u)
 {
   double mine = 0.0;
@@ -1487,7 +1512,7 @@ void MPMImplicit::account_loose(const std::vector<double> &u)
 void MPMImplicit::account()
 {
   const bool by_mean = options.moves_by_mean();
-  // of the forces of the end of the step
+  // share of the forces of the end of the step
   const double share = options.time == MPMImplicitOptions::NEWMARK ? options.gamma : late;
   const double unit = lmp->force->mvv2e;
   each_record([&](const Member &member, int64_t n, const double *record) {
@@ -1499,7 +1524,7 @@ void MPMImplicit::account()
       const double of_loads = share * dt * more_loads[k] * 0.5 * (v + old);
       external += of_loads;
       internal -= push[k] * 0.5 * (v + old) - of_loads;
-      if (member.loose) {    // which is no energy of points
+      if (member.loose) {    // this is no energy of points
         const double of_loose = dt * loose_forces[k] * 0.5 * (v + old);
         internal += of_loose;
         transfer += of_loose;

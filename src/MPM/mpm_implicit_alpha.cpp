@@ -7,9 +7,10 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The generalised alpha method and that of Hilber, Hughes, and Taylor: the acceleration of the start of a step is that of the end of the step before,
-   which is in balance with forces of no single time. Points keep it, as they do velocities: nodes get the mean by the masses of points, and points what
-   that has changed by. In the first step it is that of the forces, as in Newmark's method.
+   The generalised alpha method and that of Hilber, Hughes, and Taylor. The acceleration at the start of a
+   step is that at the end of the step before, which balances forces of no single time. Points keep it, as
+   they keep velocities: nodes get the mean by the masses of points, and points get the change of what nodes
+   have. In the first step it follows from the forces, as in Newmark's method.
 ------------------------------------------------------------------------- */
 
 #include "mpm_implicit.h"
@@ -21,12 +22,13 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Accelerations of nodes by those that points have kept, with walls. */
+/** Accelerations of nodes from those that points have kept, with walls. */
 void MPMImplicit::find_accelerations()
 {
   const int dim = width;
   const double *const of_point = lmp->atom->rmass;
-  // walls that bring contact hold by forces of the end of the step alone: until then, nodes have those of the body there
+  // walls with contact hold by forces of the end of the step alone:
+  // until then, nodes have accelerations of the body there
   std::vector<double> borne;
   if (impacts) {
     std::vector<double> rest = acceleration;
@@ -56,7 +58,8 @@ void MPMImplicit::find_accelerations()
   for (std::size_t k = 0; k < borne.size(); k++) acceleration[k] += borne[k];
 }
 
-/** Points get what accelerations of nodes have changed by, in the first step all of it. They are where they were at the start. */
+/** Gives points the change of the accelerations of nodes, in the first step all of them. Points are where
+ *  they were at the start of the step. */
 void MPMImplicit::keep_accelerations()
 {
   const int dim = width;

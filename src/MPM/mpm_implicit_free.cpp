@@ -7,9 +7,9 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Statics: a body that walls do not hold along an axis has no stiffness there, and no equilibrium if forces push it that way. This is
-   known before anything is solved for: nodes that points join are bodies, and what walls take from a motion of a body as a whole is
-   zero along the axes that are free.
+   Statics: a body that walls do not hold along an axis has no stiffness along it, and no equilibrium if
+   forces push it that way. This is found before anything is solved: nodes that share points form bodies, and
+   what walls take from the motion of a body as a whole is zero along its free axes.
 ------------------------------------------------------------------------- */
 
 #include "mpm_implicit.h"
@@ -31,8 +31,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double HELD = 1.0e-12;      // mean square of what walls take from a motion
-static constexpr double CANCELS = 1.0e-6;    // sum of forces over that of their sizes
+static constexpr double HELD = 1.0e-12;    // mean square of what walls take from a motion
+static constexpr double CANCELS =
+    1.0e-6;    // sum of forces, over the sum of their sizes, that counts as zero
 
 namespace {
 
@@ -41,7 +42,7 @@ struct Label {
   int set, rank;
 };
 
-/** The set of a rank, among those of all. */
+/** Number of a set of nodes of a rank, among the sets of all ranks. */
 uint64_t set_of(const Label &label)
 {
   return (uint64_t) label.rank << 32 | (uint64_t) label.set;
@@ -49,7 +50,8 @@ uint64_t set_of(const Label &label)
 
 }    // namespace
 
-/** The body that each node is part of, from 0 on, the same on all ranks; -1: of none. Returns their number. Collective. */
+/** Numbers the body of each node, from 0 on and the same on all ranks; -1: none. Returns the number of
+ *  bodies. Collective. */
 int MPMImplicit::find_bodies(std::vector<int> &body)
 {
   const MPMStencil stencil(field);
@@ -73,7 +75,7 @@ int MPMImplicit::find_bodies(std::vector<int> &body)
   }
   const auto all = ranks.gather(labels);
 
-  // nodes of several ranks, and periodic images, join what these have
+  // nodes shared by ranks, and periodic images, join the sets that these have
 
   std::unordered_map<uint64_t, int> of_node, of_set;
   std::vector<int> number;
@@ -95,7 +97,7 @@ int MPMImplicit::find_bodies(std::vector<int> &body)
   return (int) place.size();
 }
 
-/** Is there a body that nothing holds along the forces that it bears? Then the step has failed. Collective. */
+/** Is there a body that nothing holds along the forces on it? Then the step has failed. Collective. */
 void MPMImplicit::find_free_bodies()
 {
   // elements hold nodes together that have no point in common
@@ -103,7 +105,7 @@ void MPMImplicit::find_free_bodies()
   std::vector<int> body;
   const int nbodies = find_bodies(body), w = width, first = field.options.axisymmetric ? 1 : 0;
 
-  // sums for each body: what walls take from unit motions, products of which are [w][w]; force; its size; place; nodes
+  // sums for each body: products [w][w] of what walls take from unit motions; force; its size; place; nodes
 
   const int NSUM = w * w + 2 * w + 2;
   std::vector<double> mine((std::size_t) nbodies * NSUM, 0.0), sums, taken[3];

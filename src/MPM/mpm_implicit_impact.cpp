@@ -7,24 +7,30 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Contact in the methods of second order, in which forces are means of those of both ends of a step. Forces of walls that were there at the start push on
-   when a body leaves, and give it energy. Here those of all walls are forces f of the end alone (C. Kane, E.A. Repetto, M. Ortiz, J.E. Marsden, Comput.
-   Methods Appl. Mech. Eng. 180 (1999) 1):
+   Contact in the methods of second order. Their forces are means of those at both ends of a step: walls that
+   pressed at the start would go on pushing when a body leaves, and give it energy. Here the forces f of all
+   walls are those of the end alone (C. Kane, E.A. Repetto, M. Ortiz, J.E. Marsden, Comput. Methods Appl.
+   Mech. Eng. 180 (1999) 1):
 
      u = dt v0 + dt^2 [(1/2 - beta) a0 + beta a1] + dt^2 f/(2 m),    v = v0 + dt [(1 - gamma) a0 + gamma a1] + dt f/m
 
-   with accelerations by all other forces. With beta = 1/4 and gamma = 1/2, u = dt (v0 + v)/2, and what a wall adds to the energy is its force times the gap
-   that it closes, with the sign that takes energy. The reactions that Newton's method finds for beta m a1 are larger than f by the factor (1 - of_inertia)/(2 beta).
+   where accelerations are those by all other forces. With beta = 1/4 and gamma = 1/2, u = dt (v0 + v)/2, and
+   a wall changes the energy by its force times the gap that it closes, which takes energy. The reactions that
+   Newton's method finds for beta m a1 are larger than f by the factor (1 - of_inertia)/(2 beta).
 
-   Nodes that come to a wall would have minus their velocity after that, and bounce in each step. They get that of the wall, by an impulse at the end of the
-   step, as SHAKE becomes RATTLE by it (H.C. Andersen, J. Comput. Phys. 52 (1983) 24), and as in the contact of explicit steps: this takes the energy
-   with which they come, that of half a cell of the body, and nothing from what stays.
+   Nodes that come to a wall would leave it with the opposite velocity, and bounce in each step. An impulse at
+   the end of the step gives them the velocity of the wall, as in RATTLE in comparison to SHAKE (H.C.
+   Andersen, J. Comput. Phys. 52 (1983) 24), and as in the contact of explicit steps. This takes the energy
+   with which they come, that of half a cell of the body, and nothing from nodes that stay.
 
-   Friction is against the velocity v of the end, not against u, for the same reason: what sticks has v = 0. Where accelerations are kept by points it is in
-   these, with the force f that presses, as nodes at the surface would have large ones without it, which points would bring to their neighbors. Else it is a
-   part of f, and a term dt^2 (beta/gamma - 1/2) (a0 + f/m) of (beta/gamma) dt v is left out, which is zero in what sticks, what slips steadily, and gamma = 1/2.
-   Between bodies it is against u: what sticks there has u = 0, exactly, and then v = 0 by the impulse at the end. With v for what slides, neither would be right
-   where slip comes to its end within a step. Its work, with this force and u, takes energy, too.
+   Friction acts against the velocity v of the end, not against u, for the same reason: what sticks has v = 0.
+   Where points keep accelerations, these contain the friction by the pressing force f: without it, nodes at
+   the surface would have large accelerations, which points would bring to their neighbors. Otherwise friction
+   is a part of f, and a term dt^2 (beta/gamma - 1/2) (a0 + f/m) of (beta/gamma) dt v is left out, which is
+   zero where bodies stick or slip steadily, and for gamma = 1/2. Between bodies friction acts against u: what
+   sticks there has u = 0, exactly, and then v = 0 by the impulse at the end. With v for what slides, neither
+   would be right where slip ends within a step. The work of friction, with this force and u, takes energy,
+   too.
 ------------------------------------------------------------------------- */
 
 #include "mpm_implicit.h"
@@ -43,7 +49,7 @@ double MPMImplicitOptions::share_of_end() const
   return with.beta / with.gamma;
 }
 
-/** Of the reactions in the balance of forces, what changes the momentum in the step. */
+/** Share of the reactions in the balance of forces that changes the momentum in the step. */
 double MPMImplicit::share_of_contact() const
 {
   if (options.time == MPMImplicitOptions::MIDPOINT) return 1.0;
@@ -51,13 +57,14 @@ double MPMImplicit::share_of_contact() const
   return 2.0 * with.beta / (1.0 - with.of_inertia);
 }
 
-/** Is friction in the accelerations of both ends? In the first step nothing is known of that of its start. */
+/** Is friction part of the accelerations at both ends? In the first step the friction at its start is
+ *  unknown. */
 bool MPMImplicit::accelerates_by_friction() const
 {
   return impacts && options.keeps_acceleration() && kept.known;
 }
 
-/** Velocities and accelerations of the start are known, and u*. */
+/** Called when velocities and accelerations of the start, and u*, are known. */
 void MPMImplicit::begin_impacts()
 {
   const double share = options.share_of_end();
@@ -67,7 +74,7 @@ void MPMImplicit::begin_impacts()
     for (int64_t k = 0; k < nreals(); k++) offset[k] += dt * dt * (share - 0.5) * acceleration[k];
 }
 
-/** The velocity of the end after the motion u, in parts of what u changes it by, times dt. */
+/** Velocity at the end after the motion u, times dt and scaled so that u has the factor one. */
 const double *MPMImplicit::slide_of(const std::vector<double> &u)
 {
   if (!impacts) return u.data();
@@ -76,7 +83,7 @@ const double *MPMImplicit::slide_of(const std::vector<double> &u)
   return slide.data();
 }
 
-/** Velocities, and accelerations that are kept, of the end of the step. Collective. */
+/** Sets velocities, and accelerations that are kept, at the end of the step. Collective. */
 void MPMImplicit::end_impacts(const std::vector<double> &u)
 {
   const bool midpoint = options.time == MPMImplicitOptions::MIDPOINT,

@@ -7,15 +7,17 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The mid-point rule with affine points. Nodes move by u = dt (v0 + v1)/2, and forces are those of u/2: they have no torque about where
-   nodes are then, sum (x_i + u_i/2) x f_i = 0, as Kirchhoff stress is symmetric, so that sum (x_i + u_i) x m v1_i = sum x_i x m
-   v0_i. Points have moved with the mean velocity u/dt, and their matrices are those of that; here they get the rest w = v1 - u/dt.
-   The angular momentum of the nodes, where these have come to, is that of the points when the matrix D C of a point has
+   The mid-point rule with affine points. Nodes move by u = dt (v0 + v1)/2, and forces are those after u/2.
+   They have no torque about the places of nodes at that time, sum (x_i + u_i/2) x f_i = 0, because Kirchhoff
+   stress is symmetric, so that sum (x_i + u_i) x m v1_i = sum x_i x m v0_i. Points have moved with the mean
+   velocity u/dt, and their matrices are those of this velocity; here they get the rest w = v1 - u/dt. The
+   angular momentum of the nodes at their new places is that of the points if the matrix D C of a point has
 
      sum_i N_ip v1_i (x_i + u_i - x_p - u_p)^T
 
-   in the part that is not symmetric: with what C. Jiang, C. Schroeder, J. Teran, J. Comput. Phys. 338 (2017) 137 have in their matrices for
-   steps of this kind. For backward Euler, u = dt v1, the part with u is symmetric by itself.
+   as its part that is not symmetric, as in the matrices of C. Jiang, C. Schroeder, J. Teran, J. Comput. Phys.
+   338 (2017) 137 for steps of this kind. For backward Euler, u = dt v1, the part with u is symmetric by
+   itself.
 ------------------------------------------------------------------------- */
 
 #include "mpm_implicit.h"
@@ -29,7 +31,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Changes of velocities and matrices of points, found where they are before they move. */
+/** Finds the changes of velocities and matrices of points, where these are before they move. */
 void MPMImplicit::find_end_of_motion()
 {
   const int dim = width, square = dim * dim, U = dim;
@@ -45,7 +47,7 @@ void MPMImplicit::find_end_of_motion()
     if (member->field.affine) find_end_of_points(*member);
 }
 
-/** The same of the points of one field. */
+/** The same for the points of one field. */
 void MPMImplicit::find_end_of_points(Member &member)
 {
   MPMField &of = member.field;

@@ -7,30 +7,35 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Newton's method for motion and pressure together: with the stiffness K of the soil, Q p for the forces of the pressure, and A for what is
-   left of its equations when nothing moves, corrections of both solve
+   Newton's method for motion and pressure together. With the stiffness K of the soil, the forces Q p of the
+   pressure, and the matrix A of the equations of the pressure when nothing moves, corrections of both solve
 
      K du - Q dp = f,   Q^T du + A dp = g.
 
-   Solved as a whole, as steps in which pore water first bears nearly all and then nothing need no iterations between the two that would
-   converge slowly in either of them; by GMRES, as flow through surfaces is not symmetric in A. Its preconditioner is a
-   step of the fixed-stress split (J. Kim, H.A. Tchelepi, R. Juanes, Comput. Methods Appl. Mech. Eng. 200 (2011) 1591; J.A. White, N.
-   Castelletto, H.A. Tchelepi, ibid. 303 (2016) 55): du = K^-1 f, and then dp = (A + a^2/M)^-1 (g - Q^T du), where the modulus M of soil
-   that cannot widen stands for Q^T K^-1 Q. K^-1 are a few iterations of the linear solver for the motion alone, and the other
-   inverse is that of levels, or factors, for one value at each node. The number of iterations then depends neither on the stiffness of
-   the water nor on the length of the step.
+   This is solved as a whole: in steps in which pore water first bears nearly all load and then none,
+   iterations between the two would converge slowly in one or the other. The solver is GMRES, because flow
+   through surfaces makes A unsymmetric. Its preconditioner is a step of the fixed-stress split (J. Kim, H.A.
+   Tchelepi, R. Juanes, Comput. Methods Appl. Mech. Eng. 200 (2011) 1591; J.A. White, N. Castelletto, H.A.
+   Tchelepi, ibid. 303 (2016) 55): du = K^-1 f, and then dp = (A + a^2/M)^-1 (g - Q^T du), where the modulus M
+   of soil that cannot widen stands for Q^T K^-1 Q. K^-1 is a few iterations of the linear solver for the
+   motion alone, and the other inverse is by levels, or factors, for one value at each node. The number of
+   iterations then depends neither on the stiffness of the water nor on the length of the step.
 
-   a^2/M has to be what points make of it, sum_p V_p N_ip N_jp a^2/M, and no sum for each node: functions of pressures that alternate from
-   node to node are small between nodes (0.13 of the mean square in the line, 0.0024 in space), and so is what the soil takes up of them. With
-   sums a disc of 200 points of nearly incompressible water needed 45 iterations of GMRES for six digits and now needs 8, and
-   a sphere did not converge.
+   The term a^2/M has to be the matrix of sums over points, sum_p V_p N_ip N_jp a^2/M, and not one sum for
+   each node: pressures that alternate from node to node are small between nodes (0.13 of the mean square
+   along a line, 0.0024 in space), and so is what the soil takes up of them. With one sum for each node, a
+   disc of 200 points of nearly incompressible water needed 45 iterations of GMRES for six digits, and a
+   sphere did not converge; the disc now needs 8.
 
-   K has to be positive definite in that, and need not be: soil under a pressure that is fixed is pushed aside by it where its surface tilts
-   under a load that does not. In the plane a half-space of soil with the shear modulus G and no Poisson's effect does not stand more than 2 G/3 of pressure
-   so, and with water that has no time to leave 2 G. From the first K on for which that is so, the preconditioner takes what K is without the
-   pressures, for the rest of the step: a load at once of half of the soil's modulus needs that in short steps.
+   The preconditioner needs a positive definite K, which K need not be: a fixed pressure pushes soil aside
+   where the surface of the soil tilts under a load that does not tilt. In the plane, a half-space of soil
+   with the shear modulus G and no Poisson's effect stands at most 2 G/3 of such a pressure, and 2 G with
+   water that has no time to leave. From the first K on that is not positive definite, the preconditioner uses
+   K without the pressures for the rest of the step. Short steps need this after a sudden load of half of the
+   soil's modulus.
 
-   Vectors are compared in the norm in which volumes count as much as forces, both in parts of what may be left of them.
+   Vectors are compared in a norm in which volumes count as much as forces, both relative to what may be left
+   of them.
 ------------------------------------------------------------------------- */
 
 #include "mpm_implicit_pressure.h"
@@ -46,15 +51,18 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double INNER = 0.03;      // accuracy of the motion alone in the preconditioner
-static constexpr int MOST_INNER = 1000;    // iterations of that
-static constexpr int MOST_OUTER = 240;     // and of both together
-static constexpr double NEGLIGIBLE = 1.0e-3;    // part of forces of all
+static constexpr int MOST_INNER = 1000;    // iterations of it
+static constexpr int MOST_OUTER = 240;     // iterations for both together
+static constexpr double NEGLIGIBLE = 1.0e-3;    // share of all forces
 static constexpr int MOST_SHORTER = 5;          // halvings of a correction
-static constexpr double LARGER = 2.0;           // what is left after one that is taken all the same
-static constexpr double GAINED = 0.1;       // left of a solution that is not as accurate as wanted
-static constexpr double HELD = 1.0e-6;      // sum of squares of a unit motion that walls take
-static constexpr double SMALL = 1.0e-2;     // part of the tolerance, of pressures next to stress
-static constexpr double LEAST = 1.0e-15;    // of volumes: round-off
+// growth of the residual with a correction that is taken all the same
+static constexpr double LARGER = 2.0;
+// share of the residual left by a solution that is used although it is not as accurate as wanted
+static constexpr double GAINED = 0.1;
+static constexpr double HELD = 1.0e-6;    // sum of squares that walls take of a unit motion
+// share of the tolerance, for pressures relative to stress
+static constexpr double SMALL = 1.0e-2;
+static constexpr double LEAST = 1.0e-15;               // of volumes: round-off
 static constexpr int WHOLE[] = {0, 0, 12000, 8500};    // as in mpm_implicit.cpp
 
 /** The equations of the pressure alone, as the levels see them. */
@@ -112,8 +120,8 @@ void MPMImplicit::Joint::begin_step()
   volume = all[1];
 }
 
-/** In statics, what nothing holds along an axis of a periodic box can be anywhere there. Its stiffness is singular, and what a solution
- *  has of that motion by round-off would be large next to the rest. */
+/** In statics, a body that nothing holds along an axis of a periodic box can be anywhere along it. Its
+ *  stiffness is singular, and round-off in this motion would be large compared with the rest of a solution. */
 void MPMImplicit::Joint::find_free_axes()
 {
   free_axes.clear();
@@ -133,7 +141,7 @@ void MPMImplicit::Joint::end_step()
   water.end_solve(p);
 }
 
-/** What a vector has of these motions, or of forces along them, which there are none of but for round-off. */
+/** Removes from a vector these motions, or forces along them, which are only round-off. */
 void MPMImplicit::Joint::take_means(double *x)
 {
   for (const auto &axis : free_axes) {
@@ -164,14 +172,15 @@ double MPMImplicit::Joint::find_residual(const std::vector<double> &u, double fo
   return sum <= round_off ? 0.0 : sum / carried;
 }
 
-/** The sum of volumes that may be left. Where all water is at rest, pressures are noise, of this small part of the stress. */
+/** Sum of volumes that may be left. Where all water is at rest, pressures are noise up to this small part of
+ *  the stress. */
 double MPMImplicit::Joint::enough() const
 {
   return std::max(std::max(motion.options.tolerance, LEAST) * carried, round_off);
 }
 
-/** Next to those that pressures make which carry as much water, forces are noise, too: where soil is at rest and without stress, water that
- *  comes through its surface is all there is at first. */
+/** Forces also count as noise relative to those of pressures that carry as much water: where soil is at rest
+ *  and without stress, water that comes through its surface is all there is at first. */
 double MPMImplicit::Joint::negligible_forces() const
 {
   const double pressure = SMALL * motion.options.tolerance * carried / response;
@@ -202,7 +211,7 @@ void MPMImplicit::Joint::move(double s)
 
 /* ---------------------------------------------------------------------- */
 
-/** Levels of the pressure with the moduli of the first tangents of a step, which serve all of it. */
+/** Builds the levels of the pressure with the moduli of the first tangents of a step, which serve all of it. */
 void MPMImplicit::Joint::prepare()
 {
   const Clock timed(motion, PRECONDITIONERS);
@@ -248,7 +257,7 @@ void MPMImplicit::Joint::apply(const double *x, double *y)
   water.find_changes(x + n, dV.data(), y + n);
 }
 
-/** The motion by forces where pressures do not change, see the top of this file. */
+/** The motion by forces at fixed pressures, see the top of this file. */
 SolveReport MPMImplicit::Joint::move_alone(const double *forces, double *z, const SolveGoal &goal)
 {
   motion.tangent.leave_out_pressure(stress_alone);
@@ -271,7 +280,7 @@ void MPMImplicit::Joint::precondition(const double *r, double *z)
   const int64_t n = motion.nreals();
   SolveGoal goal;
   goal.relative = INNER;
-  goal.absolute = NEGLIGIBLE * std::sqrt(product(r, r));    // next to volumes
+  goal.absolute = NEGLIGIBLE * std::sqrt(product(r, r));    // relative to volumes
   goal.most_iterations = (int) std::min<int64_t>(motion.options.most_linear, MOST_INNER);
   std::vector<double> forces(r, r + n);
   take_means(forces.data());
@@ -314,7 +323,7 @@ SolveReport MPMImplicit::Joint::solve(const std::vector<double> &u, const SolveG
   SolveGoal mine = goal;
   mine.most_iterations = std::min(goal.most_iterations, MOST_OUTER);
   auto solved = solver.solve(*this, b.data(), solution.data(), mine);
-  // Newton's method goes on with what has been gained
+  // Newton's method goes on with what was gained
   if (solved.outcome == SolveReport::TOO_MANY &&
       solved.residuals.back() < GAINED * solved.residuals.front())
     solved.outcome = SolveReport::CONVERGED;
@@ -333,8 +342,9 @@ double MPMImplicit::Joint::memory_usage() const
 }
 
 /* ----------------------------------------------------------------------
-   u and p <- u + s du, p + s dp. There is no energy of both that has a minimum: what is left shall become smaller, and where it does not for
-   any part, because soil yields, the one that leaves the least is taken if that is not much more than before
+   u and p <- u + s du, p + s dp. Motion and pressure have no common energy with a minimum, so the residual
+   has to decrease. Where it does not for any share s, because soil yields, the share that leaves least is
+   taken if this is not much more than before.
 ------------------------------------------------------------------------- */
 
 bool MPMImplicit::search_jointly(std::vector<double> &u, double &size)

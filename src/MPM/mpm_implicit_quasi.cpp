@@ -7,14 +7,17 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Steps with inertia are much alike, and tangents cost more than forces: those of a step are kept for the next ones, as factors, and
-   corrected by what each iteration tells of them, which is the difference of the forces that its correction of the motion made (H. Matthies,
-   G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613; see QuasiNewton). An iteration then costs the
-   forces of the points and a solution with factors. What it converges to is what Newton's method does.
+   Steps with inertia are much alike, and tangents cost more than forces. The tangents of a step are therefore
+   kept for the next ones, as factors, and corrected by what each iteration shows: the change of the forces
+   that its correction of the motion made (H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613;
+   see QuasiNewton). An iteration then costs the forces of the points and a solution with factors. It
+   converges to the same result as Newton's method.
 
-   What changes most is where the body points to: the stiffness of a beam along its axis is a thousand times that across, and some degrees of
-   rotation bring much of one into the other. Factors turn with the body: a rotation of all of it turns the stiffness by just that, and where
-   rotations R of the parts are not the same, R K^-1 R^T is near to the inverse of the stiffness as long as they change by little in a cell.
+   What changes most is the orientation of the body: the stiffness of a beam along its axis is a thousand
+   times that across it, and some degrees of rotation bring much of one into the other. Factors therefore turn
+   with the body. A rotation of the whole body turns the stiffness by just this rotation. Where rotations R
+   differ between parts of the body, R K^-1 R^T is near the inverse of the stiffness as long as R changes
+   little within a cell.
 ------------------------------------------------------------------------- */
 
 #include "mpm_implicit.h"
@@ -30,21 +33,21 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double SAME = 1.0e-10;         // of what walls leave
-static constexpr double SYMMETRIC = 1.0e-3;     // of tangents
-static constexpr double ROUND_OFF = 2.0e-16;    // of strains: forces are not known better
-static constexpr int COST = 20;                 // of factors, in iterations
-static constexpr int MOST_FACTORS = 3;          // in a step
+static constexpr double SAME = 1.0e-10;         // difference of what walls leave free
+static constexpr double SYMMETRIC = 1.0e-3;     // greatest asymmetry of tangents
+static constexpr double ROUND_OFF = 2.0e-16;    // of strains, which limits the accuracy of forces
+static constexpr int COST = 20;                 // of making factors, in iterations
+static constexpr int MOST_FACTORS = 3;          // factorizations in a step
 static constexpr int MOST_WITH_FACTORS = 25;    // iterations in a step
-static constexpr std::size_t MOTIONS = 2;       // that are kept
+static constexpr std::size_t MOTIONS = 2;       // of former steps that are kept
 
-/** Do factors of tangents serve the steps of this run? */
+/** Can factors of tangents serve several steps of this run? */
 bool MPMImplicit::can_keep() const
 {
   return multigrid && options.time != MPMImplicitOptions::STATIC && !joint && contacts.empty();
 }
 
-/** Values of nodes that this rank owns, for all ranks. Collective. */
+/** Gathers values of the nodes that this rank owns for all ranks. Collective. */
 void MPMImplicit::gather_heavy(const std::vector<double> &of_all, std::vector<double> &of_shared)
 {
   of_owned.resize(heavy_owned * width);
@@ -53,7 +56,7 @@ void MPMImplicit::gather_heavy(const std::vector<double> &of_all, std::vector<do
   shared.gather(of_owned, width, of_shared);
 }
 
-/** Do walls leave of the nodes of this rank what they did before? */
+/** Do walls leave the nodes of this rank as free as before? */
 bool MPMImplicit::walls_are_same(const std::vector<double> &walls) const
 {
   const auto &places = shared.places();
@@ -64,7 +67,7 @@ bool MPMImplicit::walls_are_same(const std::vector<double> &walls) const
   return true;
 }
 
-/** Is what was kept for these nodes and walls? Else it is forgotten. Collective. */
+/** Checks that what was kept belongs to these nodes and walls; otherwise it is dropped. Collective. */
 void MPMImplicit::recall()
 {
   std::vector<uint64_t> nodes;
@@ -101,7 +104,7 @@ void MPMImplicit::recall()
     indices.push_back({0, 0, 0});
     for (int d = 0; d < width; d++) indices.back()[d] = grid.lattice.wrap(d, index[d]);
   }
-  // ranks may have come to own other ones of the same nodes
+  // ranks may now own other nodes of the same set
   if (memory.known && dt == memory.dt && all[WALLS] && shared.renumber(indices, heavy_owned)) {
     memory.nodes.swap(nodes);
     memory.structured = memory.levels = false;
@@ -118,7 +121,7 @@ void MPMImplicit::recall()
   memory.pairs.start(memory.walls.size());
 }
 
-/** The motion goes on as in the last two steps. */
+/** First guess: the motion goes on as in the last two steps. */
 void MPMImplicit::foresee(std::vector<double> &u)
 {
   const auto &last = memory.motions;
@@ -146,7 +149,7 @@ void MPMImplicit::remember(const std::vector<double> &u)
   memory.motions.push_front(std::move(motion));
 }
 
-/** Rotations of the body around nodes since the factors, R R0^T. */
+/** Rotations of the body around nodes since the factors were made, R R0^T. */
 void MPMImplicit::turn_from_factors()
 {
   const int w = width, square = w * w;
@@ -161,7 +164,7 @@ void MPMImplicit::turn_from_factors()
   }
 }
 
-/** Factors of the tangents at the motion u; false: there are none that are of use. Collective. */
+/** Makes factors of the tangents at the motion u; false if there are no useful ones. Collective. */
 bool MPMImplicit::make_factors(const std::vector<double> &u)
 {
   memory.drop_factors();
@@ -174,7 +177,7 @@ bool MPMImplicit::make_factors(const std::vector<double> &u)
   tangent.keep_deformations(false);
   memory.asymmetry = tangent.asymmetry();
   if (memory.asymmetry > SYMMETRIC) return false;
-  // nodes and walls are those of the factors before, if there were any
+  // earlier factors, if any, were for the same nodes and walls
   if (memory.structured && multigrid->begin_again())
     fill_levels();
   else
@@ -203,7 +206,8 @@ template <int W> static void turn(const double *R, bool back, const double *from
   }
 }
 
-/** The forces that are left, turned back to where factors are, what these make of them, and the last correction, of all nodes. Collective. */
+/** Shares the residual, turned back to the orientation of the factors, its solution with them, and the last
+ *  correction, of all nodes. Collective. */
 void MPMImplicit::share_forces()
 {
   const int w = width, each = taken != 0.0 ? 2 * w : w;
@@ -252,7 +256,8 @@ void MPMImplicit::share_forces()
   taken = 0.0;
 }
 
-/** The correction of the motion by the forces that are left, in change: factors of a tangent, and what pairs tell of it. */
+/** Finds the correction of the motion for the residual, in change, from factors of a tangent and the pairs
+ *  that correct them. */
 void MPMImplicit::find_correction()
 {
   const Clock timed(*this, SYSTEMS);
@@ -278,7 +283,7 @@ void MPMImplicit::find_correction()
   project(change.data());
 }
 
-/** What the last correction has told, before the body turns on. */
+/** Stores the pair of the last correction before the body turns further. */
 void MPMImplicit::learn()
 {
   if (taken == 0.0) return;
@@ -286,13 +291,15 @@ void MPMImplicit::learn()
   memory.pairs.settle(left.data(), solved.data());
 }
 
-/** The end of the step with kept factors: false if it was not found, and Newton's method shall go from the start of the step. */
+/** Finds the end of the step with kept factors. False if it was not found: Newton's method then goes from the
+ *  start of the step. */
 bool MPMImplicit::go_on(std::vector<double> &u)
 {
   double size;
   int made = 0, with_these = 0;
   now.residuals.clear();
-  // on the whole, a step costs least when factors are made again as soon as one costs more than the mean of those before
+  // overall, a step costs least if factors are made again as soon
+  // as a step costs more than the mean of those before
   if (memory.factorized && memory.steps > 0 &&
       memory.last * memory.steps > memory.iterations + COST)
     memory.drop_factors();
@@ -335,7 +342,8 @@ bool MPMImplicit::go_on(std::vector<double> &u)
   return true;
 }
 
-/** The step by what those before have left: false, and u as it was, where this does not lead to its end. */
+/** Solves the step with what earlier steps have left. False, with u as it was, if this does not lead to its
+ *  end. */
 bool MPMImplicit::go_on_from_before(std::vector<double> &u)
 {
   recall();
@@ -343,7 +351,7 @@ bool MPMImplicit::go_on_from_before(std::vector<double> &u)
   foresee(foreseen);
   by_levels = memory.levels;
   bool found = !large && go_on(foreseen);
-  // levels are too many products to do without the present tangent
+  // with levels, a solution has too many products to do without the present tangent
   if (large) found = newton(foreseen, (int) options.most_iterations) == CONVERGED;
   if (!found) {
     memory.clear();
