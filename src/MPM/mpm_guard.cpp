@@ -222,8 +222,7 @@ void MPMGuard::check_rings() const
 {
   constexpr double SAME = 1.0e-9, FAR = 1.01;
   constexpr double NONE = std::numeric_limits<double>::max();
-  double mine[4] = {-NONE, -NONE, -NONE, -NONE},
-         all[4];    // most and minus least of volume and radius
+  double mine[4] = {-NONE, -NONE, -NONE, -NONE}, all[4];    // most, minus least: volume, radius
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     const double values[2] = {atom->vfrac[i], atom->x[i][0]};
@@ -389,8 +388,7 @@ void MPMGuard::check_skin() const
 
 void MPMGuard::check_lists() const
 {
-  constexpr double MANY = 10.0,
-                   RATIO = 8.0;    // pairs per atom; their ratio for twice the cutoff in 3d
+  constexpr double MANY = 10.0, RATIO = 8.0;    // pairs per atom; ratio for twice the cutoff in 3d
   if (neighbor->skin <= field.lattice.h) return;
   double mine[3] = {0.0, 0.0, (double) atom->nlocal}, all[3];    // pairs, pairs in reach, atoms
   for (const auto &style : MPMPairStyle::all(*force)) {
@@ -469,8 +467,7 @@ void MPMGuard::check_radii() const
     if (atom->vfrac[i] == 0.0) grains[atom->type[i]] = 1;
   MPI_Allreduce(grains.data(), grains_all.data(), ntypes + 1, MPI_INT, MPI_MAX, world);
 
-  bigint mine[3] = {0, 0, 0},
-         all[3];    // points that meet grains, points without radius, points with a large one
+  bigint mine[3] = {0, 0, 0}, all[3];    // points that meet grains, without radius, too large
   tagint example = 0, example_all;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;

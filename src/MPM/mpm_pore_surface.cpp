@@ -27,12 +27,12 @@
    = 1e-8: by 30 % of the load three cells below the surface; with this method 0.8 %, which are waves). Here,
    the permeability bounds the flow.
 
-   With a k that changes with the depth, 1/k is the mean of that from the surface to s. Nodes have means of k over some node
    With a k that changes with the depth, 1/k is its mean from the surface to s. Nodes have means of k over some node
    spacings, and the mean at the place of the node would be that of soil deeper than s: where soil consolidates and k
    falls by ten within a cell of the drained surface, 20 cells would settle 2 % too much, and 10 cells 10 %. So a line through
    the means of the nodes, at the depths of the soil that they see, gives k at both ends of s, and between these it is linear.
-   Each place is one of the rank that owns its node, so that sums over ranks follow.
+
+   Each place belongs to the rank that owns its node; sums over ranks follow.
 ------------------------------------------------------------------------- */
 
 #include "mpm_pore_surface.h"
@@ -64,10 +64,9 @@ static constexpr double AT_FACE = 0.05, OFF_FACE = 0.1;
 // a permeability that changes within a cell hide its extremes
 static constexpr double LOW = 0.25, HIGH = 2.0;
 static constexpr double LEAK =
-    0.5;    // share of the flow that a step makes from rest, for water with inertia
+    0.5;    // share of the flow of a step from rest, for water with inertia
 static constexpr double FULL = 0.97;    // share of a cell; sums over points are not exact integrals
-static constexpr double ENOUGH =
-    0.01;    // share of a cell at a node from which on it has its whole weight
+static constexpr double ENOUGH = 0.01;    // share of a cell at a node, for its whole weight
 static constexpr double ONE_SIDED =
     0.8;    // share of the area at a node that its normals keep, unless surfaces face each other there
 static constexpr double MOSTLY = 0.5;    // share of a place that has water, for its whole area
@@ -378,8 +377,7 @@ bool MPMPoreSurface::by_area() const
 void MPMPoreSurface::find_areas()
 {
   const int dim = field.lattice.dim, width = 1 + dim;
-  std::vector<double> sums(width * field.grid.nnodes(),
-                           0.0);    // sums of areas, and of areas times normals
+  std::vector<double> sums(width * field.grid.nnodes(), 0.0);    // of areas, and times normals
   const auto visit = [&](const Place &place, const auto &f) {
     for (int k = place.first_at; k < place.first_at + place.n_at && place.part == FREE; k++)
       f(node[k], weight[k]);
@@ -497,8 +495,7 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
     place.area *= has_water ? std::min(1.0, std::min(inside, at) / MOSTLY) : 0.0;
     const std::vector<double> *outer = nullptr;
     if (wet) outer = &wet->conductance[suction_outside(place.part) < 0.0 ? 1 + place.part : 0];
-    double K = 0.0, K_in = 0.0, C = 0.0,
-           full = 0.0;    // sums for full pores, where the permeability varies
+    double K = 0.0, K_in = 0.0, C = 0.0, full = 0.0;    // full pores, if it varies
     for (int k = place.first; k < place.first + place.n && has_water; k++) {
       const double inner = scalar.volume[node[k]];
       K += weight[k] * inner;

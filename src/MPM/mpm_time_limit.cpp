@@ -78,8 +78,7 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   for (int i = 0, last; i < atom->nlocal && !std::isnan(smallest); i = last) {
     last = i + 1;
     if (!field.is_point(i)) continue;
-    if (field.is_element_node(
-            i)) {    // must not cross a cell in a step; FixMPMElements has the other limits
+    if (field.is_element_node(i)) {    // must not cross a cell; the rest: FixMPMElements
       if (!field.frame->is_total()) limits(i, sqrt(dot(atom->v[i], atom->v[i])));
       continue;
     }
