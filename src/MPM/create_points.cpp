@@ -775,7 +775,7 @@ bigint CreatePoints::make_points()
   return npoints;
 }
 
-/** The points of a divided site. */
+/** Makes the points of a divided site. */
 void CreatePoints::make_parts(const bigint *s, std::vector<Site> &made) const
 {
   const std::size_t first = made.size();

@@ -340,7 +340,8 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
 }
 
 /* ----------------------------------------------------------------------
-   lines through surfaces and faces, and mirror images; those with a heavy one are others, as most of a pair is in that
+   lists lines through surfaces and faces, and mirror images. Images with a heavy node go to others, as most of the mass
+   is in that node
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_ties(const MPMField &field, std::vector<int64_t> &ties,

@@ -8,7 +8,7 @@
 
 // Separating walls push where the surface of the material has reached them (mpm_wall_gap.cpp), and not
 // as soon as nodes feel it. A disk that rolls toward nodes which hold it from a distance of 1.5 h gets
-// a normal force in front of its center, whose moment is that of the friction and more: it does not spin.
+// a normal force in front of its center, whose moment is larger than that of the friction: it does not spin.
 
 #include "fix_mpm_boundary.h"
 

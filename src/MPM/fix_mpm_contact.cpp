@@ -8,8 +8,8 @@
 
 /* ----------------------------------------------------------------------
    Each body has its own velocity field. Where two of them have mass at a node, their velocities
-   after the momentum equation tell whether they approach each other along the normal of the
-   interface. If so, equal and opposite impulses take the approach away, and in the plane of the
+   after the momentum equation show whether they approach each other along the normal of the
+   interface. If so, equal and opposite impulses remove the approach, and in the plane of the
    interface as much of the sliding as the law of friction allows:
 
      n from a to b,  m = m_a m_b/(m_a + m_b),  u = v_a - v_b
@@ -22,20 +22,20 @@
    bodies are named has no influence.
 
    Normals. The sum over the points of a body at the node, sum_p V_p grad N, points out of it and
-   its length is the area of the interface that belongs to the node. Of the gradients of two bodies
-   the difference is taken, either as they are (the body with more volume, or mass, at the node has
+   its length is the area of the interface that belongs to the node. The normal of two bodies is the
+   difference of their gradients, either as they are (the body with more volume, or mass, at the node has
    more weight) or after each was made a unit vector (colinear).
 
    Gap. Shape functions reach one or two cells beyond a body, so that bodies would feel each other
    at that distance, and the mass that a wall sends beyond the end of a block that slides on it
    would stand in its way. The volumes of all bodies at a node, as a share of the volume that belongs
    to a node, add up to one where they touch, whatever the position of the interface relative to the
-   nodes, and to less while there is a gap or beyond the end of one of them. What of this volume is
+   nodes, and to less while there is a gap or beyond the end of one of them. The part of this volume that is
    outside of fixed faces of the box does not count (Room).
 
-   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (fix_mpm_boundary.cpp). Friction is
-   that of the rest, which is between grains: J_t <= mu (J_n - J_w). Where J_n would be below J_w, grains part, and the water alone
-   pushes. Of two bodies with water, which do not exchange any, the mean counts.
+   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (fix_mpm_boundary.cpp). The rest
+   is between grains and gives friction: J_t <= mu (J_n - J_w). Where J_n would be below J_w, grains part, and the water alone
+   pushes. For two bodies with water, which do not exchange any, the mean counts.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_contact.h"

@@ -141,7 +141,7 @@ void FixMPMElements::differentiate_pressure()
   }
 }
 
-/** Sums the values of nodes in sent [local and ghost][3] over ranks, and adds those of this rank to to. */
+/** Sums the values of nodes in sent [local and ghost][3] over ranks, and adds those of this rank to the array to. */
 void FixMPMElements::bring_home(double *to)
 {
   comm->reverse_comm(this, 3);

@@ -294,7 +294,7 @@ void FixMPMHeat::init()
   }
 }
 
-/** Refuses every > 1 with fixes of other atoms that give heat to nodes in each step. */
+/** Refuses every > 1 if other atoms give heat to nodes in each step. */
 void FixMPMHeat::require_each_step(const char *giver) const
 {
   if (every > 1)
@@ -361,7 +361,7 @@ void FixMPMHeat::setup(int)
   check_temperatures();
 }
 
-/** Is there radiation? Points with negative temperatures, for which it makes no sense, are in degrees Celsius. Collective. */
+/** Is there radiation? It needs kelvins: negative temperatures of points show that they are in degrees Celsius. Collective. */
 bool FixMPMHeat::radiates() const
 {
   const auto does = [](const MPMHeatCondition &c) {

@@ -63,8 +63,7 @@ static constexpr double AT_FACE = 0.05, OFF_FACE = 0.1;
 // limits of permeabilities on the line through those of nodes, relative to the least and the greatest of these: means of
 // a permeability that changes within a cell hide its extremes
 static constexpr double LOW = 0.25, HIGH = 2.0;
-static constexpr double LEAK =
-    0.5;    // share of the flow of a step from rest, for water with inertia
+static constexpr double LEAK = 0.5;     // share of the flow of a step from rest, with inertia
 static constexpr double FULL = 0.97;    // share of a cell; sums over points are not exact integrals
 static constexpr double ENOUGH = 0.01;    // share of a cell at a node, for its whole weight
 static constexpr double ONE_SIDED =
