@@ -872,7 +872,7 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
   if (slope < 0.5) return false;    // the normal is not known
 
   // where does the line cross the surface, and is this node the last one before it? On the surface itself, round-off
-  // decides on the side, and some regions give none: look a little outside
+  // decides on the side, and some regions give no side: look a little outside
 
   const double outside = 1.0e-3 * h;
   double way = -single.distance / slope + outside, distance = 0.0;
@@ -1227,7 +1227,7 @@ void FixMPMBoundary::update_motion(double dt)
       for (auto &list : nodes) take_off_lines(list);
   }
   if (!past.acted) MathExtra::copy3(wall.shift, wall.before);
-  // solvers evaluate forces and motion at the same time, and nodes of the total frame are the material
+  // solvers evaluate forces and motion of the same time, and nodes of the total frame are the material
   wall.changes = past.acted && !in_implicit_steps;
   const bool follow = !wall.uniform && !nodes[0].field->options.total;
   const Wall end = follow ? wall.at_end_of_step(dt) : wall;

@@ -121,7 +121,7 @@ void MPMGuard::check_places() const
     const double cells = (t - shape.shift) / shape.cell;
     return fabs(cells - std::round(cells)) < NEAR;
   };
-  // along each axis: largest position, largest negative position, and whether any is at an end
+  // along each axis: largest position, largest with the opposite sign, and whether any is at an end
   double mine[9], all[9];
   std::fill_n(mine, 6, -std::numeric_limits<double>::max());
   std::fill_n(mine + 6, 3, 0.0);
