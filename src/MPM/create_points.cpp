@@ -45,8 +45,8 @@ using namespace MPM_NS;
 
 static constexpr double TOLERANCE = 1.0e-6;       // in spacings, for positions that coincide
 static constexpr double INFINITE = 1.0e19;        // bounds of regions beyond it are INF
-static constexpr double MAX_INDEX = 1.0e15;       // of a lattice site
-static constexpr double MAX_SITES = 9.0e18;       // to look at
+static constexpr double MAX_INDEX = 1.0e15;       // largest index of a lattice site
+static constexpr double MAX_SITES = 9.0e18;       // most sites that a command looks at
 static constexpr bigint MAX_COUNT = 200000000;    // sites per rank looked at outside the box
 static constexpr bigint SHARE = 1 << 11;    // sites a rank looks at before points are sent, or ...
 static constexpr bigint PART = 64;          // ... 1/PART of those it has looked at, if that is more
@@ -336,7 +336,7 @@ void CreatePoints::place_sites(const Options &options)
 }
 
 /* ----------------------------------------------------------------------
-   keyword split: sites that are divided, by a variable of their place
+   keyword split: which sites are divided, by a variable of their position
 ------------------------------------------------------------------------- */
 
 void CreatePoints::find_split(const Options &options)
@@ -362,7 +362,7 @@ void CreatePoints::find_split(const Options &options)
     place_variable[d] = find(split_place[d], where + 1 + d, true);
 }
 
-/** Into how many points the site is divided along each axis. */
+/** Number of points along each axis into which the site is divided. */
 int CreatePoints::divisions(const bigint *s) const
 {
   for (int d = 0; d < domain->dimension; d++)
@@ -377,7 +377,7 @@ int CreatePoints::divisions(const bigint *s) const
   return (int) n;
 }
 
-/** Visits the middle of each part of a divided site that is in the region, x first; returns how many parts there are. */
+/** Visits the center of each part of a divided site that is in the region, x fastest. Returns the number of all parts. */
 int CreatePoints::for_parts(const bigint *s,
                             const std::function<void(const double *x)> &visit) const
 {
@@ -408,7 +408,7 @@ void CreatePoints::find_group(const Options &options, const std::string &name)
 }
 
 /* ----------------------------------------------------------------------
-   the fix mpm whose lattice is meant when the input does not say so
+   the fix mpm whose lattice is used when the input does not name one
 ------------------------------------------------------------------------- */
 
 void CreatePoints::find_lattice()
@@ -444,17 +444,17 @@ void CreatePoints::find_ranges()
     hi = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   }
   for (int d = 0; d < domain->dimension && image; d++) {
-    // a site whose center is beyond a surface has a part of it
+    // a site whose center is beyond a surface may still contain a part of the body
     const double more = image->surface ? 0.5 * spacing[d] : 0.0;
     lo[d] = std::max(lo[d], image->lo[d] - more);
     hi[d] = std::min(hi[d], image->hi(d) + more);
   }
-  // half of what is on the axis
+  // only the half with x >= 0 of a body on the axis
   if (fix && fix->options.axisymmetric && lo[0] > -INFINITE) lo[0] = std::max(lo[0], 0.0);
 
   for (int d = 0; d < domain->dimension; d++) {
     const double boxlo = domain->boxlo[d], boxhi = domain->boxhi[d];
-    // cells whose center is not in the region
+    // also cells whose center is outside the region
     const double beyond = cut || split_variable >= 0 ? 0.5 * spacing[d] : 0.0;
     const bool periodic = domain->periodicity[d];
 
@@ -493,7 +493,7 @@ void CreatePoints::find_ranges()
 
 /* ---------------------------------------------------------------------- */
 
-/** Share of the place of a site that a point has of it, 0: none. */
+/** Share of the volume of a site that its point gets; 0: no point. */
 double CreatePoints::share_of(const bigint *s) const
 {
   if (region_cut) return region_cut->inside(s).share;
@@ -557,7 +557,7 @@ bool CreatePoints::is_countable() const
   return (double) search[0].n * search[1].n * search[2].n / comm->nprocs < MAX_COUNT;
 }
 
-/** Keyword cut: of a region that is much larger than the box only the part in the box matters. */
+/** Keyword cut: of a region much larger than the box, only the part in the box matters. */
 void CreatePoints::begin_cut()
 {
   bigint first[3], last[3];
@@ -609,13 +609,14 @@ void CreatePoints::check_outside()
 
 /* ----------------------------------------------------------------------
    refuse, or report, new points close to material points that exist
-   an existing point is closer than half a spacing along all axes to one site only,
-   that of the cell of the site lattice it is in: no need to look at other points.
-   What has a share of the volume is meant to be in the same place as a body in another field
+   refuse, or report, new points close to existing material points
+   An existing point is closer than half a spacing along all axes to one site only, that of the cell
+   of the site lattice that it is in: no other points need to be looked at.
+   A body whose points have a share of the volume is meant to be in the same place as one in another field.
 ------------------------------------------------------------------------- */
 
-/** Is atom i of the body that the new points belong to: in a field that these are in, or, where they are in none yet, of
- *  their type? */
+/** Does atom i belong to the body of the new points? It does if it is in a field that they are in or, where they are in
+ *  no field yet, if it has their type. */
 bool CreatePoints::same_body(int i) const
 {
   const int bits = group_bits | 1;    // 1: all
@@ -646,7 +647,7 @@ void CreatePoints::check_overlap()
         if (s[d] >= box[d].end()) s[d] -= box[d].n;
       }
     }
-    // of a cell that is cut the rest may belong to another body
+    // the rest of a cut cell may belong to another body
     if (!in_box(s) || !in_region(s)) continue;
     if ((cut || split_variable >= 0) && region && !region->match(x[i][0], x[i][1], x[i][2]))
       continue;
@@ -774,7 +775,7 @@ bigint CreatePoints::make_points()
   return npoints;
 }
 
-/** The points of a divided site. */
+/** Makes the points of a divided site. */
 void CreatePoints::make_parts(const bigint *s, std::vector<Site> &made) const
 {
   const std::size_t first = made.size();
@@ -809,7 +810,7 @@ void CreatePoints::check_tags(tagint largest, bigint nmore) const
 }
 
 /* ----------------------------------------------------------------------
-   sites to their owners, where they arrive in an order that is the same in each run
+   send sites to their owners, where they arrive in the same order in each run
 ------------------------------------------------------------------------- */
 
 void CreatePoints::send_and_make(std::vector<Site> &made)
@@ -994,8 +995,8 @@ void CreatePoints::check_periodic(const Mesh &mesh, const char *file) const
 }
 
 /* ----------------------------------------------------------------------
-   into the box, which may be one of the next periodic images: what is farther away is a mistake, and
-   LAMMPS would go there image by image
+   move points into the box, which may be from one of the next periodic images: a point that is farther away is a
+   mistake, and LAMMPS would move it image by image
 ------------------------------------------------------------------------- */
 
 void CreatePoints::wrap_sites(const char *file, const char *what)
@@ -1022,7 +1023,7 @@ void CreatePoints::wrap_sites(const char *file, const char *what)
 }
 
 /* ----------------------------------------------------------------------
-   a node has its share of the volume of the elements around it
+   a node gets its share of the volume of the elements around it
 ------------------------------------------------------------------------- */
 
 static constexpr char bad_element[] = "Create_points: element {} of {} has no volume or is twisted";
@@ -1107,7 +1108,7 @@ bigint CreatePoints::make_mesh_points()
 }
 
 /* ----------------------------------------------------------------------
-   once fixes know of the points
+   set the corners of the domains, once fixes have rows for the new points
 ------------------------------------------------------------------------- */
 
 void CreatePoints::set_domains(int first)

@@ -143,10 +143,10 @@ Options CreatePointsImageOptions::declare(int dim)
 }
 
 /* ----------------------------------------------------------------------
-   what of the options can only be checked in LAMMPS
+   checks of the options that need LAMMPS
 ------------------------------------------------------------------------- */
 
-/** Which axis of the box, and in which direction, by a word of keyword axes. */
+/** Maps the words of keyword axes to the axes of the box and their directions. */
 static void set_axes(LAMMPS *lmp, const CreatePointsImageOptions &given, const Options &options,
                      ImageBody &body)
 {
@@ -170,7 +170,7 @@ static void set_axes(LAMMPS *lmp, const CreatePointsImageOptions &given, const O
   }
 }
 
-/** What pixels are of which type. */
+/** Sets which pixels are of which type. */
 static void set_types(LAMMPS *lmp, const CreatePointsImageOptions &given, const Options &options,
                       int type, ImageBody &body)
 {
@@ -209,7 +209,7 @@ static void set_types(LAMMPS *lmp, const CreatePointsImageOptions &given, const 
   }
 }
 
-/** What is wrong when no pixel is of a body; else empty. */
+/** Says what is wrong when no pixel belongs to a body; otherwise empty. */
 static std::string without_body(const ImageBody &body)
 {
   const auto &n = body.image.n;
@@ -228,7 +228,7 @@ static std::string without_body(const ImageBody &body)
       body.below ? "" : ", or invert");
 }
 
-/** Size and place of pixels. */
+/** Sets the size and the position of the pixels. */
 static void place(LAMMPS *lmp, const CreatePointsImageOptions &given, const Options &options,
                   ImageBody &body, const char *file)
 {
@@ -371,11 +371,11 @@ void CreatePoints::parse_image(int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   share of the place of a site that is in the body of a surface. What would be a sliver of a point goes to the
-   neighbor along an axis that has the most of the body, so that none of it is lost
+   share of a site that is in the body of a surface. A site with only a sliver of the body gives it to the neighbor along
+   an axis that has the most of the body, so that no volume is lost
 ------------------------------------------------------------------------- */
 
-/** The neighbors of a site along the axes. */
+/** Visits the neighbors of a site along the axes. */
 template <class F> static void for_neighbors(const bigint *s, int dim, F &&visit)
 {
   for (int d = 0; d < dim; d++)
@@ -439,7 +439,7 @@ std::string CreatePoints::types_made(int first) const
 }
 
 /* ----------------------------------------------------------------------
-   gray values to properties and history, once fixes know of the points
+   gray values to properties and history, once fixes have rows for the new points
 ------------------------------------------------------------------------- */
 
 void CreatePoints::set_fields(int first)

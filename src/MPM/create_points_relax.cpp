@@ -30,15 +30,14 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int SAMPLES_2D = 16, SAMPLES_3D = 8;    // along each axis of the place of a point
-static constexpr int MOST_PARTS = 16;                    // of a divided site
-static constexpr double ENOUGH =
-    0.5;    // of a site inside of the region, for a point to begin there
+static constexpr int SAMPLES_2D = 16, SAMPLES_3D = 8;    // samples along each axis of a site
+static constexpr int MOST_PARTS = 16;                    // of a divided site, along each axis
+static constexpr double ENOUGH = 0.5;    // share of a site inside, for a point to start there
 static constexpr double SAME = 1.0e-5;
 static constexpr int64_t MOST_POINTS = 100000000;
 
 /* ----------------------------------------------------------------------
-   samples of what a site has of the region
+   samples of the part of a site that is in the region
 ------------------------------------------------------------------------- */
 
 void CreatePoints::add_relaxed_site(const bigint *s, const bigint *first,
@@ -56,7 +55,7 @@ void CreatePoints::add_relaxed_site(const bigint *s, const bigint *first,
   const int m = parts * (dim == 2 ? SAMPLES_2D : SAMPLES_3D);
   const RelaxedPoints::Place at = {s[0] - first[0], s[1] - first[1], s[2] - first[2]};
   RelaxedPoints::Place move = {0, 0, 0};
-  bool beyond = false;    // the box
+  bool beyond = false;    // does the site reach beyond the box?
   for (int d = 0; d < dim; d++)
     beyond = beyond ||
         (!domain->periodicity[d] &&
@@ -92,7 +91,7 @@ void CreatePoints::add_relaxed_site(const bigint *s, const bigint *first,
     for (int d = 0; d < dim; d++) sum[d] += x[d];
   }
 
-  // together they have the volume and the center of the part
+  // together, the samples have the volume and the center of the part
 
   double share = beyond ? (double) inside / count : part.share;
   if (inside == 0) {
@@ -113,7 +112,7 @@ void CreatePoints::add_relaxed_site(const bigint *s, const bigint *first,
 }
 
 /* ----------------------------------------------------------------------
-   points begin where most of a site is inside, and are relaxed; returns how many there are
+   points start where most of a site is inside, and are relaxed; returns their number
 ------------------------------------------------------------------------- */
 
 bigint CreatePoints::make_relaxed_points()
@@ -151,7 +150,7 @@ bigint CreatePoints::make_relaxed_points()
 
   const bigint first = nsite * comm->me / comm->nprocs,
                last = nsite * (comm->me + 1) / comm->nprocs;
-  std::vector<double> mine;    // places in sites, and shares of the volume
+  std::vector<double> mine;    // positions in units of sites, and shares of the volume
   for_sites(range, first, last, [&](const bigint *s) {
     const auto add = [&](const double *x, double share) {
       for (int d = 0; d < 3; d++)

@@ -34,7 +34,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** The type with a label, or -1: LAMMPS's function for it had another name until 2025. */
+/** The type with a label, or -1. The function of LAMMPS for it had another name until 2025. */
 template <class Map>
 static auto type_of_label(const Map &map, const std::string &label, int)
     -> decltype(map.find_type(label, Atom::ATOM))
@@ -51,7 +51,7 @@ static auto type_of_label(const Map &map, const std::string &label, long)
 using Columns = MPMPointColumns;
 
 static constexpr int CHUNK = 1 << 14;     // rows that are sent at a time
-static constexpr double NEAR = 1.0e-4;    // of the edge of a point: what is so near is there twice
+static constexpr double NEAR = 1.0e-4;    // in edges of a point; closer points are duplicates
 
 /* ---------------------------------------------------------------------- */
 
@@ -121,7 +121,7 @@ CreatePointsTable::CreatePointsTable(LAMMPS *lmp, const CreatePointsTableOptions
   broadcast(message, world);
   if (!message.empty()) error->all(FLERR, 2, "Create_points table {}", message);
 
-  // the others need the names
+  // the other ranks need the names
 
   npoint = (bigint) points.size();
   MPI_Bcast(&npoint, 1, MPI_LMP_BIGINT, 0, world);
@@ -146,7 +146,7 @@ void CreatePointsTable::rows(bigint first, int n, std::vector<Point> &some,
 }
 
 /* ----------------------------------------------------------------------
-   rank 0: mistakes are std::runtime_error
+   read on rank 0, where errors are thrown as std::runtime_error
 ------------------------------------------------------------------------- */
 
 void CreatePointsTable::read(const CreatePointsTableOptions &given, int type,
@@ -201,7 +201,7 @@ void CreatePointsTable::read(const CreatePointsTableOptions &given, int type,
         table.step, table.time, table.step, table.time);
 }
 
-/** Places, volumes, types, and IDs of all rows, which are kept if they are of the part that is wanted. */
+/** Positions, volumes, types, and IDs of all rows; keeps the rows of the part that is wanted. */
 void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const Table &table,
                                     int type, const std::string &file)
 {
@@ -219,7 +219,7 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
   if (given.new_ids) columns.leave(Columns::ID);
   const int id_column = columns.find(Columns::ID);
 
-  // from which columns the initial volume comes
+  // columns that give the initial volume
 
   const int volume0 = columns.find(Columns::VOLUME0), volume = columns.find(Columns::VOLUME),
             mass = columns.find(Columns::MASS), density = columns.find(Columns::DENSITY);
@@ -294,8 +294,9 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
   if (points.empty()) fail(fmt::format("has no points of type {}", given.part));
 }
 
-/** Points that are the same but for round-off are those of two files, or have been written twice with other digits. Places are sorted into
- *  cells of NEAR edges of a point, twice, with cells moved by half of theirs, so that next to none are missed. */
+/** Warns of points that are the same except for round-off: they come from two files, or were written twice with different
+ *  digits. Positions are sorted into cells of NEAR edges of a point, twice, with cells shifted by half of their width, so that
+ *  hardly any pair is missed. */
 void CreatePointsTable::warn_of_near_points(const std::string &file) const
 {
   double volume = 0.0;
@@ -323,7 +324,7 @@ void CreatePointsTable::warn_of_near_points(const std::string &file) const
                  file, near.size(), NEAR, x[0], x[1], x[2]);
 }
 
-/** Puts them into the box, where they may be in one of the next periodic images; no ID and no place is there twice. */
+/** Moves points into the box from the next periodic images; refuses IDs and positions that occur twice. */
 void CreatePointsTable::check_points(const std::string &file)
 {
   const auto fail = [&](const std::string &what) {
@@ -372,7 +373,7 @@ void CreatePointsTable::check_points(const std::string &file)
 }
 
 /* ----------------------------------------------------------------------
-   the rows in turn, from rank 0 to all, each of which makes those that are in its part of the box
+   rank 0 sends the rows in chunks to all ranks; each rank makes the points in its part of the box
 ------------------------------------------------------------------------- */
 
 void CreatePoints::parse_table(int narg, char **arg)
@@ -420,7 +421,7 @@ bigint CreatePoints::make_table_points()
   return n;
 }
 
-/** Once fixes know of the points. */
+/** Sets the state of the points, once fixes have rows for them. */
 void CreatePoints::set_columns(int first)
 {
   if (table) table->columns.set(first, table_rows);

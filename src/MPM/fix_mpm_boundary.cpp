@@ -7,7 +7,7 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Mirror planes: see "Mirrored boundaries" in Developer_mpm.rst, which has the projection; for faces
+   Mirror planes: see "Mirrored boundaries" in Developer_mpm.rst, which derives the projection; for faces
    between planes of nodes see fix_mpm_boundary_cut.cpp. The impulse of this projection on the body is
      -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
    with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes k0 + j
@@ -17,40 +17,40 @@
 
    Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
    times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped back
-   for the gradient must follow what the column has decided: when it did not, a block that bounced had
-   1.4 times its energy.
+   for the gradient must follow the decision of the column: otherwise, a block that bounced had 1.4 times
+   its energy.
 
    FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
    normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
    momentum and force of the nodes (Sulsky, Chen, Schreyer 1994), so that the increment at a wall at
-   rest is zero, as it is when the body is continued by its mirror image. With v_old as it is, the
+   rest is zero, as it is when the body is continued by its mirror image. With an unchanged v_old, the
    prescribed component would be updated as in PIC, because the velocity that a node at the wall
    gets from the points on one side of it is a mean over some distance, not zero; a bar of 16 cells
-   lost 2.3 % of its energy in 10 periods. A point that arrives at the wall would keep for good what it
-   arrives with, as the nodes that could tell it do not change; a block of water that fell on the floor
-   kept four times the energy. Hence of v_old relative to the wall only as much is taken as consistent
-   with the wall, in each component, as the first node inside has of it (a field that rises from the
-   wall has less at the wall than there); what is above remains in v_old, and the points lose it.
-   v_old relative to the wall means: to its velocity in the last step. In its first step, a wall
+   lost 2.3 % of its energy in 10 periods. A point that arrives at the wall would keep its velocity
+   for good, as the nodes that could change it do not change themselves; a block of water that fell on
+   the floor kept four times the energy. Hence v_old relative to the wall counts as consistent with the
+   wall, in each component, only up to the value at the first node inside (a field that rises from the
+   wall has less at the wall than there); any excess remains in v_old, and the points lose it.
+   v_old relative to the wall means relative to its velocity in the last step. In its first step, a wall
    counts as having moved like this before. Separating walls, walls that turn, and friction leave v_old
-   alone, and so do regions but for those that stick or slip at their surface (act_on_crossing()); what
-   these prescribe is updated as in PIC next to them. PIC and APIC have no use for v_old.
+   alone. So do regions, except those that stick or slip at their surface (act_on_crossing()); next to
+   them, the components that they prescribe are updated as in PIC. PIC and APIC have no use for v_old.
 
-   AFLIP leaves v_old alone, too. With affine matrices the nodes at the wall get the velocity that the
-   field has there, and no mean over some distance, so that a vibration loses nothing: the bar above
-   keeps its energy to the same five digits. To constrain v_old would create energy: a point at a distance
-   y from a wall that sticks would keep its velocity v along it, while its affine matrix, which sees the
-   nodes at the wall stand, becomes v/y, again in each step. One grain that slid on a rough floor within a
-   tenth of a cell spent 70 times its kinetic energy by friction and did not slow down. With v_old as it
-   is, velocity and affine matrix are together projected on the fields that vanish at the wall, which
-   leaves v (y^2/D)/(1 + y^2/D) of a single point (D: h^2/4 quadratic, h^2/3 cubic).
+   AFLIP leaves v_old alone, too. With affine matrices, the nodes at the wall get the velocity that the
+   field has there, not a mean over some distance, so that a vibration loses nothing: the bar above
+   keeps its energy to the same five digits. A constraint on v_old would create energy: a point at a distance
+   y from a wall that sticks would keep its velocity v along it, while its affine matrix, for which the
+   nodes at the wall are at rest, becomes v/y, again in each step. One grain that slid on a rough floor
+   within a tenth of a cell spent 70 times its kinetic energy by friction and did not slow down. With an
+   unchanged v_old, velocity and affine matrix are together projected on the fields that vanish at the wall,
+   which leaves v (y^2/D)/(1 + y^2/D) of a single point (D: h^2/4 quadratic, h^2/3 cubic).
 
    Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
    tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
    every point outward by a factor sqrt(1 + (omega dt)^2) per step, and the chord puts it back on
-   its circle exactly, since splines reproduce linear fields. USF asks for velocities first to learn
-   how the material has got to where it is: then the chord is that of the step that has ended,
-   (I - R^-1)(x - o)/dt, whose matrix is minus the transpose of the other one.
+   its circle exactly, since splines reproduce linear fields. USF asks for velocities first, to find
+   how the material has moved to its present position: then the chord is that of the step that has
+   ended, (I - R^-1)(x - o)/dt, whose matrix is minus the transpose of the other one.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_boundary.h"
@@ -86,13 +86,12 @@ static constexpr const char *PERIODIC =
 static constexpr double ON_SURFACE = 1.0e-6;    // in node spacings
 static constexpr double FAR = 1.0e8;            // in node spacings
 static constexpr double HAND_OVER = 0.5;        // in node spacings, see list_region_nodes()
-static constexpr double SMOOTH = 0.9;    // cosine between normals of a surface that is smooth
+static constexpr double SMOOTH = 0.9;           // least cosine between normals of a smooth surface
 static constexpr double FELT_THROUGH =
     3.0;    // node spacings: material on one side is not felt on the other
-static constexpr double ALONG =
-    1.0e-3;    // sine of the angle of a motion that is along the surface
-static constexpr double EQUAL = 1.0e-6;    // components of normals that are as large
-static constexpr double RESOLVED = 1.5;    // node spacings: nodes cannot tell widths that are less
+static constexpr double ALONG = 1.0e-3;    // sine of the angle of a motion along the surface
+static constexpr double EQUAL = 1.0e-6;    // difference of equal components of normals
+static constexpr double RESOLVED = 1.5;    // node spacings; nodes cannot resolve smaller widths
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values
@@ -162,7 +161,7 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
                "Fix mpm/boundary acts on nodes, which have no group: use group all, and "
                "keyword field to act on one of several fields");
 
-  // where
+  // arguments: where the wall is
 
   if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/boundary", error);
   int iarg = 3;
@@ -188,7 +187,7 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
                  arg[iarg]);
   }
 
-  // what
+  // arguments: what the wall does
 
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, iarg);
@@ -237,9 +236,9 @@ bool FixMPMBoundary::moves() const
 }
 
 /* ----------------------------------------------------------------------
-   Nodes inside hold only those points of a body in front of the surface that they reach: it creeps into the wall, and stresses next to
-   it are wrong, by how much depends on where the surface is in a cell. Lines hold the surface. Material that is inside of a region, as in a
-   grip, is held by nodes, see act_on_crossing(): it has no surface there
+   Nodes inside hold only the points of a body in front of the surface that they reach. The body would creep into the
+   wall, and stresses next to it would be wrong by an amount that depends on where the surface is in a cell. Lines hold
+   the surface. Nodes hold material inside a region, as in a grip, which has no surface there: see act_on_crossing().
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::acts_across() const
@@ -248,13 +247,13 @@ bool FixMPMBoundary::acts_across() const
   return follows || decides() || holds_surface();
 }
 
-/** Does the wall hold material that is near, whether that has reached it or not? */
+/** Does the wall hold material that is near, whether or not that has reached it? */
 bool FixMPMBoundary::keeps_distance() const
 {
   return region ? holds_surface() : !decides();
 }
 
-/** Does it have a velocity without moving, so that material at the surface of a region leaves the latter? */
+/** Does the wall have a velocity without moving, so that material at the surface of a region leaves the region? */
 bool FixMPMBoundary::is_driven() const
 {
   return rotating() || std::any_of(velocity, velocity + 3, [](const auto &v) {
@@ -262,8 +261,8 @@ bool FixMPMBoundary::is_driven() const
          });
 }
 
-/** Stick and slip on a region in explicit steps, and slip at rest in implicit ones: lines act where material is in front of it, and nodes where it is
- *  inside. Nodes hold for good what sticks to a region that is driven. */
+/** Do lines hold material in front of the surface? They do with stick and slip on a region in explicit steps, and with slip at
+ *  rest in implicit ones; nodes act on material inside. Nodes hold for good what sticks to a region that is driven. */
 bool FixMPMBoundary::holds_surface() const
 {
   const bool sticks = !is_driven() && !in_implicit_steps;
@@ -403,7 +402,7 @@ void FixMPMBoundary::init()
 
 /* ----------------------------------------------------------------------
    regions: their state at the start of the first step. A run may start between two steps of the cycle
-   (keyword every of fix mpm); then it is that of the last one
+   (keyword every of fix mpm); then it is the state at the last step of the cycle
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::setup(int)
@@ -454,7 +453,7 @@ bool FixMPMBoundary::faces_are_near(const Faces &faces, int axis)
 }
 
 /* ----------------------------------------------------------------------
-   a rank that has nodes near a mirror plane needs the plane and the images
+   a rank with nodes near a mirror plane needs the plane and the images
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::extend_topology(MPMField &field)
@@ -484,7 +483,7 @@ void FixMPMBoundary::extend_topology(MPMField &field)
     }
 }
 
-/** Mirrors and cut faces are looked at across, and regions along several axes. */
+/** Does the wall need this block? Mirrors and cut faces need both sides, regions need blocks along several axes. */
 bool FixMPMBoundary::looks_at_all(const MPMField &field, const Grid::Block &block) const
 {
   if (!acts_on(field)) return false;
@@ -547,13 +546,13 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
     }
   }
 
-  // lines of one face share no nodes, those of two do, at edges: all ranks in the same order
+  // lines of one face share no nodes, lines of two faces do at edges: the same order on all ranks
 
   std::stable_sort(list.lines.begin(), list.lines.end(), [](const Line &a, const Line &b) {
     return a.face < b.face;
   });
 
-  // stick: a component is odd about all faces; slip: the normal one about its own
+  // stick: each component is odd about all faces; slip: the normal component is odd about its own face
 
   if (kind == STICK) {
     const bool prescribed[3] = {velocity[0].given, velocity[1].given, velocity[2].given};
@@ -567,7 +566,7 @@ void FixMPMBoundary::list_face_nodes(FieldNodes &list)
 }
 
 /* ----------------------------------------------------------------------
-   the line of nodes along the normal that has this node, of a cut the first one, else in the plane
+   the line of nodes along the normal through this node: the first node of a cut face, or one in the mirror plane
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::FieldNodes::list_line(int f, const int *index)
@@ -582,7 +581,7 @@ void FixMPMBoundary::FieldNodes::list_line(int f, const int *index)
   if (face.cut) {
     for (int j = 0; j < face.nweight; j++) {
       line.node[j] = at(face.first + j);
-      if (line.node[j] < 0) return;    // not all in reach of points: nor is the face
+      if (line.node[j] < 0) return;    // out of reach of points, as is the face then
     }
   } else {
     line.node[0] = at(face.plane);
@@ -597,8 +596,7 @@ void FixMPMBoundary::FieldNodes::list_line(int f, const int *index)
 }
 
 /* ----------------------------------------------------------------------
-   nodes between the mirrors of this axis, or of all axes (-1), each with all the images that it has
-   in them
+   nodes between the mirrors of this axis, or of all axes (-1), each with all its images in these mirrors
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::FieldNodes::list_orbits(const bool *prescribed, int axis)
@@ -638,7 +636,7 @@ void FixMPMBoundary::FieldNodes::list_orbits(const bool *prescribed, int axis)
           held = held || (depth == 0 && opposite && inner[d] == opposite->plane);
           if (depth <= DEPTH) wall[d] = face->plane;
         }
-        // images of images, too: the list grows
+        // images of images are included: the list grows
         for (std::size_t k = 0; inside && k < images[d].size(); k++)
           for (const Face *face : mirror[d]) {
             if (!face) continue;
@@ -678,17 +676,17 @@ void FixMPMBoundary::FieldNodes::list_orbits(const bool *prescribed, int axis)
 /* ----------------------------------------------------------------------
    Nodes inside the region or on its surface, for the state of the region that it has now.
 
-   When the surface of a region that moves crosses a plane of nodes, then these are not taken or let go at
+   When the surface of a moving region crosses a plane of nodes, the nodes are not taken or let go at
    once, but over half a node spacing outside: a node there goes (1 - s^3)^3 of the way to the velocity
-   of the wall in each step, s = 1 at the end. What is let go at once is not in equilibrium, as material
-   in a grip had no part in the strain of the rest of the body, and the waves that it makes are as high as the
-   force itself; a node that is taken at once gets the momentum that it lacks in one step. With slow
-   motion the node slips behind the wall before it is let go: (1 - share)/share of what its
-   acceleration gives it in each step, little at first because of the power of s.
+   of the wall in each step, s = 1 at the end. Material in a grip had no part in the strain of the rest of
+   the body; if it is let go at once, it is not in equilibrium and makes waves as high as the force
+   itself. A node that is taken at once gets the missing momentum in one step. With slow
+   motion the node slips behind the wall before it is let go: by (1 - share)/share of the change that its
+   acceleration gives in each step, which is little at first because of the power of s.
 
-   Implicit steps have no hand-over (follows): to go a part of the way is no projection, and in equilibrium a node that goes half
-   the way in each step is behind by as much as in none. Lines through the surface hold what is in front of it, as they do for
-   separate, and single nodes act where there is also material behind, in a grip: wholly, up to half a spacing outside.
+   Implicit steps have no hand-over (follows): to go a part of the way is no projection, and in equilibrium a node that goes
+   half the way in each step lags as much as one that is not held. Lines through the surface hold the material in front of it,
+   as for separate. Where there is also material behind, in a grip, single nodes up to half a spacing outside act, fully.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_region_nodes(FieldNodes &list)
@@ -720,7 +718,7 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
   for (std::size_t ib = 0; looks_for_mass && ib < grid.blocks.size(); ib++)
     massive.push_back(has_mass(ib));
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
-    // most blocks are out of reach, and those around a region that moves, where it is not at the body, have nothing to hold
+    // most blocks are out of reach, and blocks around a moving region that is away from the body have nothing to hold
 
     const int *const around = grid.blocks[ib].slot;
     if (looks_for_mass && std::none_of(around, around + 27, [&](int block) {
@@ -771,8 +769,8 @@ void FixMPMBoundary::list_region_nodes(FieldNodes &list)
    normal. Nodes inside that are on such a line do not act on their own.
 
    Next to edges, and where the region is thin, nodes of a line may be nearer to another face, or beyond it.
-   There it depends on where the material is whether a line acts, see is_in_front(). Such lines are found from the nodes
-   outside, which are nearest to the face that they look at.
+   There, whether a line acts depends on where the material is, see is_in_front(). Such lines are found from the
+   nodes outside, which are nearest to the face that they look at.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> &outside)
@@ -802,8 +800,8 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
     if (!too_thin.told() && looks_at_blade(field, single, c)) list.looked_at.push_back(c);
   }
 
-  // lines along one axis share no nodes, those along two do, and those through both faces of a thin plate: all
-  // ranks in the same order
+  // lines along one axis share no nodes; lines along two axes do, and so do lines through both faces of a thin plate:
+  // the same order on all ranks
 
   std::stable_sort(list.crossings.begin(), list.crossings.end(),
                    [](const Crossing &a, const Crossing &b) {
@@ -817,8 +815,8 @@ void FixMPMBoundary::list_crossings(FieldNodes &list, const std::vector<Single> 
 }
 
 /* ----------------------------------------------------------------------
-   Nodes that are on lines do not act on their own. With slip and friction, a surface that moves across the lattice hands nodes
-   over, see list_region_nodes(), which lines do not do: there are none where it does
+   Nodes that are on lines do not act on their own. With slip and friction, a surface that moves across the lattice hands
+   nodes over, see list_region_nodes(). Lines cannot do this, and there are none in that case
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::take_off_lines(FieldNodes &list)
@@ -852,8 +850,8 @@ void FixMPMBoundary::take_off_lines(FieldNodes &list)
 }
 
 /* ----------------------------------------------------------------------
-   The line that has this node as the last one inside or, if it is outside, as the first one there. False if there is
-   none, or it has nodes where the surface is not smooth
+   The line with this node as the last one inside or, if the node is outside, as the first one outside. False if there is
+   none, or if it has nodes where the surface is not smooth
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Crossing &c)
@@ -867,14 +865,14 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
   grid.node_index(single.node, index);
   field.lattice.node_position(index, x);
   const double *const n = single.normal;
-  for (int d = 1; d < field.lattice.dim; d++)    // rounding decides nothing
+  for (int d = 1; d < field.lattice.dim; d++)    // round-off must not decide
     if (fabs(n[d]) > fabs(n[c.axis]) + EQUAL) c.axis = d;
   const int a = c.axis, outward = n[a] > 0.0 ? 1 : -1;
   const double slope = fabs(n[a]);
   if (slope < 0.5) return false;    // the normal is not known
 
-  // where the line goes through the surface, and is this node the last one before? On the surface
-  // itself rounding decides on the side, of which some regions tell nothing: a little outside
+  // where does the line cross the surface, and is this node the last one before it? On the surface itself, round-off
+  // decides on the side, and some regions give no side: look a little outside
 
   const double outside = 1.0e-3 * h;
   double way = -single.distance / slope + outside, distance = 0.0;
@@ -887,7 +885,7 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
     way -= distance / slope - outside;
   }
   if (!known) return false;
-  if (is_outside) {    // it may go by an edge
+  if (is_outside) {    // the line may miss an edge
     if (way - outside > -ON_SURFACE * h || way - outside < -(1.0 + ON_SURFACE) * h) return false;
     at[a] = x[a] + outward * (way + 0.05 * h);    // an edge itself has no normal
     if (fabs(surface->distance(at, far) - 0.05 * h * slope) > 0.02 * h) return false;
@@ -921,7 +919,7 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
       return false;
     const int at_place = node[a];
     node[a] = field.lattice.wrap(a, node[a]);
-    // regions have no periodic images: this node has material at the other end of the box
+    // regions have no periodic images: this node would have material at the other end of the box
     if (ahead <= 0 && node[a] != at_place) return false;
     c.node[k] = grid.locate(node);
     c.weight[k] = weight[from];
@@ -955,7 +953,7 @@ bool FixMPMBoundary::find_crossing(FieldNodes &list, const Single &single, Cross
 }
 
 /* ----------------------------------------------------------------------
-   Does this node, outside, look at the edge of a blade, or at a wire? Then c is the line of nodes from it into the
+   Is this node outside, in front of the edge of a blade or of a wire? Then c is the line of nodes from it into the
    region
 ------------------------------------------------------------------------- */
 
@@ -1018,8 +1016,8 @@ bool FixMPMBoundary::looks_at_blade(const MPMField &field, const Single &single,
 }
 
 /* ----------------------------------------------------------------------
-   gives the distance of a position at the start of the step from the region then. The region is where it will be at
-   the end: the position is moved with it
+   returns the distance from the region for a position at the start of the step. The region is already where it will be
+   at the end, so the position is moved with it
 ------------------------------------------------------------------------- */
 
 std::function<double(const double *)>
@@ -1055,7 +1053,8 @@ void FixMPMBoundary::Wall::rotate(double angle, const double *u, const double *o
 }
 
 /* ----------------------------------------------------------------------
-   in the total frame, of nodes that have come from X to x = X + T X + m: s + G (x - o) as s + G (m - o) + (G + G T) X
+   for the total frame: nodes have moved from X to x = X + T X + m, so s + G (x - o) becomes
+   s + G (m - o) + (G + G T) X
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::Wall::refer()
@@ -1073,7 +1072,7 @@ void FixMPMBoundary::Wall::refer()
 }
 
 /* ----------------------------------------------------------------------
-   velocity that the material now at x, at the end of the step, has had in it. It came from y,
+   velocity during the step of the material that is at x at its end. It came from y,
    x = y + dt (s + G (y - o)): with R = 1 + dt G, s + G R^T (x - o - dt s), G R^T = -G^T.
 ------------------------------------------------------------------------- */
 
@@ -1105,9 +1104,9 @@ void FixMPMBoundary::Wall::velocity(const double *x, double *v) const
 }
 
 /* ----------------------------------------------------------------------
-   half of what the velocity of the wall, where the node is, has changed by since the last step. An impulse R dt of the wall
-   takes its node from the velocity u to v, with which points then go from x to x'. What it adds to kinetic and stored
-   energy is R dt (u + v)/2, up to terms that the next step cancels, as forces of x do work on half of the way to x and half of that
+   half of the change of the velocity of the wall, at the node, since the last step. An impulse R dt of the wall takes its
+   node from the velocity u to v, with which points then go from x to x'. It adds R dt (u + v)/2 to the kinetic and stored
+   energy, up to terms that the next step cancels, as the forces at x do work on half of the way to x and half of the way
    to x'. R dt v would differ from it by R (v - u) dt/2 in each step, which adds up where a mass is shaken.
 ------------------------------------------------------------------------- */
 
@@ -1124,9 +1123,9 @@ void FixMPMBoundary::Wall::half_change(const MPMField &field, int64_t node, doub
 }
 
 /* ----------------------------------------------------------------------
-   A region acts on nodes that are inside of it at the start of a step: one that crosses more than a
-   cell in a step can pass through a body without touching it. Not all regions tell how far they
-   reach, so that this looks at displacements alone, not at rotations.
+   A region acts on nodes that are inside at the start of a step: one that crosses more than a
+   cell in a step can pass through a body without touching it. Not all regions give their
+   extent, so this checks displacements alone, not rotations.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::check_speed(double dt)
@@ -1153,9 +1152,9 @@ void FixMPMBoundary::check_speed(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   how the wall moves during this step, and the nodes inside a moving region.
-   Regions: nodes are found with the position at the start of the step, to which positions of
-   points belong; the motion is that to the end of the step.
+   the motion of the wall during this step, and the nodes inside a moving region.
+   Nodes of regions are found with the position at the start of the step, to which positions of
+   points belong; the motion goes from there to the end of the step.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::update_motion(double dt)
@@ -1173,7 +1172,7 @@ void FixMPMBoundary::update_motion(double dt)
       !velocity[1].variable.empty() || !velocity[2].variable.empty() || !rate.variable.empty();
   double *const old = past.region;
   if (region_moves()) {
-    // others may have looked at the region since then
+    // other users may have evaluated the region since then
     for (int k = 0; k < 4; k++) *MPMRegionMotion::of(region)[k] = old[k];
     for (auto &list : nodes) list_region_nodes(list);
   }
@@ -1216,7 +1215,7 @@ void FixMPMBoundary::update_motion(double dt)
           s.growth = 0.0;
           if (std::max(fabs(distance), fabs(s.distance)) >= far) continue;
 
-          // the normal speed of the surface in place of that of the rigid motion
+          // the normal speed of the surface replaces that of the rigid motion
 
           double v[3];
           wall.velocity(field, s.node, v);
@@ -1228,7 +1227,7 @@ void FixMPMBoundary::update_motion(double dt)
       for (auto &list : nodes) take_off_lines(list);
   }
   if (!past.acted) MathExtra::copy3(wall.shift, wall.before);
-  // solvers look at forces and motion of the same time, and nodes of the total frame are the material
+  // solvers evaluate forces and motion of the same time, and nodes of the total frame are the material
   wall.changes = past.acted && !in_implicit_steps;
   const bool follow = !wall.uniform && !nodes[0].field->options.total;
   const Wall end = follow ? wall.at_end_of_step(dt) : wall;
@@ -1273,7 +1272,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     // cuts: at edges, tangential components of one face are normal ones of another: these come last, so
     // that no material gets out
 
-    // in trials: contact of this one
+    // in trials: the contact of this line or node
     const bool tries = in_trials && (decides() || follows) && list.field == tried;
     const auto touch = [&](std::size_t k) {
       now.touch = tries ? &touches[k] : nullptr;
@@ -1332,9 +1331,9 @@ void FixMPMBoundary::act(double dt, Stage stage)
 }
 
 /* ----------------------------------------------------------------------
-   what the wall does to nodes on which it pushes with an impulse along the normal, of which water bears a part,
-   when another one would be needed for the material to stick. Returns the share of the latter that friction
-   gives
+   reaction of the wall at nodes. push: impulse along the normal, of_water: the part that water bears, needed: the
+   impulse along the wall for the material to stick. Returns the share of the last one that friction gives, and the
+   contact
 ------------------------------------------------------------------------- */
 
 double FixMPMBoundary::slide_share(Contact &contact, double push, double of_water,
@@ -1364,9 +1363,9 @@ double FixMPMBoundary::slide_share(Contact &contact, double push, double of_wate
 }
 
 /* ----------------------------------------------------------------------
-   Water in pores presses on walls, too, and bears a part of what the wall pushes with. Only the rest is between
-   grains and wall: friction is proportional to it, and where it would be negative grains leave a wall that
-   separates, pushed by the water. Water pulls at no wall that separates.
+   Water in pores presses on walls, too, and bears a part of the impulse of the wall. Only the rest acts between grains
+   and wall: friction is proportional to it, and where it would be negative, grains leave a separating wall, pushed by
+   the water. Water does not pull at a separating wall.
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::find_water(const FieldNodes &list, double dt)
@@ -1396,8 +1395,8 @@ double FixMPMBoundary::water_on(const int64_t *node, int n, const double *normal
   return sum;
 }
 
-/** The same on the body, at a node that the wall has let go: water works on what it lifts, as a wall that moves
- *  with it. */
+/** Applies the impulse of the water to the body at a node that the wall has let go: the water does work on the body that it
+ *  lifts, as does a wall that moves with it. */
 void FixMPMBoundary::push_by_water(Grid &grid, int64_t node, const double *normal)
 {
   if (node < 0) return;
@@ -1410,12 +1409,11 @@ void FixMPMBoundary::push_by_water(Grid &grid, int64_t node, const double *norma
 }
 
 /* ----------------------------------------------------------------------
-   velocity of a node, also the old one unless null, next to a wall with the velocity V, and what this
-   does. Work is impulse times the
-   velocity with which points are then moved, less half of what the wall's has changed by, so that a wall at rest works only by friction. The
-   kinetic energy of the nodes changes by the change of velocity times the mean of old and new one;
-   what is not work is lost, most of it energy that forces had given to nodes that cannot move. A node
-   that goes part of the way only is worked on with the velocity of all of it (whole): it slips.
+   sets the velocity of a node, also the old one unless null, next to a wall with the velocity V, and books the effect.
+   Work is impulse times the velocity with which points are then moved, less half of the change of the velocity of the
+   wall, so that a wall at rest works only by friction. The kinetic energy of the nodes changes by the change of velocity
+   times the mean of old and new one; the part that is not work is lost, most of it energy that forces had given to nodes
+   that cannot move. A node that goes only part of the way slips: its work is that of the velocity for all of it (whole).
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *V, const double *v,
@@ -1452,7 +1450,7 @@ void FixMPMBoundary::set_velocity(Grid &grid, int64_t node, const double *V, con
 }
 
 /* ----------------------------------------------------------------------
-   what of old velocities relative to the wall is taken as consistent with it, see FLIP above
+   the part of old velocities relative to the wall that counts as consistent with it, see FLIP above
 ------------------------------------------------------------------------- */
 
 static void first_inside(const double *record, const double *wall, int dim, double *limit)
@@ -1466,8 +1464,8 @@ double FixMPMBoundary::Wall::old_relative(const double *record, int d, double li
 }
 
 /* ----------------------------------------------------------------------
-   Have the node and its images mass, and is there more than one of them? One alone is free unless it is in the
-   plane of the wall. Of most nodes near walls this is false
+   Do the node and its images have mass, and more than one of them? A single one is free unless it is in the plane of the
+   wall. For most nodes near walls this is false
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::is_constrained(Grid &grid, const Member *members, int n, bool fixed)
@@ -1478,8 +1476,8 @@ bool FixMPMBoundary::is_constrained(Grid &grid, const Member *members, int n, bo
 }
 
 /* ----------------------------------------------------------------------
-   velocities of a node and its images, as far as they are prescribed: odd about the wall, and in its
-   plane (fixed) those of the wall
+   sets the prescribed velocities of a node and its images: odd about the wall, and equal to the wall in its
+   plane (fixed)
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::project(Grid &grid, const Member *members, int n, bool fixed,
@@ -1662,7 +1660,7 @@ void FixMPMBoundary::add_moment(const Grid &grid, int64_t node, const double *pu
 }
 
 /* ----------------------------------------------------------------------
-   counted like any other impulse, see set_velocity()
+   impulse on a node, counted like any other, see set_velocity()
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::bear(MPMField &field, int64_t node, const double *push)
@@ -1719,7 +1717,7 @@ void FixMPMBoundary::write_restart(FILE *fp)
   keep_totals(world, &past.work, 1);
   Past all = past;
   all.work *= force->mvv2e;
-  past.work = all.work / force->mvv2e;    // with the digits of the file
+  past.work = all.work / force->mvv2e;    // with the precision of the file
   if (comm->me) return;
   const int size = sizeof(Past);
   fwrite(&size, sizeof(int), 1, fp);

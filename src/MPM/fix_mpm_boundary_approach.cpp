@@ -6,17 +6,17 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Material that comes to a separating wall in an implicit step, from up to COMES_FROM node spacings away. The nodes at the wall need not
-// even see it: what has to be held is its surface, at a place s in front of the wall, and there a line of nodes along the normal
-// makes the motion
+// Material that approaches a separating wall in an implicit step, from up to COMES_FROM node spacings away. The nodes at the wall
+// may not even reach it: its surface has to be held, at a place s in front of the wall, and there a line of nodes along the
+// normal makes the motion
 //
 //   sum_i N_i(s) (u_i - dt V) n >= -g
 //
-// with the gap g at the start of the step. The solver holds it at -g when the trial motion has closed the gap (decide()), and lets it go
-// where the wall would pull, as it does with what is at the wall already.
+// with the gap g at the start of the step. The solver holds it at -g when the trial motion has closed the gap (decide()), and
+// lets it go where the wall would pull, as with material that is already at the wall.
 //
-// Where the surface is, mean distances tell as at the wall (mpm_wall_gap.cpp): s is the place of a wall that the material would just
-// touch.
+// Mean distances give the position of the surface, as at the wall (mpm_wall_gap.cpp): s is the place of a wall that the
+// material would just touch.
 
 #include "fix_mpm_boundary.h"
 
@@ -41,17 +41,17 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int PLACES = 32;         // per cell, where a surface is looked for first
-static constexpr int COARSE = 8;          // every 8th of them, before the others
-static constexpr double MORE = 0.05;      // node spacings beyond those from which material may come
-static constexpr double FAR = 1.0e8;      // node spacings
-static constexpr double THROUGH = 0.5;    // node spacings in the wall where contact has failed
+static constexpr int PLACES = 32;          // samples per cell in the search for a surface
+static constexpr int COARSE = 8;           // a coarse search takes every 8th sample first
+static constexpr double MORE = 0.05;       // node spacings beyond COMES_FROM
+static constexpr double FAR = 1.0e8;       // node spacings
+static constexpr double THROUGH = 0.5;     // node spacings in the wall where contact has failed
 static constexpr double AT_WALL = 0.01;    // node spacings
-static constexpr double STRAIGHT = 0.5;    // cosine between a line and a normal that is known
+static constexpr double STRAIGHT = 0.5;    // least cosine between a line and a known normal
 static constexpr double DEEPER = 0.1;    // node spacings, for a line whose outer node sees no point
 
 /* ----------------------------------------------------------------------
-   Ranks that have a node of a line need all between it and the wall, and the next ones behind it
+   Ranks that have a node of a line need all nodes between it and the wall, and the next ones behind it
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::extend_to_approaches(MPMField &field) const
@@ -97,7 +97,7 @@ void FixMPMBoundary::extend_to_approaches(MPMField &field) const
 }
 
 /* ----------------------------------------------------------------------
-   Lines of nodes through the surface of material in front of the wall, but for those on which the wall acts already
+   Lines of nodes through the surface of material in front of the wall, except those on which the wall acts already
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::find_approaches(FieldNodes &list, double dt)
@@ -166,7 +166,7 @@ void FixMPMBoundary::find_approaches(FieldNodes &list, double dt)
       grid.node_index(node, index);
       lines.erase(key_of(axis, up, index));
     };
-    // Where the material has gone from the outer node of a line through the wall (find_chain()), that line cannot act: one
+    // Where the material has left the outer node of a line through the wall (find_chain()), that line cannot act. A line
     // through the material a little further in can, and explicit steps come back to the wall within a few steps
 
     Chain acting;
@@ -185,7 +185,7 @@ void FixMPMBoundary::find_approaches(FieldNodes &list, double dt)
         leave_out(crossing.axis, crossing.normal[crossing.axis] > 0.0, crossing.base);
     }
 
-    // a wall that holds needs none but in place of lines that cannot act
+    // a wall that holds needs only lines that replace those which cannot act
 
     if (follows) {
       std::set<std::array<int, 4>> instead;
@@ -202,7 +202,7 @@ void FixMPMBoundary::find_approaches(FieldNodes &list, double dt)
     gap.map(field, near, !region || region->nregion == 1,
             (region ? 2.45 : 2.0) * seen + COMES_FROM + MORE, away, more);
 
-    // how far behind (negative: in front of) a wall at this place is the surface that it sees?
+    // how far behind (negative: in front of) a wall at this place is the surface that the nodes see?
 
     const auto look = [&](const Nearest &line, int axis, int outward, double place, double distance,
                           Approach &found) {
@@ -282,7 +282,7 @@ void FixMPMBoundary::find_approaches(FieldNodes &list, double dt)
 }
 
 /* ----------------------------------------------------------------------
-   The normal component at the surface of the material, as in act_on_crossing(). The way to the wall is none on which it works
+   Holds the normal component at the surface of the material, as in act_on_crossing(). The wall does no work on the way to it
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::act_on_approach(const FieldNodes &list, const Approach &line, Touch &touch)
@@ -326,7 +326,7 @@ bool FixMPMBoundary::close_gaps(bool yes)
   });
 }
 
-/** Distances of points at the start of the step. */
+/** Distances of points from the wall at the start of the step. */
 void FixMPMBoundary::find_clear(const FieldNodes &list, double dt)
 {
   const MPMField &field = *list.field;
@@ -349,7 +349,7 @@ void FixMPMBoundary::find_clear(const FieldNodes &list, double dt)
       }
 }
 
-/** What was in front of the wall, and not found to touch it, must not be in it now. */
+/** Checks that no material that was in front of the wall, and was not found to touch it, is in the wall now. */
 void FixMPMBoundary::check_arrival()
 {
   if (!seeks || !tried) return;
@@ -357,7 +357,7 @@ void FixMPMBoundary::check_arrival()
   const double h = field.lattice.h;
   const auto &list = tried_nodes();
   const int nfaces = region ? 1 : (int) list.faces.size();
-  double worst[2] = {0.0, 0.0}, all[2];    // way that a point came from, depth
+  double worst[2] = {0.0, 0.0}, all[2];    // distance that a point came from, depth
   const double far = MPMWallGap::farthest(field);
   if (region) region->prematch();
   for (const auto &run : field.map->runs)

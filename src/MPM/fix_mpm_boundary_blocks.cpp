@@ -7,8 +7,9 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Blocks of nodes next to those that points reach, for lines of nodes through the surface of a region, which can have nodes that only points of another rank
-   reach. A region that moves needs others all the time. Blocks are made around the place where it was then, a bit wider, and made anew when it has gone that far.
+   Blocks of nodes next to those that points reach. Lines of nodes through the surface of a region can have nodes that only
+   points of another rank reach. A moving region needs different blocks all the time: they are made around its place at that
+   time, a bit wider, and made anew when it has moved by that margin.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_boundary.h"
@@ -31,13 +32,13 @@ using namespace MPM_NS;
 static constexpr double FAR = 1.0e8;    // node spacings
 static constexpr double WIDER = 2.0;    // node spacings, around a region that moves
 
-/** Is the place of the region known, so that blocks far from it are not needed? */
+/** Is the place of the region known, so that blocks far from it can be left out? */
 bool FixMPMBoundary::knows_place() const
 {
   return region->nregion == 1 && (placed || !region_moves());
 }
 
-/** How far parts of the region in the box can have moved since then. */
+/** Upper bound of the distance that parts of the region in the box have moved since the state then. */
 double FixMPMBoundary::way_since(const double *then) const
 {
   double shift[3], way = 0.0;
@@ -65,7 +66,7 @@ void FixMPMBoundary::couple_topology()
 }
 
 /* ----------------------------------------------------------------------
-   Lines along several axes share nodes: blocks all around
+   Lines along several axes share nodes, so blocks all around are needed
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::extend_across(MPMField &field)
@@ -78,7 +79,7 @@ void FixMPMBoundary::extend_across(MPMField &field)
                reach = (0.5 * grid.side * sqrt((double) dim) + 4.0 + (moves ? WIDER : 0.0)) * h;
   if (!moves) region->prematch();
   if (moves && known) {
-    // others may have looked at the region since the step before
+    // other users may have evaluated the region since the step before
     for (int k = 0; k < 4; k++) *MPMRegionMotion::of(region)[k] = past.region[k];
     for (auto &list : nodes)
       if (list.field == &field) {

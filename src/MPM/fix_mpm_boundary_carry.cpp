@@ -6,12 +6,13 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Grips: regions that move with stick, in implicit steps, and material that goes through their surface. Whole nodes that a grip holds would make
-// the length between two of them wrong by part of a node spacing. Instead, the grip is what cuts the body: points inside go with it, and have no part in the balance of
-// forces; and the line of nodes through the surface holds the material there, as a plate in front of a body does. Its nodes are not held beyond that, so that
-// the strain in front of the grip goes on behind the surface on the line, where it has no stress.
+// Grips: regions that move with stick, in implicit steps, where material goes through their surface. If a grip held whole nodes,
+// the length between two grips would be wrong by part of a node spacing. Instead, the grip cuts the body: points inside move with
+// it and have no part in the balance of forces, and the line of nodes through the surface holds the material there, as a plate in
+// front of a body does. The nodes of the line are not held beyond that, so that the strain in front of the grip continues behind
+// the surface, where the material has no stress.
 //
-// Lines along one axis share no nodes. Where those along two axes do, at edges and on curved surfaces, nodes are held one by one as before.
+// Lines along one axis share no nodes. Where lines along two axes do, at edges and on curved surfaces, nodes are held one by one.
 
 #include "fix_mpm_boundary.h"
 
@@ -43,7 +44,7 @@ void FixMPMBoundary::find_lines_alone(FieldNodes &list) const
       return node >= 0 && lines[node] == 1;
     });
 
-  // projections on lines of a curved surface that share nodes, one after the other, come together slowly if at all: nodes are held one by one there
+  // on a curved surface, successive projections on lines that share nodes converge slowly if at all: nodes are held one by one there
 
   list.crossings.erase(std::remove_if(list.crossings.begin(), list.crossings.end(),
                                       [](const Crossing &c) {
@@ -60,7 +61,7 @@ bool FixMPMBoundary::goes_through(Grid &grid, const Crossing &c)
          });
 }
 
-/** Points that the surface cuts are inside by the part of their width that is. */
+/** Finds the share of each point that is outside of the grip (left); a point that the surface cuts is divided by its width. */
 bool FixMPMBoundary::find_carried(MPMField &field, std::vector<double> &left)
 {
   carrying = follows && kind == STICK && acts_across();
@@ -92,7 +93,7 @@ bool FixMPMBoundary::find_carried(MPMField &field, std::vector<double> &left)
   return true;
 }
 
-/** The whole of it in the shares of the constraint. */
+/** Spreads the force on each line over its nodes, in the shares of the constraint. */
 void FixMPMBoundary::bear_carried(MPMField &field, double *force)
 {
   if (!carrying) return;

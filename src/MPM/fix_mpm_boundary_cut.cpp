@@ -17,13 +17,13 @@
 // as the mirror images do at a plane. The change of velocities of least kinetic energy that does both,
 //   v_i += (lambda a_i + mu b_i)/m_i,
 // leaves alone what varies linearly from V at the face. Its impulse is lambda sum_i a_i. A wall acts
-// when points are in reach of its outermost node, but for nodes that reach less than 0.5 (linear), 0.2
+// when points are in reach of its outermost node, except for nodes that reach less than 0.5 (linear), 0.2
 // or 0.3 of a cell into the box (MIN_WEIGHT). Where no point reaches a linear function's outer node,
-// the two next ones are extrapolated to it. Friction, separation and the old velocities of FLIP are as
-// at mirror planes.
+// its velocity is extrapolated from the two next ones. Friction, separation and the old velocities of FLIP
+// are as at mirror planes.
 //
-// Regions that separate have such lines, too, through their surface (list_crossings()): what acts on nodes
-// one by one acts below the surface, by up to a spacing, and friction has another lever arm there.
+// Regions that separate have such lines, too, through their surface (list_crossings()): a wall that acts on
+// nodes one by one acts below the surface, by up to a spacing, and friction has another lever arm there.
 
 #include "fix_mpm_boundary.h"
 
@@ -40,11 +40,11 @@ using namespace MPM_NS;
 static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
 static constexpr double OUTSIDE = 0.25;      // node spacings
 static constexpr double AT_NODE = 1.0e-6;    // node spacings
-static constexpr double HEAVY = 0.500001;    // share of the mass of mirror images
+static constexpr double HEAVY = 0.500001;    // share of one node in the mass of mirror images
 
 /* ---------------------------------------------------------------------- */
 
-/** Of the place x along an axis: the nodes, from the first one on, that make the velocity there. */
+/** The nodes, from the first one on, and their weights that make the velocity at the place x along an axis; returns their number. */
 int FixMPMBoundary::weights_at(const MPMField &field, int axis, int inward, double x, int &first,
                                double *weight)
 {
@@ -67,8 +67,8 @@ void FixMPMBoundary::Face::cut_weights(const MPMField &field, double x)
 }
 
 /* ----------------------------------------------------------------------
-   n nodes in the order along the axis, inward: 1 if the material is behind the last one. False where no
-   point reaches the wall
+   n nodes in the order along the axis, inward: 1 if the material is behind the last one. Returns false where
+   no point reaches the wall
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, const double *weight,
@@ -82,7 +82,7 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
       levers =
           0.0;    // weights of outer nodes without mass, times spacings from the first one with mass
   int first = 0;
-  double place = 0.0;    // of the wall, in nodes from the outermost one
+  double place = 0.0;    // position of the wall, in nodes from the outermost one
   bool reached = false;
   for (int j = 0; j < n; j++) {
     const int k = inward > 0 ? j : n - 1 - j;
@@ -107,7 +107,7 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
     c.m++;
   }
   if (keeps ? c.m == 0 || first - place > OUTSIDE : !reached) return false;
-  // none of the nodes that tell of the velocity at the wall has mass
+  // no node with a part in the velocity at the wall has mass
   if (c.total + extrapolated == 0.0) return false;
   if (extrapolated > 0.0) {
     levers += first * extrapolated;
@@ -120,7 +120,7 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
       }
     }
   }
-  // linear functions at a node tell nothing of the next ones, as at a mirror plane
+  // linear functions with the wall on a node do not involve the next ones, as at a mirror plane
   const bool at_node = order == 1 && *std::max_element(weight, weight + n) > 1.0 - AT_NODE;
   c.inner = c.m - 1;
   if (at_node) c.inner = std::min(c.inner, (int) (std::max_element(c.A, c.A + c.m) - c.A) + 1);
@@ -129,14 +129,14 @@ bool FixMPMBoundary::find_chain(const FieldNodes &list, const int64_t *node, con
 }
 
 /* ----------------------------------------------------------------------
-   The change of least kinetic energy that takes velocities r relative to the wall away, and the
+   The change of least kinetic energy that removes velocities r relative to the wall, and the
    impulse lambda that belongs to A. With inverse masses w, and AB = sum_k w_k A_k B_k,
 
      lambda = -(BB sum_j A_j r_j - AB sum_j B_j r_j)/det,  det = AA BB - AB^2
 
-   A node at the very end of the functions of points has a mass of 1e-30 of that of its neighbors, which
-   leaves nothing of theirs in AA, AB, and BB: det would be noise, or zero, and with it the velocities of
-   all nodes. With D_jk = A_j B_k - A_k B_j (Lagrange's identity) terms of pairs of nodes remain:
+   A node at the very end of the functions of points has 1e-30 of the mass of its neighbors. Its terms would
+   drown those of the neighbors in AA, AB, and BB: det would be noise, or zero, and with it the velocities of all
+   nodes. With D_jk = A_j B_k - A_k B_j (Lagrange's identity) only terms of pairs of nodes remain:
 
      det = sum_{j<k} w_j w_k D_jk^2,  lambda = -sum_i w_i B_i sum_j D_ji r_j/det,
      change of v_k: w_k sum_i w_i D_ik sum_j D_ji r_j/det
@@ -195,17 +195,17 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   const auto &V = chain.V;
   const double total = chain.total;
 
-  // of old velocities as much is consistent with the wall as the innermost node has, see
+  // old velocities are consistent with the wall up to the value at the innermost node, see
   // fix_mpm_boundary.cpp
 
-  // components that stick prescribes now
+  // components that stick prescribes in this pass
   const auto prescribed = [&](int d) {
     return velocity[d].given && (d == a) == last;
   };
   const double normal[3] = {(double) (a == 0), (double) (a == 1), (double) (a == 2)};
   double lambda[3] = {0.0, 0.0, 0.0}, lambda_old[3] = {0.0, 0.0, 0.0};
   double change[3][4], change_old[3][4] = {};
-  double relative[4];    // of the nodes to the wall
+  double relative[4];    // velocities of the nodes relative to the wall
   for (int d = 0; d < dim; d++) {
     for (int k = 0; k < m; k++) relative[k] = r[k][d] - V[k][d];
     lambda[d] = chain.solve(relative, change[d]);
@@ -249,7 +249,7 @@ void FixMPMBoundary::act_on_cut(const FieldNodes &list, Line &cut, bool last)
   now.normal = nullptr;
 }
 
-/** Does the line act in this step? Then nodes inside do not on their own, as far as it is not known from the start. */
+/** Does the line act in this step? If so, the nodes inside do not act on their own, unless this is known from the start. */
 bool FixMPMBoundary::decide_line(Grid &grid, Crossing &c)
 {
   const bool to_surface = holds_surface();
@@ -257,7 +257,7 @@ bool FixMPMBoundary::decide_line(Grid &grid, Crossing &c)
   if (!now.decided) c.acts = holds_line(grid, c);
   if (!c.acts) return false;
   if (c.front == Crossing::NEAR_OTHERS || to_surface) {
-    // nodes outside act, too, where a region that moves hands them over
+    // nodes outside act, too, where a moving region hands them over
     const bool all = follows || (to_surface && region_moves());
     held_by_lines.insert(held_by_lines.end(), c.node, c.node + (all ? c.n : c.inside));
   }
@@ -265,8 +265,8 @@ bool FixMPMBoundary::decide_line(Grid &grid, Crossing &c)
 }
 
 /* ----------------------------------------------------------------------
-   Normal and tangential part of the impulse at the surface of a region, whose normal need not be along
-   the line
+   Normal and tangential part of the impulse at the surface of a region, whose normal may be inclined
+   to the line
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
@@ -286,7 +286,7 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
     normal += lambda[d] * n[d];
   }
 
-  // what FLIP updates of old velocities, as at faces: all that stick prescribes, or the normal ones
+  // components of old velocities that FLIP updates, as at faces: all that stick prescribes, or the normal ones
 
   const bool hold = now.old_share > 0.0 && to_surface;
   double change_old[3][4] = {};
@@ -340,7 +340,8 @@ void FixMPMBoundary::act_on_crossing(const FieldNodes &list, Crossing &crossing)
 }
 
 /* ----------------------------------------------------------------------
-   lines through surfaces and faces, and mirror images; those with a heavy one are others, as most of a pair is in that
+   lists lines through surfaces and faces, and mirror images. Images with a heavy node go to others, as most of the mass
+   is in that node
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_ties(const MPMField &field, std::vector<int64_t> &ties,

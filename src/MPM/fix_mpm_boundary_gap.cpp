@@ -8,7 +8,7 @@
 
 // Separating walls push where the surface of the material has reached them (mpm_wall_gap.cpp), and not
 // as soon as nodes feel it. A disk that rolls toward nodes which hold it from a distance of 1.5 h gets
-// a normal force in front of its center, whose moment is that of the friction and more: it does not spin.
+// a normal force in front of its center, whose moment is larger than that of the friction: it does not spin.
 
 #include "fix_mpm_boundary.h"
 
@@ -27,11 +27,12 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// node spacings in mean distances that decide on nothing where a solver does: contact with regions is tabulated
+// error of mean distances, in node spacings, within which they decide nothing in trials of a solver: contact with regions is
+// tabulated
 static constexpr double NOT_KNOWN = 0.03;
-// of walls that move and hold: there is a warning, which a gap of about twice as much has
+// gap of walls that move and hold, in node spacings, from which on there is a warning; the true gap is about twice as large
 static constexpr double NOT_TOUCHED = 0.07;
-static constexpr double FILLED = 0.4;    // of the reach of the node in front
+static constexpr double FILLED = 0.4;    // share of the volume in reach of the node in front
 
 /* ---------------------------------------------------------------------- */
 
@@ -49,7 +50,7 @@ MPMWallContact FixMPMBoundary::Face::contact_of(const MPMField &field, double x)
 }
 
 /* ----------------------------------------------------------------------
-   which lines of nodes are touched in this step
+   finds which lines of nodes are touched in this step
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
@@ -57,7 +58,7 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
   if (region) return find_region_gaps(list, dt);
   MPMField &field = *list.field;
   const Grid &grid = field.grid;
-  const double seen = 0.5 * (stencil_order(field.options.shape) + 1);    // from a node
+  const double seen = 0.5 * (stencil_order(field.options.shape) + 1);    // reach of a node
   std::vector<char> near;
   for (int f = 0; f < (int) list.faces.size(); f++) {
     const Face &face = list.faces[f];
@@ -80,12 +81,12 @@ void FixMPMBoundary::find_gaps(FieldNodes &list, double dt)
   }
 }
 
-/** Collective. */
+/** Maps mean distances of the material from the region to the nodes of lines and single nodes. Collective. */
 void FixMPMBoundary::map_region_gaps(FieldNodes &list, double dt)
 {
   MPMField &field = *list.field;
-  // a function's half width: along the axis from the surface to a node, and then along all axes, of which
-  // the distance is at most the square root of 6 times as much
+  // half width of a function: along the axis it is the reach from the surface to a node, and along all axes
+  // the distance is at most sqrt(6) times as large
   const double seen = 0.5 * (stencil_order(field.options.shape) + 1);
   std::vector<char> near(field.grid.blocks.size(), 0);
   for (const auto &single : list.singles) near[single.node / NODES_PER_BLOCK] = 1;
@@ -97,8 +98,8 @@ void FixMPMBoundary::map_region_gaps(FieldNodes &list, double dt)
 }
 
 /* ----------------------------------------------------------------------
-   Lines of a region that moves and holds act as soon as nodes on both sides of the surface see material, which can be half a node spacing
-   in front. Collective: a warning that tells the first such place
+   Lines of a region that moves and holds act as soon as nodes on both sides of the surface see material, which can be half a
+   node spacing in front. Notes the first such place for a warning. Collective
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::note_gaps(FieldNodes &list, double dt)
@@ -113,7 +114,7 @@ void FixMPMBoundary::note_gaps(FieldNodes &list, double dt)
     if (!is_in_front(grid, crossing) || goes_through(grid, crossing) ||
         !find_chain(list, crossing.node, crossing.weight, crossing.n, 1, chain))
       continue;
-    // next to a side of the body, lines see corners that nothing has to hold
+    // next to a side of the body, lines see corners that need not be held
     const int64_t ahead = crossing.node[crossing.n - 1];
     if (ahead < 0 || gap.at(ahead).volume < FILLED * std::pow(h, list.field->lattice.dim)) continue;
     MPMWallGap::Sums sums;
@@ -138,7 +139,7 @@ void FixMPMBoundary::note_gaps(FieldNodes &list, double dt)
 }
 
 /* ----------------------------------------------------------------------
-   which nodes inside of a region are touched in this step
+   finds which nodes inside a region are touched in this step
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
@@ -169,8 +170,8 @@ void FixMPMBoundary::find_region_gaps(FieldNodes &list, double dt)
 }
 
 /* ----------------------------------------------------------------------
-   index of the contact with a crossing: slope: cosine between line and normal, place: of the surface on
-   the line, in node spacings, growing towards the material. It depends on the place in a cell
+   index of the contact with a crossing, which depends on the place in a cell. slope: cosine between line and normal;
+   place: of the surface on the line, in node spacings, growing towards the material
 ------------------------------------------------------------------------- */
 
 int FixMPMBoundary::crossed_contact(FieldNodes &list, double slope, double place)

@@ -30,15 +30,15 @@ void FixMPMBoundary::init_action()
   heating->begin_run(*this, fields);
 }
 
-/** What set_velocity() does next is done along a wall with this normal, on which material slides or not. */
+/** From now on, set_velocity() acts along a wall with this normal, on which material slides or not. */
 void FixMPMBoundary::heat_if_sliding(Contact contact, const double *normal)
 {
   now.normal = heating && now.counting && contact == SLIDING ? normal : nullptr;
 }
 
 /* ----------------------------------------------------------------------
-   Gives the heat of friction to a node with a change of its velocity to v. Returns what the work per mass of
-   the tangential impulse, which was counted with another velocity, has to be more for the ledger
+   Gives the heat of friction to a node whose velocity changes to v. The work of the tangential impulse was
+   counted with another velocity; returns the work per mass that the ledger must add
 ------------------------------------------------------------------------- */
 
 double FixMPMBoundary::slip_work(Grid &grid, int64_t node, const double *V, const double *change,

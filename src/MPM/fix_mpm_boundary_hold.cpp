@@ -16,8 +16,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Is it known before a step what the wall does in it? Not where that depends on the impulses that it gets,
- *  and regions that move take other nodes. */
+/** Is the action of the wall known before a step? It is not where it depends on the impulses that the wall gets, or
+ *  where the region moves and takes other nodes. */
 bool FixMPMBoundary::is_foreseen() const
 {
   return !decides() && !region_moves();
@@ -29,7 +29,7 @@ bool FixMPMBoundary::holds(const double *normal, int d) const
 }
 
 /* ----------------------------------------------------------------------
-   A node outside of a mirror does what its image inside does
+   A node outside of a mirror is held if its image inside is
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::mark_held(const MPMField &field, std::vector<char> &held) const

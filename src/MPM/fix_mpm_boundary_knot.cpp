@@ -6,16 +6,17 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Where the axis that is nearest to the normal changes, on curved surfaces, lines of nodes along both axes have nodes in common and prescribe nearly the
-// same.  One after the other they would undo a part of what the other does, and repeated this comes to no end in implicit steps, whose constraints
-// have to be a projection.  Such lines are a knot: the change of velocities of least kinetic energy that does what all of them ask for,
+// On curved surfaces, where the axis that is nearest to the normal changes, lines of nodes along both axes share nodes and prescribe
+// nearly the same.  One after the other, they would undo a part of each other's action, and repetition does not converge in implicit
+// steps, whose constraints must be a projection.  Such lines form a knot, with the change of velocities of least kinetic energy
+// that satisfies all of them:
 //
 //   v_i += sum_r l_r c_ri n_r/m_i,  sum_s G_rs l_s = -sum_i c_ri n_r (v_i - V_i),  G_rs = sum_i c_ri c_si n_r n_s/m_i
 //
-// where each line has a row c = a and, when all of its nodes have mass, a row c = b (fix_mpm_boundary_cut.cpp).  Rows that nearly depend on
-// others are what two lines ask for twice: eigenvectors of G, scaled to 1 on its diagonal, with small eigenvalues are left out.
+// where each line has a row c = a and, when all of its nodes have mass, a row c = b (fix_mpm_boundary_cut.cpp).  Rows that nearly
+// depend on others ask for the same twice: eigenvectors of G, scaled to 1 on its diagonal, with small eigenvalues are left out.
 //
-// Where material sticks, each component that is prescribed has these equations for itself, with 1 in place of n_r.
+// Where material sticks, each prescribed component has these equations on its own, with 1 in place of n_r.
 
 #include "fix_mpm_boundary.h"
 
@@ -31,13 +32,14 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// cosine between normals of lines that prescribe different components, and of those that hold different material
+// cosine between normals up to which lines prescribe different components, or hold different material
 static constexpr double CORNER = 0.1, BACK = -0.5;
-static constexpr double LEAST = 1.0e-8;    // mass of a node, of the heaviest one
-static constexpr double SMALL = 1.0e-3;    // eigenvalue
+static constexpr double LEAST = 1.0e-8;    // least mass of a node, relative to the heaviest one
+static constexpr double SMALL = 1.0e-3;    // least eigenvalue
 
 /* ----------------------------------------------------------------------
-   Lines that share nodes, along different axes and in front of the same material, and lines that share nodes with these
+   Lines that share nodes, along different axes and in front of the same material, and lines that share nodes with
+   these
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::list_knots(FieldNodes &list) const
@@ -109,12 +111,12 @@ void FixMPMBoundary::act_on_knot(const FieldNodes &list, Knot &knot)
 
   struct Row {
     int line, m;
-    int node[4];    // places in knot.node
+    int node[4];    // indices into knot.node
     double c[4];
     double sum
         [3] = {},
      old[3] =
-         {};    // of what it takes away, of components that stick, or the first one along the normal
+         {};    // velocity that the row removes: of components that stick, or along the normal (first one)
   };
   std::vector<Row> rows;
   std::vector<double> share(knot.lines.size(), 0.0);

@@ -6,11 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Regions that separate, or have friction, where other faces are near: plates that are thinner than what nodes
-// see, and the edges of tools. There a node can be nearer to another face than to the one that the material touches.
-// The masses of the nodes on a line tell where the material is: on nodes behind the face that it touches
-// they get less. A narrow punch had 10 to 80 % of its force, and a block fell through a plate thinner than a spacing,
-// when nodes inside acted along the normal of their nearest face.
+// Regions that separate, or have friction, where other faces are near: plates that are thinner than the reach of nodes,
+// and the edges of tools. There a node can be nearer to another face than to the one that the material touches.
+// The masses of the nodes on a line show where the material is: nodes behind the face that it touches
+// get less. When nodes inside acted along the normal of their nearest face, a narrow punch had 10 to 80 % of its force,
+// and a block fell through a plate thinner than a spacing.
 
 #include "fix_mpm_boundary.h"
 
@@ -25,7 +25,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr int LOOK_EVERY = 50;    // steps of this fix in a run
+static constexpr int LOOK_EVERY = 50;    // steps of this fix between checks
 
 static double mass(Grid &grid, int64_t node)
 {
@@ -34,16 +34,16 @@ static double mass(Grid &grid, int64_t node)
 
 /* ----------------------------------------------------------------------
    In front of a plane, a node at the distance x from the surface has the mass that its function has over x' > -x.
-   More than that of material which is INTO deeper in the wall is that of material at another face.
+   If it has more mass than with a surface that is INTO deeper in the wall, then there is material at another face.
 
-   The functions are quadratic ones for all shapes. With linear and cubic ones, too, this holds for all material in front of a
-   plane, wherever it is between nodes, and for none behind a plate of .3 to 3 spacings: the shift by INTO is enough for
+   The functions are quadratic ones for all shapes. With linear and cubic ones, too, this holds for all material in front of
+   a plane, wherever it is between nodes, and for none behind a plate of .3 to 3 spacings: the shift by INTO is enough for
    their differences.
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::is_in_front(Grid &grid, const Crossing &c)
 {
-  constexpr double INTO = 0.3, LITTLE = 1.0e-3;    // node spacings, share
+  constexpr double INTO = 0.3, LITTLE = 1.0e-3;    // in node spacings; share of the mass
   const auto share = [](double x) {
     const double s = std::fabs(x), y = 1.5 - std::min(s, 1.5);
     const double less = s < 0.5 ? 0.5 - 0.75 * s + s * s * s / 3.0 : y * y * y / 6.0;
@@ -58,7 +58,7 @@ bool FixMPMBoundary::is_in_front(Grid &grid, const Crossing &c)
   return full > 0.0;
 }
 
-/** Have nodes in front no more than a share of what those behind have? */
+/** Is the mass of nodes in front at most this share of that of nodes behind? */
 bool FixMPMBoundary::is_behind(Grid &grid, const Crossing &c, double share)
 {
   double in_front = 0.0, behind = 0.0;
@@ -69,8 +69,8 @@ bool FixMPMBoundary::is_behind(Grid &grid, const Crossing &c, double share)
   return in_front <= share * behind;
 }
 
-/** Has the node behind the line so much mass that there is material in the region, about a spacing below the surface or deeper? What is in
- *  front reaches it with the tails of functions across an inclined line at most. */
+/** Is there material in the region, about a spacing below the surface or deeper, by the mass of the node behind the line? At
+ *  most the tails of functions across an inclined line bring it mass of the material in front. */
 bool FixMPMBoundary::is_inside(Grid &grid, const Crossing &c)
 {
   constexpr double MUCH = 0.1;
@@ -81,7 +81,7 @@ bool FixMPMBoundary::is_inside(Grid &grid, const Crossing &c)
   return there > MUCH * most;
 }
 
-/** Is it the line that acts, by what the masses of nodes tell of the material? */
+/** Does the line act, and not the nodes inside, judged by the masses of nodes? */
 bool FixMPMBoundary::holds_line(Grid &grid, const Crossing &c) const
 {
   constexpr double AS_MUCH = 1.01;
@@ -96,21 +96,21 @@ bool FixMPMBoundary::holds_line(Grid &grid, const Crossing &c) const
   }
 }
 
-/** Is this a step in which lists of regions that move have what check_width() needs, and ranks compare notes? */
+/** Is this a step in which the lists of moving regions have the data for check_width(), and ranks compare their findings? */
 bool FixMPMBoundary::looks_at_width() const
 {
   return steps % LOOK_EVERY == 1;
 }
 
 /* ----------------------------------------------------------------------
-   A blade or wire whose width is less than the reach of nodes, and has material in front of it; a plate that has
-   material on both sides. Each rank notes the first place that it sees, of several in a step the first one in space
+   Finds blades or wires that are narrower than the reach of nodes and have material in front of them, and plates with
+   material on both sides. Each rank notes the first such place, in a step with several the first one in space
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::check_width(const FieldNodes &list)
 {
   constexpr double BOTH =
-      0.6;    // so much more is behind a plate when material is in front of it alone
+      0.6;    // ratio of masses in front and behind: smaller if material is behind alone
   const auto now = (double) update->ntimestep;
   if (too_thin.knows(now)) return;
   Grid &grid = list.field->grid;
@@ -119,7 +119,7 @@ void FixMPMBoundary::check_width(const FieldNodes &list)
     grid.node_position(c.base, x);
     too_thin.take({now, (double) (&list - nodes.data()), x[0], x[1], x[2]});
   };
-  // another rank may know the masses of nodes that this one does not have
+  // another rank may know masses of nodes that this one lacks
   const auto judges = [&](const Crossing &c) {
     return comm->nprocs == 1 || std::count(c.node, c.node + c.inside, -1) == 0;
   };
@@ -130,7 +130,7 @@ void FixMPMBoundary::check_width(const FieldNodes &list)
 }
 
 /* ----------------------------------------------------------------------
-   Collective: one warning, of the same place for any number of ranks
+   Collective: one warning, with the same place for any number of ranks
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::report_width()

@@ -6,10 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Contact of which an implicit solver decides. While it is known what touches, walls hold the normal component of their lines of nodes
-// and single nodes, as slip does; what they would need for this tells the force N of each. Friction acts where the surface
-// is: on the nodes of a line in the shares a_k with which these make the velocity there, so that a uniform shear stress is in balance node by
-// node, and slip is s = sum_k a_k (u_k - dt V_k), along the surface.
+// Contact that an implicit solver decides. While it is known what touches, walls hold the normal component of their lines of nodes
+// and single nodes, as slip does; the impulse that this needs gives the force N of each. Friction acts at the surface: on
+// the nodes of a line in the shares a_k with which they make the velocity there, so that a uniform shear stress is in balance
+// node by node. The slip is s = sum_k a_k (u_k - dt V_k), along the surface.
 
 #include "fix_mpm_boundary.h"
 
@@ -25,12 +25,13 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double LONGEST = 0.99;    // of w: what slips as a whole has a stiffness
+static constexpr double LONGEST = 0.99;    // longest w, so that a body that slips keeps a stiffness
 static constexpr double WRONG =
-    1.0e-9;    // of the largest push, a pull that is let go; node spacings in the wall
-static constexpr double STILL_RIGHT = 1.0e-4;    // the same in the end
-static constexpr int AT_ONCE = 6;                // times that all is changed
-// node spacings from a wall at which material touches it if other does, and at which statics tries whether it does
+    1.0e-9;    // least pull to let go, relative to the largest push; least depth in the wall, in node spacings
+static constexpr double STILL_RIGHT = 1.0e-4;    // the same in later rounds
+static constexpr int AT_ONCE = 6;                // rounds in which everything wrong is changed
+// distance from a wall, in node spacings, at which material touches it if other material does, and at which statics tries
+// whether it does
 static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
 
 /* ---------------------------------------------------------------------- */
@@ -68,8 +69,8 @@ void FixMPMBoundary::begin_trials(MPMField &field, double dt, double slip_time, 
   for (const auto &crossing : list.crossings) touches.emplace_back(!separates || crossing.touched);
   for (const auto &single : list.singles) touches.emplace_back(!separates || single.touched);
 
-  // Of what is next to the wall, next to nothing decides whether it touches, where other material does. In statics, there
-  // may be nothing else that holds it
+  // Where other material touches, round-off would decide whether material next to the wall does. In statics, nothing else may
+  // hold it
 
   const std::size_t nlines = list.lines.size() + list.crossings.size();
   int any = 0, touched = 0;
@@ -95,7 +96,7 @@ void FixMPMBoundary::begin_trials(MPMField &field, double dt, double slip_time, 
   }
 }
 
-/** Is it so far behind the surface that nothing is known of what touches it? */
+/** Is the node so far behind the surface that it is not known whether material touches it? */
 bool FixMPMBoundary::is_deep(const FieldNodes &list, std::size_t single) const
 {
   return !region || -list.singles[single].distance > DEEPEST * list.field->lattice.h;
@@ -124,7 +125,8 @@ void FixMPMBoundary::take_forces(double scale)
 }
 
 /* ----------------------------------------------------------------------
-   nodes of contact k with mass, at most 4, with shares that add up to one; normal: from the wall to the body
+   nodes of contact k with mass, at most 4, with shares that add up to one; normal: from the wall to the body.
+   Returns their number
 ------------------------------------------------------------------------- */
 
 int FixMPMBoundary::find_held(const FieldNodes &list, int k, Held *held, double *normal) const
@@ -146,7 +148,7 @@ int FixMPMBoundary::find_held(const FieldNodes &list, int k, Held *held, double 
     if (face.cut) {
       for (int j = 0; j < face.nweight; j++) add(line.node[j], face.weight[j]);
     } else {
-      // in a plane of nodes functions are even: that of the plane, and of its neighbors on both sides
+      // in a mirror plane, functions are even: that of the plane, and those of its neighbors on both sides
       int first;
       double weight[4];
       const int many = MPMStencil(*list.field).weights((double) face.plane, first, weight);
@@ -172,7 +174,7 @@ int FixMPMBoundary::find_held(const FieldNodes &list, int k, Held *held, double 
   return n;
 }
 
-/** Motion of the surface along the wall, and away from it, relative to what the wall goes in this time. */
+/** Motion of the surface along the wall, and away from it, relative to the motion of the wall in this time. */
 void FixMPMBoundary::find_slip(const Held *held, int n, const double *normal, const double *u,
                                double time, double *slip, double &away) const
 {
@@ -188,7 +190,7 @@ void FixMPMBoundary::find_slip(const Held *held, int n, const double *normal, co
   for (int d = 0; d < 3; d++) slip[d] -= away * normal[d];
 }
 
-/** use(touch, nodes, n, normal) for all contacts that are held. */
+/** Calls use(touch, nodes, n, normal) for all contacts that are held. */
 template <class Use> void FixMPMBoundary::visit_touches(const Use &use)
 {
   const FieldNodes &list = tried_nodes();
@@ -222,17 +224,18 @@ void FixMPMBoundary::add_friction(const double *u, double *force)
 }
 
 /* ----------------------------------------------------------------------
-   Where a line turns round, friction changes by all of itself on a way of eps, of which a derivative knows nothing from a distance: Newton's
-   method would go to and fro. Therefore w = s/l, l = (|s|^2 + eps^2)^(1/2), is an unknown of its own, of which l w = s is linearized:
+   Where a line reverses its slip, friction changes its sign within a distance of eps, which a derivative taken farther away does not
+   show: Newton's method would oscillate. Therefore w = s/l, l = (|s|^2 + eps^2)^(1/2), is an unknown of its own, and
+   l w = s is linearized:
 
      l dw + w s.ds/l = s + ds - l w
 
-   so that friction changes as -mu N (ds - w s.ds/l)/l, which is stiff as long as w, a little shorter than one, does not have the direction of s, and
-   never quite soft
+   so that friction changes as -mu N (ds - w s.ds/l)/l. This is stiff as long as w, which is a little shorter than one, does not
+   have the direction of s, and never quite soft
    (T.F. Chan, G.H. Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964, for other sums of lengths).
 ------------------------------------------------------------------------- */
 
-/** (ds - w s.ds/l)/l */
+/** Change of direction for a change ds of the slip: (ds - w s.ds/l)/l. */
 void FixMPMBoundary::change_of_direction(const Touch &touch, const double *slip,
                                          double *change) const
 {
@@ -314,7 +317,7 @@ void FixMPMBoundary::add_friction_stiffness(double *stiffness)
 /* ---------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   All that is wrong is changed at first. Where this goes to and fro, only what is most wrong is, and what is all but right stays
+   At first, everything that is wrong is changed. If this oscillates, only the worst half is changed, and what is almost right stays
 ------------------------------------------------------------------------- */
 
 bool FixMPMBoundary::decide(const double *u, double unbalanced)
@@ -356,7 +359,7 @@ bool FixMPMBoundary::decide(const double *u, double unbalanced)
 }
 
 /* ----------------------------------------------------------------------
-   friction of the end of the step, before walls act; it works with the velocities that nodes will have
+   friction at the end of the step, before walls act; its work is that with the final velocities of the nodes
 ------------------------------------------------------------------------- */
 
 void FixMPMBoundary::rub_nodes(Grid &grid)

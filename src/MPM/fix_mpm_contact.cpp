@@ -8,8 +8,8 @@
 
 /* ----------------------------------------------------------------------
    Each body has its own velocity field. Where two of them have mass at a node, their velocities
-   after the momentum equation tell whether they approach each other along the normal of the
-   interface. If so, equal and opposite impulses take the approach away, and in the plane of the
+   after the momentum equation show whether they approach each other along the normal of the
+   interface. If so, equal and opposite impulses remove the approach, and in the plane of the
    interface as much of the sliding as the law of friction allows:
 
      n from a to b,  m = m_a m_b/(m_a + m_b),  u = v_a - v_b
@@ -22,20 +22,20 @@
    bodies are named has no influence.
 
    Normals. The sum over the points of a body at the node, sum_p V_p grad N, points out of it and
-   its length is the area of the interface that belongs to the node. Of the gradients of two bodies
-   the difference is taken, either as they are (the body with more volume, or mass, at the node has
+   its length is the area of the interface that belongs to the node. The normal of two bodies is the
+   difference of their gradients, either as they are (the body with more volume, or mass, at the node has
    more weight) or after each was made a unit vector (colinear).
 
    Gap. Shape functions reach one or two cells beyond a body, so that bodies would feel each other
    at that distance, and the mass that a wall sends beyond the end of a block that slides on it
    would stand in its way. The volumes of all bodies at a node, as a share of the volume that belongs
    to a node, add up to one where they touch, whatever the position of the interface relative to the
-   nodes, and to less while there is a gap or beyond the end of one of them. What of this volume is
+   nodes, and to less while there is a gap or beyond the end of one of them. The part of this volume that is
    outside of fixed faces of the box does not count (Room).
 
-   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (fix_mpm_boundary.cpp). Friction is
-   that of the rest, which is between grains: J_t <= mu (J_n - J_w). Where J_n would be below J_w, grains part, and the water alone
-   pushes. Of two bodies with water, which do not exchange any, the mean counts.
+   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (fix_mpm_boundary.cpp). The rest
+   is between grains and gives friction: J_t <= mu (J_n - J_w). Where J_n would be below J_w, grains part, and the water alone
+   pushes. For two bodies with water, which do not exchange any, the mean counts.
 ------------------------------------------------------------------------- */
 
 #include "fix_mpm_contact.h"
@@ -71,30 +71,30 @@ static constexpr int MAX_ITERATIONS = 200;      // of impulses of pairs that dep
 static constexpr double CONVERGED = 1.0e-12;    // change of the impulses, relative to them
 static constexpr double ROUNDED = 1.0e-2;       // or to this part of the momentum, if that is more
 static constexpr double UNSOLVED = 1.0e-6;      // the same at the end: too much to be silent
-static constexpr int LOOK_EVERY = 50;           // steps, in which ranks compare what they have seen
+static constexpr int LOOK_EVERY = 50;    // steps after which ranks compare what they have seen
 
-// share of volume from which bodies overlap, by half a cell to a cell, depending on where they are in
-// the cell; points at the ends of regions that are no multiple of their spacing reach 1.37. And the
-// least share of each body there
+// sum of shares of volume from which on bodies overlap, by half a cell to a cell, depending on their position in
+// the cell; points at the ends of regions that are no multiple of their spacing reach 1.37. Second: the least share
+// of each body there
 
 static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;
 
-// bodies that are placed next to each other fill the nodes between them up to rounding, which must not
+// bodies that are placed next to each other fill the nodes between them up to round-off, which must not
 // decide whether they touch
 
 static constexpr double ROUNDING = 1.0e-8;
 
-// of points as boxes, which do not fill space exactly where they are strained
+// the same for points as boxes, which do not fill space exactly where they are strained
 
 static constexpr double BOX_ROUNDING = 1.0e-3;
 
-// with pore water, of which each node between bodies bears a part, bodies touch at sums that are not smaller than this; and where it is
-// told that some of them do not
+// with pore water, each node between bodies bears a part of its force. Bodies then touch at sums of shares down to this far
+// below one; from NEARLY on, a warning counts the force at nodes where they do not touch
 
 static constexpr double SLACK = 0.02, NEARLY = 0.8;
 
-// bodies that slide along each other approach each other by rounding, which must not decide whether
-// they stick: at least by this part of their speeds
+// the approach of bodies that slide along each other is round-off, which must not decide whether
+// they stick: it must be at least this part of their speeds
 
 static constexpr double APPROACH = 1.0e-12;
 
@@ -263,7 +263,7 @@ void FixMPMContact::init()
 }
 
 /* ----------------------------------------------------------------------
-   A field that is a part of a body has that of finer ones in the momentum of its nodes (fix_mpm_refine.cpp)
+   The nodes of a field that is a part of a body also carry the momentum of the points of finer fields (fix_mpm_refine.cpp)
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::check_refined(Body &body)
@@ -356,7 +356,7 @@ void FixMPMContact::Room::images(const Grid &grid, const int *block, const F &f)
 }
 
 /* ----------------------------------------------------------------------
-   each field has blocks for the sake of the others: all are renewed together
+   each field has blocks that others need: all are renewed together
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::stale() const
@@ -373,10 +373,10 @@ void FixMPMContact::couple_topology()
 }
 
 /* ----------------------------------------------------------------------
-   blocks in reach of each body, and the range that they take up over all ranks
+   blocks in reach of each body, and the range of these over all ranks
 ------------------------------------------------------------------------- */
 
-/** Boxes of points, see map_boxes(), reach farther than these. */
+/** The boxes of points, see map_boxes(), reach farther than these blocks. */
 static void activate_around(Grid &grid)
 {
   const std::size_t known = grid.blocks.size();
@@ -406,7 +406,7 @@ void FixMPMContact::blocks_found()
 }
 
 /* ----------------------------------------------------------------------
-   a rank must know the mass of all bodies at the nodes of any of them, where bodies may meet
+   where bodies may meet, a rank must know the mass of all bodies at the nodes of any of them
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::extend_topology(MPMField &field)
@@ -416,8 +416,8 @@ void FixMPMContact::extend_topology(MPMField &field)
     for (const auto &other : bodies)
       if (&other != &body) body.reach.activate_those_of(other.reach, field.grid);
 
-    // and at fixed faces their mirror images; also images of images, as blocks that are added are
-    // looked at, too
+    // and also their mirror images at fixed faces. Blocks that are added are visited, too, which gives images
+    // of images
 
     for (std::size_t ib = 0; ib < field.grid.blocks.size(); ib++) {
       int b[3];
@@ -451,7 +451,7 @@ void FixMPMContact::list_common_blocks()
     }
   }
 
-  // what walls do to the nodes after this
+  // the action of walls on the nodes, after contact
 
   for (auto &body : bodies) {
     body.held.assign(body.field->grid.nnodes(), 0);
@@ -465,7 +465,7 @@ void FixMPMContact::list_common_blocks()
 }
 
 /* ----------------------------------------------------------------------
-   a block whose nodes are wanted, and those that hold periodic images of its nodes
+   marks a block whose nodes are needed, and those that hold periodic images of its nodes
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::Body::mark_near(int slot)
@@ -481,7 +481,7 @@ void FixMPMContact::Body::mark_near(int slot)
 }
 
 /* ----------------------------------------------------------------------
-   gradients and volumes of the bodies at the nodes; false when no node has two bodies
+   gradients and volumes of the bodies at the nodes; returns false if no node has two bodies
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::map_bodies()
@@ -503,7 +503,7 @@ bool FixMPMContact::map_bodies()
 
   for (auto &body : bodies) {
     const Grid &grid = body.field->grid;
-    for (bool more = true; more;) {    // at edges of the box images of images, too
+    for (bool more = true; more;) {    // at edges of the box, images of images, too
       more = false;
       for (std::size_t slot = 0; slot < grid.blocks.size(); slot++)
         if (body.near[slot])
@@ -524,9 +524,9 @@ bool FixMPMContact::map_bodies()
 }
 
 /* ----------------------------------------------------------------------
-   Gradient and share of a body at the nodes. On several lattices, what touches is decided by all that the function of a node reaches,
-   also by the points of finer lattices, of which the momentum of the node has those that have no free node between. Sums over a part of
-   a function by small points are not those by large ones: of points as boxes they are
+   Gradient and share of a body at the nodes. On several lattices, everything that the function of a node reaches decides what
+   touches, including points of finer lattices; the momentum of the node has only points without a free node between. Sums
+   of a part of a function over small points differ from those over large ones, but with points as boxes they are the same
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::map_content(Body &body)
@@ -542,7 +542,7 @@ void FixMPMContact::map_content(Body &body)
   if (gap || look || tries) map_volume(*body.field, body.near, body.share);
 }
 
-/** Records of the bodies that have mass at node n of a block, null: it has none; how many have. */
+/** Finds the records of the bodies at node n of a block; null: no mass there. Returns how many bodies have mass. */
 int FixMPMContact::records(const Common &c, int n, double *record[MAX_FIELDS])
 {
   int massive = 0;
@@ -555,8 +555,8 @@ int FixMPMContact::records(const Common &c, int n, double *record[MAX_FIELDS])
 }
 
 /* ----------------------------------------------------------------------
-   first step of a run: bodies that share space. Contact takes away their approach, it does not
-   part them. The node where they do so most, and the nearest point of each of the two.
+   first step of a run: warns of bodies that share space. Contact removes their approach, but does not part
+   them. Names the node with the largest overlap, and the nearest point of each of the two bodies.
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::warn_overlap()
@@ -624,7 +624,7 @@ void FixMPMContact::warn_overlap()
 }
 
 /* ----------------------------------------------------------------------
-   first step of a run: bodies that are all surface or line of fix mpm/elements
+   first step of a run: warns of bodies that consist of surfaces or lines of fix mpm/elements
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::warn_thin()
@@ -657,9 +657,9 @@ void FixMPMContact::warn_thin()
 }
 
 /* ----------------------------------------------------------------------
-   A thin body fills no volume, so that the nodes between it and another one are not full. And it has a gradient towards it on both of
-   its sides: below what lies on it, its normal is the wrong one, and contact with the mean of both normals pulls the body through. With
-   weights by volume the normal is that of the body.
+   A thin body fills no volume, so that the nodes between it and another one are not full. And it has gradients on both of
+   its sides: on the side away from the other body, its normal is the wrong one, and contact with the
+   mean of both normals pulls the other body through. With weights by volume the normal is that of the other body.
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::warn_of_thin_body(int thin, int other)
@@ -672,9 +672,9 @@ void FixMPMContact::warn_of_thin_body(int thin, int other)
 }
 
 /* ----------------------------------------------------------------------
-   Two of them never touch where nodes must be full, however near they are. Without this, only nodes that both reach hold them: the others
-   fall freely in each step, as nothing joins the rows of nodes around a single row of points. FLIP then sinks with g dt times the ratio of
-   the shares of both kinds of nodes, and affine velocities go on to fall at all nodes
+   Two thin bodies never touch where nodes must be full, however near they are. Without this condition, only nodes that both
+   reach hold them: the other nodes fall freely in each step, as nothing joins the rows of nodes around a single row of points.
+   FLIP then sinks with g dt times the ratio of the shares of both kinds of nodes, and affine velocities keep falling at all nodes
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::warn_of_thin_pair(const std::vector<int> &thin)
@@ -705,7 +705,7 @@ void FixMPMContact::warn_of_thin_pair(const std::vector<int> &thin)
     }
 }
 
-/** Collective: the largest share of the volume of a node, as far as it is inside of the box, that a body fills now. */
+/** Returns the largest share of the volume of a node, as far as it is inside the box, that a body fills now. Collective. */
 double FixMPMContact::most_filled(Body &body)
 {
   const Grid &grid = body.field->grid;
@@ -726,10 +726,9 @@ double FixMPMContact::most_filled(Body &body)
 }
 
 /* ----------------------------------------------------------------------
-   Volumes of bodies at nodes next to fixed faces of the box, and to an axis of symmetry, where there
-   are no points in a part of the volume that belongs to a node: bodies that touch there fill the
-   rest. A node in the plane of a face has room for half of its volume. Nodes outside are images of
-   those inside (fix_mpm_boundary.cpp), and in contact when these are.
+   Nodes next to fixed faces of the box, and to an axis of symmetry, have no points in a part of their volume:
+   bodies that touch there fill the rest. A node in the plane of a face has room for half of its volume. Nodes
+   outside are images of those inside (fix_mpm_boundary.cpp), and in contact when these are.
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::Room::find(const MPMField &field, const Domain &box)
@@ -765,7 +764,7 @@ void FixMPMContact::Room::find(const MPMField &field, const Domain &box)
       near.mirror = false;
       if (!near.fixed) continue;
       near.plane = (int) std::lround(face[side]);
-      // an axis of symmetry is none: volumes at its nodes are those of rings
+      // an axis of symmetry is no mirror: volumes at its nodes are those of rings
       near.mirror =
           std::fabs(face[side] - near.plane) < 1.0e-6 && !(field.options.axisymmetric && d == 0);
       const int inward = side ? -1 : 1;
@@ -779,7 +778,7 @@ void FixMPMContact::Room::find(const MPMField &field, const Domain &box)
 }
 
 /* ----------------------------------------------------------------------
-   share of the volume of a node that is inside of the box. A node outside is replaced by its image, in
+   share of the volume of a node that is inside the box. A node outside is replaced by its image, in
    index
 ------------------------------------------------------------------------- */
 
@@ -804,7 +803,7 @@ double FixMPMContact::Room::at(int *index, int dim, bool &image) const
   return most;
 }
 
-/** Share of the volume of node n, as far as it is inside of the box, that all bodies fill. */
+/** Share of the volume of node n, as far as it is inside the box, that all bodies fill. */
 double FixMPMContact::filled(const Common &c, int n) const
 {
   int any = 0, index[3];
@@ -824,7 +823,7 @@ double FixMPMContact::filled(const Common &c, int n) const
 
 /* ----------------------------------------------------------------------
    Gradient of a body at node n of a block. A body that reaches a fixed face has no surface there that
-   others could touch: it goes on as its mirror image. Without that, its normal would be inclined towards
+   others could touch: it continues as its mirror image. Without that, its normal would be inclined towards
    the face, and bodies that lie on each other would be pushed along the face.
 ------------------------------------------------------------------------- */
 
@@ -856,7 +855,7 @@ void FixMPMContact::gradient_at(const Body &body, int slot, int n, double *g) co
   }
 }
 
-/** Of the velocities that the nodes have now, which a stage may have changed since the last call. */
+/** Finds the effect of walls on the present velocities of the nodes, which a stage may have changed since the last call. */
 void FixMPMContact::foresee_walls(Body &body)
 {
   body.foreseen.reset((int64_t) body.held.size());
@@ -885,7 +884,7 @@ FixMPMContact::Pair::Walls FixMPMContact::Body::find_walls(const double *record)
   return walls;
 }
 
-/** The velocity of a node has changed, and with it that which walls will give to its images. */
+/** Updates what walls will give to the images of a node, whose velocity has changed. */
 void FixMPMContact::Body::move_mirrors(const double *record, const std::array<double, 3> &before)
 {
   Grid &grid = field->grid;
@@ -900,7 +899,7 @@ void FixMPMContact::Body::move_mirrors(const double *record, const std::array<do
 }
 
 /* ----------------------------------------------------------------------
-   normal of a pair, and whether it is near enough
+   makes the pair with its normal; returns whether the bodies are near enough to touch
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volume_share, Pair &pair)
@@ -924,7 +923,7 @@ bool FixMPMContact::make_pair(const Common &c, int n, int a, int b, double volum
   pair.ra = field.grid.record(c.slot[a], n);
   pair.rb = bodies[b].field->grid.record(c.slot[b], n);
 
-  // what bodies have at this node; images of it have their own
+  // gradients of the bodies at this node itself; its images have their own
 
   const auto own = [&](int body, int slot) {
     return std::fabs(MathExtra::dot3(
@@ -968,8 +967,8 @@ double FixMPMContact::water_between(const Pair &pair) const
   return wet ? dt_last * sum / wet : 0.0;
 }
 
-/** Collective, where bodies have water: one warning if a part of its force is at nodes where they are not in contact, though they
- *  nearly fill them. */
+/** One warning if part of the force of the water is at nodes where bodies are not in contact, though they nearly fill
+ *  them. Collective, where bodies have water. */
 void FixMPMContact::report_missed_water()
 {
   constexpr double MOST = 0.05;
@@ -1008,7 +1007,7 @@ void FixMPMContact::find_contacts()
       for (int a = 0; a < nfields; a++)
         for (int b = a + 1; b < nfields; b++)
           if (node.record[a] && node.record[b] && make_pair(c, n, a, b, volume_share, pair)) {
-            pair.water /= count_bodies(node) - 1;    // bodies at several others share it
+            pair.water /= count_bodies(node) - 1;    // several neighbors share the water of a body
             pairs.push_back(pair);
           }
       node.last = (int) pairs.size();
@@ -1017,8 +1016,8 @@ void FixMPMContact::find_contacts()
 }
 
 /* ----------------------------------------------------------------------
-   one iteration of a pair: the impulse that its present velocities ask for, within the limits of
-   the law. nothers: number of bodies that one body may meet, by which the mass is divided.
+   one iteration of a pair: the impulse for its present velocities, within the limits of the law.
+   nothers: number of bodies that one body may meet, by which the mass is divided.
    decided (MUSL, second field of velocities): the state of the pair stays
 ------------------------------------------------------------------------- */
 
@@ -1032,11 +1031,11 @@ void FixMPMContact::apply(Pair &pair, int nothers, double &largest, double dt, b
   }
   double m = pair.ra[3] * pair.rb[3] / (pair.ra[3] + pair.rb[3]) / nothers;
 
-  // A body that a wall holds does not yield: what contact gives to it, the wall takes. If it were taken
-  // for one that does, then the other body would go on into it, a little in each step.
+  // A body that a wall holds does not yield: the wall takes the impulse of contact. If it were treated as free,
+  // the other body would move on into it, a little in each step.
   //
   // At a mirror, a node moves with its image, and both have the mass of both; contact pushes on each. Components
-  // that are mirrored in both bodies are the same at both nodes: contact inside sees to them.
+  // that are mirrored in both bodies are the same at both nodes: contact at the node inside determines them.
 
   if (!pair.alike) {
     double inverse = 0.0, square = 0.0;
@@ -1124,8 +1123,8 @@ bool FixMPMContact::Pair::Walls::moves_with_images(const double *record) const
 }
 
 /* ----------------------------------------------------------------------
-   velocities of the bodies at a node before contact, and what walls will do to them; do they move one
-   body with its images and another not?
+   velocities of the bodies at a node before contact, and the action of walls on them; returns whether walls
+   move one body with its images and another not
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::begin(Node &node, Velocities &start)
@@ -1148,7 +1147,7 @@ bool FixMPMContact::begin(Node &node, Velocities &start)
   return mirrors;
 }
 
-/** Velocities of the bodies at a node with the impulses of its pairs; walls will move its images with it. */
+/** Sets the velocities of the bodies at a node by the impulses of its pairs; walls will move its images with it. */
 void FixMPMContact::set_velocities(const Meeting &meeting)
 {
   const Node &node = *meeting.node;
@@ -1178,7 +1177,7 @@ int FixMPMContact::count_bodies(const Node &node) const
 
 /* ----------------------------------------------------------------------
    an iteration at a node. Impulses of all pairs follow from the same velocities, so that their order does
-   not matter. Returns by how much impulses changed
+   not matter. Returns the change of the impulses
 ------------------------------------------------------------------------- */
 
 double FixMPMContact::iterate(const Meeting &meeting, double dt, bool decided)
@@ -1192,8 +1191,8 @@ double FixMPMContact::iterate(const Meeting &meeting, double dt, bool decided)
 }
 
 /* ----------------------------------------------------------------------
-   Nodes that depend on each other, by iterations of Gauss and Seidel; mirrored: by walls that move a body with
-   its images. Where masses differ much, these converge slowly, and are helped.
+   Gauss-Seidel iterations for nodes that depend on each other; mirrored: by walls that move a body with
+   its images. Where masses differ much, these converge slowly, and are accelerated.
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirrored, double dt,
@@ -1222,7 +1221,7 @@ void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirror
       largest = std::max(largest, iterate(*m, dt, decided));
     }
     if (largest < CONVERGED) break;
-    // what is extrapolated may pull, or be more than friction allows: another iteration must follow
+    // extrapolated impulses may pull, or exceed friction: another iteration must follow
     if (it == MAX_ITERATIONS) break;
 
     bool same = true;
@@ -1247,7 +1246,7 @@ void FixMPMContact::solve(const Meeting *first, const Meeting *last, bool mirror
 }
 
 /* ----------------------------------------------------------------------
-   Nodes where iterations have come to no end. Each rank notes those that it owns
+   Nodes where iterations have not converged. Each rank notes those that it owns
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::note_unsolved(const Meeting *first, const Meeting *last)
@@ -1278,7 +1277,7 @@ void FixMPMContact::report_unsolved()
 }
 
 /* ----------------------------------------------------------------------
-   Sorts nodes that depend on each other next to each other: walls move a body at them together
+   Groups nodes that depend on each other, because walls move a body at them together
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::group_meetings()
@@ -1310,7 +1309,7 @@ void FixMPMContact::group_meetings()
 
 /* ----------------------------------------------------------------------
    Where walls mirror one body and not the other, contact at a node changes the velocity of this body at the
-   images of the node, too: these are solved together. One after the other,
+   images of the node, too: these nodes are solved together. If they were solved one after the other,
    they would leave an approach in each step: water went into the clamped end of a plate.
 ------------------------------------------------------------------------- */
 
@@ -1346,7 +1345,7 @@ double FixMPMContact::Pair::Walls::velocity_of(const double *record, int d) cons
   return record[d];
 }
 
-/** Heat of two bodies that slide, which goes to their nodes. */
+/** Gives the heat of two bodies that slide to their nodes; returns it. */
 double FixMPMContact::heat_of(const Pair &pair, bool owned)
 {
   const int dim = bodies[0].field->lattice.dim;
@@ -1397,7 +1396,7 @@ void FixMPMContact::account(const Node &node, const Velocities &start)
   for (std::size_t k = 0; k < bodies.size(); k++) {
     const double *record = node.record[k];
     Grid &grid = bodies[k].field->grid;
-    // another rank may own the node in this field: what else acts on it is booked there
+    // another rank may own the node in this field: other impulses on it are booked there
     if (!record || !grid.owns((record - grid.nodes()) / grid.nreal)) continue;
     double change[3] = {0.0, 0.0, 0.0};
     for (int d = 0; d < dim; d++) change[d] = record[d] - start[k][d];

@@ -8,17 +8,19 @@
 
 // Interfaces of bodies at nodes, and at their edges, for steps of a solver (fix_mpm_contact_trial.cpp).
 //
-// The integrals of the gradients of a function over two bodies are g_a = A + L_a and g_b = -A + L_b, with the integral A of the function over the interface as area
-// and normal, and those of the free sides. Inside an interface, and where the side of one body is the continuation of that of the other, also at walls, L_a
-// and L_b are in proportion to the volumes V that the bodies have at the node (with images, as explicit steps have them, an inclined interface would not be
-// in balance next to a wall, where nodes and images move along it each for itself). L_a + L_b is g_a + g_b, so that
+// The integrals of the gradients of a function over two bodies are g_a = A + L_a and g_b = -A + L_b. A is the integral of the function
+// over the interface, as area and normal, and L_a and L_b are those over the free sides. Inside an interface, and where the side of one
+// body continues that of the other, also at walls, L_a and L_b are in proportion to the volumes V that the bodies have at the node. (With
+// images, as in explicit steps, an inclined interface would not be in balance next to a wall, where nodes and images move along it
+// independently.) L_a + L_b is g_a + g_b, so that
 //
 //    A = [g_a - g_b - (g_a + g_b) (V_a - V_b)/(V_a + V_b)]/2                                                     (1)
 //
-// At the edge of a body on a wider one, the free side of the wider one is the continuation of the interface, and that of the other one is at an angle to
-// it: with (1), normals would be inclined there, and much so at nodes beyond the edge. As the wider one covers more of the cross-section of a line of nodes through the interface,
-// its direction n along the line is taken instead, with A = (g.n) n of the other one. Where the edges of two bodies cross, each covers another part of the cross-section, and n is that of
-// the lines around, most of all of those that both bodies cover.
+// At the edge of a body on a wider one, the free side of the wider one continues the interface, and that of the other one is at an
+// angle to it: with (1), normals would be inclined there, most of all at nodes beyond the edge. The wider body covers more of the
+// cross-section of a line of nodes through the interface. Its direction n along the line is taken instead, with A = (g.n) n and g of
+// the other body. Where the edges of two bodies cross, each covers another part of the cross-section, and n is that of the lines
+// around, with most weight for lines that both bodies cover.
 
 #include "fix_mpm_contact.h"
 
@@ -33,16 +35,16 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double STEEPER = 1.0e-6;    // relative, of what all ranks must choose alike
-static constexpr double OWN = 3.0;           // weight of a node among those around
-static constexpr double WIDER = 0.02;        // difference of shares, from which on a body is wider
-static constexpr double LIGHT = 0.1;         // share of a line that is tied with the one next to it
-static constexpr double DIAGONAL = 0.25;     // weight of such a line that is not straight beside
-// sides, over the cross-section of a line: of both bodies where they cross, as interfaces of lattices of points have up to a tenth or so of it, against each other,
-// and of the wider body, from which on lines follow others
+static constexpr double STEEPER = 1.0e-6;    // relative difference that decides alike on all ranks
+static constexpr double OWN = 3.0;           // weight of a node relative to those around
+static constexpr double WIDER = 0.02;        // difference of shares from which on a body is wider
+static constexpr double LIGHT = 0.1;        // largest share of a line that joins the one next to it
+static constexpr double DIAGONAL = 0.25;    // weight of a line diagonally next to this one
+// free sides, relative to the cross-section of a line. CROSSING: of both bodies where they cross (interfaces of lattices of points
+// have up to about a tenth, against each other); SIDE: of the wider body, from which on lines follow others
 static constexpr double CROSSING = 0.15, SIDE = 0.1;
 
-/** A of (1) at the node with this index, where both bodies have it. */
+/** Finds A of (1) at the node with this index, if both bodies have it; otherwise zero. */
 void FixMPMContact::interface_at(int a, int b, const int *index, double *area) const
 {
   const Body &first = bodies[a], &second = bodies[b];
@@ -57,7 +59,8 @@ void FixMPMContact::interface_at(int a, int b, const int *index, double *area) c
     area[d] = 0.5 * (ga[d] - gb[d] - r * (ga[d] + gb[d]));
 }
 
-/** Axis of the line of a pair, and the sign of its normal along it, by the nodes around: those beyond edges have hardly any interface. Finds its index. */
+/** Finds the axis of the line of a pair, the sign of its normal along it, and the index of its node. The nodes around are included,
+ *  as nodes beyond edges have hardly any interface. */
 int FixMPMContact::axis_at(const Pair &pair, int *index, double &sign) const
 {
   MPMField &field = *bodies[pair.a].field;
@@ -81,7 +84,7 @@ int FixMPMContact::axis_at(const Pair &pair, int *index, double &sign) const
   return axis;
 }
 
-/** Lines of nodes that are next to each other along their axis. */
+/** Finds lines of nodes that are next to each other along their axis. */
 void FixMPMContact::find_lines(std::vector<Line> &lines)
 {
   std::map<std::array<int, 6>, std::vector<std::pair<int, int>>> all;
@@ -100,14 +103,14 @@ void FixMPMContact::find_lines(std::vector<Line> &lines)
     const int axis = key[2] / 2;
     std::sort(places.begin(), places.end());
     const std::size_t n = places.size();
-    const auto joined = [&](std::size_t k) {    // to the one before
+    const auto joined = [&](std::size_t k) {    // is this node next to the one before?
       const int before = places[(k + n - 1) % n].first, now = places[k % n].first;
       if (k % n) return now == before + 1;
       return n > 1 && lattice.periodic[axis] && now == 0 && before == lattice.ncell[axis] - 1;
     };
     std::size_t begin = 0;
     while (begin < n && joined(begin)) begin++;
-    if (begin == n) begin = 0;    // all around a box
+    if (begin == n) begin = 0;    // the line goes all around a periodic box
     for (std::size_t first = begin, last; first < begin + n; first = last) {
       Line line = {};
       line.key = key;
@@ -121,7 +124,7 @@ void FixMPMContact::find_lines(std::vector<Line> &lines)
   }
 }
 
-/** What is seen of a body along a line from where its gradient has this sign. */
+/** Share and gradient of a body along a line, of the nodes where its gradient has this sign. */
 FixMPMContact::Covers FixMPMContact::look_along(const Body &body, const Line &line,
                                                 double sign) const
 {
@@ -138,7 +141,7 @@ FixMPMContact::Covers FixMPMContact::look_along(const Body &body, const Line &li
     const double circle = body.field->frame->node_circle(slot, n);
     double g[3];
     gradient_at(body, slot, n, g);
-    // a thin body has another surface behind
+    // skip the other surface of a thin body
     if (!(circle > 0.0 && sign * g[line.axis] > 0.0)) continue;
     for (int d = 0; d < lattice.dim; d++) {
       seen.g[d] += g[d] / (cross * circle);
@@ -149,7 +152,7 @@ FixMPMContact::Covers FixMPMContact::look_along(const Body &body, const Line &li
   return seen;
 }
 
-/** The direction of a line, by its interface or by that of the wider body. Returns how much it is the latter, from 0 to 1. */
+/** Finds the direction of a line, by its interface or by that of the wider body. Returns the weight of the latter, from 0 to 1. */
 double FixMPMContact::turn_to_wider(Line &line) const
 {
   double n[3] = {0.0, 0.0, 0.0}, wide[3];
@@ -159,7 +162,7 @@ double FixMPMContact::turn_to_wider(Line &line) const
                turned = std::min(std::fabs(wider) / WIDER, 1.0);
   MathExtra::copy3(line.seen[wider > 0.0 ? 0 : 1].g, wide);
   const double length = MathExtra::len3(n), of_wide = MathExtra::len3(wide);
-  MathExtra::zero3(line.n);    // both sides of a thin body may leave nothing
+  MathExtra::zero3(line.n);    // the two sides of a thin body may cancel
   if (length > 0.0) MathExtra::scale3(1.0 / length, n, line.n);
   if (of_wide == 0.0) return 0.0;
   MathExtra::scale3((wider > 0.0 ? 1.0 : -1.0) / of_wide, wide);
@@ -169,7 +172,7 @@ double FixMPMContact::turn_to_wider(Line &line) const
   return turned;
 }
 
-/** Calls use(k) for a line, and those next to it. */
+/** Calls use(k) for a line and its neighbors. */
 void FixMPMContact::for_lines_around(const std::vector<Line> &lines, const LinesByKey &by_key,
                                      const Line &line, const std::function<void(int k)> &use) const
 {
@@ -188,7 +191,8 @@ void FixMPMContact::for_lines_around(const std::vector<Line> &lines, const Lines
     }
 }
 
-/** How much the direction of a line is that around it, from 0 to 1: where sides of both bodies cross, and where the wider body, which turns it by so much, has a side, too. */
+/** Weight, from 0 to 1, with which a line takes the direction of the lines around it: where sides of both bodies cross, and where the
+ *  wider body, whose direction has the weight turned, has a side, too. */
 double FixMPMContact::follows_others(const Line &line, double turned, const double *around) const
 {
   double side[2][3], length[2];
@@ -208,7 +212,7 @@ double FixMPMContact::follows_others(const Line &line, double turned, const doub
   return std::max(crosses, by_wider);
 }
 
-/** Turns the interface of a pair of this line by these shares: to the direction of the line, and to that around it. */
+/** Turns the interface of a pair of this line, with these weights, to the direction of the line and to that around it. */
 void FixMPMContact::turn(Pair &pair, const Line &line, double turned, double follows,
                          const double *around) const
 {
@@ -230,8 +234,8 @@ void FixMPMContact::turn(Pair &pair, const Line &line, double turned, double fol
   if (pair.area > 0.0) MathExtra::scale3(1.0 / pair.area, pair.n);
 }
 
-/** Finds of which lines those are a part that a body hardly covers, most of all straight across its edge: single conditions on nodes with hardly any mass would go to
- *  and fro in the iterations. */
+/** Joins lines that a body hardly covers to a neighbor, preferably straight across its edge: separate conditions on nodes with hardly
+ *  any mass would make the iterations oscillate. */
 void FixMPMContact::join_lines(std::vector<Line> &lines, const LinesByKey &by_key) const
 {
   for (auto &line : lines) {
@@ -252,7 +256,7 @@ void FixMPMContact::join_lines(std::vector<Line> &lines, const LinesByKey &by_ke
   }
 }
 
-/** Looks for edges of bodies along lines, and turns the interfaces of their pairs there. */
+/** Finds edges of bodies along lines, and turns the interfaces of their pairs there. */
 void FixMPMContact::find_edges(std::vector<Line> &lines)
 {
   std::vector<double> turned;

@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Normals of fix mpm/contact by logistic regression: the plane that tells the points of two bodies
-// apart best, near a node, with the weights of the shape functions
+// Normals of fix mpm/contact by logistic regression: the plane that separates the points of two bodies
+// best, near a node, with the weights of the shape functions
 
 #include "fix_mpm_contact.h"
 
@@ -29,7 +29,7 @@ void FixMPMContact::separate_points()
   constexpr int NREAL = PlaneBetween::NREAL;
   const int dim = bodies[0].field->lattice.dim, nfields = (int) bodies.size();
 
-  // contact nodes by their places in the grids of the fields; images on periodic axes are the same node
+  // contact nodes by their index in the grids of the fields; images on periodic axes are the same node
 
   std::vector<std::vector<int>> wanted(nfields);
   for (int k = 0; k < nfields; k++) {
@@ -87,7 +87,7 @@ void FixMPMContact::separate_points()
     const double *const phi = planes[p].phi;
     double n[3] = {phi[0], phi[1], dim == 3 ? phi[2] : 0.0};
     const double length = MathExtra::len3(n);
-    // points that lie in a line do not say more than the gradient
+    // points that lie on a line do not say more than the gradient
     if (!(length > 0.0) || MathExtra::dot3(n, pairs[p].n) < 0.5 * length) continue;
     for (int d = 0; d < 3; d++) pairs[p].n[d] = n[d] / length;
   }

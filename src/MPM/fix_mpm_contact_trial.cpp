@@ -6,24 +6,25 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Contact between bodies that a solver has in its steps (mpm_body_contact.h). In explicit steps each node that bodies share is in contact by itself:
-// its velocities are those of both bodies, also one and two layers of nodes in, so that the strain of a soft body next to a hard one is that of the hard one. In
-// the balance of forces this would be a soft body that is about half a cell thinner. Here, nodes are tied together along lines through the interface, by a
-// single condition
+// Contact between bodies in the steps of a solver (mpm_body_contact.h). In explicit steps each node that bodies share is in contact by
+// itself: its velocities are those of both bodies, also one and two layers of nodes inside, so that the strain of a soft body next to
+// a hard one is that of the hard one. In the balance of forces, this would make a soft body about half a cell thinner. Here, nodes are
+// tied together along lines through the interface, by a single condition
 //
 //    sum_k a_k n_k . (u_a,k - u_b,k) = g,   sum_k a_k = 1
 //
-// with the areas a_k of the interface at these nodes, and normals n_k, by which a_k n_k is the integral of the gradients of their functions over the bodies: for a plane
-// interface a_k = N_k where it is, so that the condition is about the motion there, and a pressure on it is in balance with uniform stress, node by node, wherever it is
-// between nodes, and whatever the direction of the plane.
+// with the areas a_k of the interface at these nodes, and normals n_k: a_k n_k is the integral of the gradients of their functions over
+// the bodies. For a plane interface, a_k = N_k at its position, so that the condition holds for the motion there, and a pressure on it
+// is in balance with uniform stress, node by node, for any position between nodes and any direction of the plane.
 //
-// The gap g is what is missing in the volumes of both bodies along the line, over the area of the interface. Where a body covers the share c of the
-// cross-section of the line, next to its edge, its volumes are divided by c (fix_mpm_contact_edges.cpp):
+// The gap g is the volume that both bodies lack along the line, over the area of the interface. Where a body covers only the
+// share c of the cross-section of the line, next to its edge, its volumes are divided by c (fix_mpm_contact_edges.cpp):
 //
 //    g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
 //
-// What touches is held along the normal (law stick, and law coulomb where it sticks: and along the mean plane of the interface of the line) without any
-// penalty, as long as it would not be pulled, and, with law coulomb, as long as friction can bear it.
+// Bodies that touch are held along the normal without any penalty, as long as this does not need a pull. With law stick, and law
+// coulomb while they stick, they are also held along the mean plane of the interface of the line, with law coulomb as long as
+// friction can bear it.
 
 #include "fix_mpm_contact.h"
 
@@ -41,31 +42,31 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double COVERED = 1.0e-3;    // share of the cross-section of a line, least
-static constexpr double SAME = 1.0e-6;       // relative difference of shares that are equal
-// node spacings at which bodies touch as they are if others do, and at which statics tries whether they touch
+static constexpr double COVERED = 1.0e-3;    // least share of the cross-section of a line
+static constexpr double SAME = 1.0e-6;       // relative difference of shares that count as equal
+// gap, in node spacings, at which bodies touch as they are if others do, and at which statics tries whether they touch
 static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
-static constexpr double TOUCHED = 1.0e-6;    // node spacings: no gap
+static constexpr double TOUCHED = 1.0e-6;    // node spacings; a smaller gap is none
 static constexpr double TURNS =
-    1.0e-2;    // node spacings of slip that turn friction into its direction
-static constexpr double MOST_TURN = 0.5;    // cosine of the angle by which friction turns at once
-static constexpr double SOONER = 0.3;       // of that length, in each iteration
+    1.0e-2;    // slip, in node spacings, that turns friction into its direction
+static constexpr double MOST_TURN = 0.5;    // least cosine of the turn of friction in one iteration
+static constexpr double SOONER = 0.3;       // factor on that length in each iteration
 static constexpr double WRONG =
-    1.0e-9;    // of the largest push, a pull that is let go; node spacings
+    1.0e-9;    // least pull to let go, relative to the largest push; least overlap, in node spacings
 static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;    // see fix_mpm_contact.cpp
-static constexpr double ROOM =
-    1.1;    // for what bodies that overlap at the start of a run share later
-static constexpr double STILL_RIGHT = 1.0e-4;    // the same in the end
+static constexpr double ROOM = 1.1;    // factor on the overlap at the start of a run, for later
+static constexpr double STILL_RIGHT = 1.0e-4;    // the same in later rounds
 static constexpr double ERRORS =
-    10.0;    // of single forces, in the share of all that is not in balance
-static constexpr double ALONG_AXIS = 0.99;    // cosine between a normal and an axis
-static constexpr double HELD = 1.0e-12;       // of what rows would move without walls
-// times that a tie slides and sticks in a step before it may bear more friction, over the largest force, by each time after that, and in all
+    10.0;    // factor between the relative imbalance of all forces and errors of single ones
+static constexpr double ALONG_AXIS = 0.99;    // least cosine between a normal and an axis
+static constexpr double HELD = 1.0e-12;    // motion of a held row, relative to that without walls
+// changes between sliding and sticking of a tie in a step before it may bear more friction; relative to the largest force, the increase
+// for each later change, and the limit
 static constexpr int FREE_CHANGES = 2;
 static constexpr double MORE_EACH = 1.0e-2, MOST_MORE = 0.05;
 static constexpr int MOST_PARTED = 3,
-                     MOST_PARTED_RUBBING = 6;    // of a tie in a step, before it slips instead
-// times that all is changed, and half of the worst; then, only the worst is
+                     MOST_PARTED_RUBBING = 6;    // times that a tie parts in a step before it slips
+// rounds in which everything wrong is changed, and the worst half; in later ones, only the worst
 static constexpr int AT_ONCE = 6, HALF = 18;
 
 /* ---------------------------------------------------------------------- */
@@ -96,7 +97,7 @@ void FixMPMContact::refuse_trials() const
                id, what, instead);
 }
 
-/** Rows of a tie: along the normals, and with friction also along the interface. */
+/** Number of rows of a tie: along the normals and, with friction, also along the interface. */
 int FixMPMContact::rows_of_tie() const
 {
   return law == STICK || has_friction() ? bodies[0].field->lattice.dim : 1;
@@ -106,7 +107,7 @@ int FixMPMContact::rows_of_tie() const
    ties
 ------------------------------------------------------------------------- */
 
-/** Two bodies at a node, with the area and normal of their interface there; false: they have none. */
+/** Makes the pair of two bodies at a node, with the area and normal of their interface there. Returns false if there is none. */
 bool FixMPMContact::make_trial_pair(const Common &c, int n, int a, int b, Pair &pair)
 {
   constexpr double SMALL = 1.0e-10;
@@ -126,7 +127,7 @@ bool FixMPMContact::make_trial_pair(const Common &c, int n, int a, int b, Pair &
   return true;
 }
 
-/** Are both bodies at this node what walls make of those inside? Finds what walls do. */
+/** Do walls determine both bodies at this node by those inside? Also finds the action of walls. */
 bool FixMPMContact::is_beyond_walls(Pair &pair)
 {
   const int all = (1 << bodies[0].field->lattice.dim) - 1;
@@ -138,7 +139,7 @@ bool FixMPMContact::is_beyond_walls(Pair &pair)
   return follows(pair.walls_a) && follows(pair.walls_b);
 }
 
-/** Node of a body by its index, -1: it has none there. */
+/** Node of a body by its index; -1: the body has none there. */
 int64_t FixMPMContact::node_at(const Body &body, const int *index) const
 {
   int at[3];
@@ -146,7 +147,7 @@ int64_t FixMPMContact::node_at(const Body &body, const int *index) const
   return body.field->grid.locate(at);
 }
 
-/** Share of the volume of a node, as far as it is inside of the box, that a body fills. */
+/** Share of the volume of a node, as far as it is inside the box, that a body fills. */
 double FixMPMContact::share_of(const Body &body, const int *index) const
 {
   int at[3] = {index[0], index[1], index[2]};
@@ -156,7 +157,7 @@ double FixMPMContact::share_of(const Body &body, const int *index) const
   return node >= 0 && most > 0.0 ? body.share[node] / most : 0.0;
 }
 
-/** Does this rank know what the body has at a node? */
+/** Does this rank know the share of the body at a node? */
 bool FixMPMContact::is_known(const Body &body, const int *index) const
 {
   const Grid &grid = body.field->grid;
@@ -169,7 +170,7 @@ bool FixMPMContact::is_known(const Body &body, const int *index) const
   return !inside;
 }
 
-/** The gap of a line of nodes; negative: bodies overlap. Returns false where a body hardly covers the line. */
+/** Finds the gap of a line of nodes; negative: bodies overlap. Returns false where a body hardly covers the line. */
 bool FixMPMContact::measure_gap(const Tie &tie, const Line &line, double &gap) const
 {
   const double h = bodies[tie.a].field->lattice.h, slope = std::fabs(tie.n[line.axis]);
@@ -180,8 +181,8 @@ bool FixMPMContact::measure_gap(const Tie &tie, const Line &line, double &gap) c
     at[line.axis] = i;
     shares.push_back({share_of(bodies[tie.a], at), share_of(bodies[tie.b], at)});
   }
-  // from where one body fills most to where the other one does: behind are other surfaces of these. Of places that are equally full the nearest ones, as rounding
-  // would choose otherwise on each number of ranks
+  // the sum goes from the fullest place of one body to that of the other: other surfaces of the bodies lie beyond. Among equally full
+  // places it takes the nearest ones, as round-off would choose differently for each number of ranks
   double most[2] = {0.0, 0.0};
   for (const auto &share : shares)
     for (int k = 0; k < 2; k++) most[k] = std::max(most[k], share[k]);
@@ -203,7 +204,8 @@ bool FixMPMContact::measure_gap(const Tie &tie, const Line &line, double &gap) c
   return true;
 }
 
-/** Directions along the interface in which bodies can move against each other; none where walls hold them: held, components in both bodies. */
+/** Finds directions along the interface in which bodies can move against each other; none along components that walls hold in both
+ *  bodies (held). */
 void FixMPMContact::find_tangents(Tie &tie, int held) const
 {
   const int dim = bodies[tie.a].field->lattice.dim;
@@ -230,7 +232,7 @@ void FixMPMContact::find_tangents(Tie &tie, int held) const
   if (!nheld) MathExtra::cross3(tie.n, tie.along[0], tie.along[1]);
 }
 
-/** Ties the bodies together along a line, and those that join it. */
+/** Ties the bodies together along a line and the lines that join it. */
 void FixMPMContact::add_tie(const std::vector<Line> &lines, const std::vector<int> &parts)
 {
   Tie tie = {};
@@ -244,7 +246,7 @@ void FixMPMContact::add_tie(const std::vector<Line> &lines, const std::vector<in
   tie.owned = owned_pairs[line.places[0].second];
   tie.first = (int) links.size();
   double area = 0.0;
-  int held = (1 << dim) - 1;    // components that walls hold, or take from images, in both bodies
+  int held = (1 << dim) - 1;    // components that walls hold, or mirror, in both bodies
   std::vector<int> places;
   for (const int part : parts)
     for (const auto &place : lines[part].places) places.push_back(place.second);
@@ -295,7 +297,7 @@ void FixMPMContact::add_tie(const std::vector<Line> &lines, const std::vector<in
   for (const int part : parts) {
     int at[3] = {lines[part].index[0], lines[part].index[1], lines[part].index[2]};
     for (const int end : {lines[part].low() - 1, lines[part].high() + 1}) {
-      // a rank may have a part of a line that none of its points reaches
+      // a rank may have a part of a line that no point of it reaches
       at[line.axis] = end;
       if (is_known(a, at) && is_known(b, at)) continue;
       links.resize(tie.first);
@@ -312,7 +314,7 @@ void FixMPMContact::add_tie(const std::vector<Line> &lines, const std::vector<in
   ties.push_back(tie);
 }
 
-/** Lines of nodes with their two bodies, and their gaps. */
+/** Finds lines of nodes with their two bodies, and their gaps. */
 void FixMPMContact::find_ties()
 {
   owned_pairs.assign(pairs.size(), 0);
@@ -331,7 +333,8 @@ void FixMPMContact::find_ties()
   check_overlap();
 }
 
-/** An error if bodies share more of the volume of a node than when the run began, by as much as is told of then. Collective. */
+/** Ends with an error if bodies share more of the volume of a node than at the start of the run, beyond the limit of the warning
+ *  there. Collective. */
 void FixMPMContact::check_overlap()
 {
   double mine = 0.0, most;
@@ -444,7 +447,7 @@ void FixMPMContact::add_squares(const double *rows, const double *v, double *sum
   }
 }
 
-/** Adds the forces of these rows of a tie on the bodies at a link, on a with the sign of the row: force[dim]. */
+/** Adds to force[dim] the forces of these rows of a tie on the bodies at a link; a has the sign of the row. */
 void FixMPMContact::add_force(const Tie &tie, const Link &link, const double *rows,
                               double *force) const
 {
@@ -500,15 +503,17 @@ void FixMPMContact::take_stop()
 }
 
 /* ----------------------------------------------------------------------
-   Coulomb's law, without any regularisation. What sticks has rows along the interface, whose forces tell when friction cannot bear them; what slides has friction mu N against the
-   direction w of its slip, on the nodes of both bodies in their shares of the interface, and sticks again if it would go back. This is Newton's method for the
-   projection of P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, with what sticks by an exact condition. With s the slip in the step,
+   Coulomb's law, without any regularization. A tie that sticks has rows along the interface, whose forces show when friction cannot
+   bear them. A tie that slides has friction mu N against the direction w of its slip, on the nodes of both bodies in their shares of
+   the interface, and sticks again if it would slide back. This is Newton's method for the projection of P. Alart, A. Curnier, Comput.
+   Methods Appl. Mech. Eng. 92 (1991) 353, with an exact condition for ties that stick. With the slip s in the step,
 
       w = (s + d w0)/|s + d w0|
 
-   where w0 is the direction of the iteration before, or of the force with which it stuck: friction does not jump when a tie begins to slide, and w is that of s
-   in the end. As d becomes a small part of s, iterations come to that direction fast, also where steps are short: with the same d, each one would leave d/(d + |s|)
-   of the error. In 2d, w is w0, and friction changes with N alone. N may be negative until it is decided what parts: as long as sets stay, forces have no kinks
+   where w0 is the direction of the previous iteration, or of the force with which the tie stuck: friction does not jump when a tie begins
+   to slide, and w is that of s in the end. As d becomes a small part of s, iterations converge to that direction fast, also in short
+   steps: with a constant d, each one would leave d/(d + |s|) of the error. In 2d, w is w0, and friction changes with N alone. N may be
+   negative until it is decided which ties part: as long as the sets stay, forces have no kinks
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::rubs() const
@@ -530,7 +535,8 @@ void FixMPMContact::find_slip(const Tie &tie, const double *u, double *slip) con
   for (int d = 0; d < 3; d++) slip[d] -= along * tie.n[d];
 }
 
-/** w of tie.slip, a unit vector; returns |s + d w0|, or 0 where it is not that of the slip. What goes back keeps its direction until it sticks. */
+/** Finds w of tie.slip, a unit vector. Returns |s + d w0|, or 0 where w is not the direction of that. A tie that slides back keeps its
+ *  direction until it sticks. */
 double FixMPMContact::find_way(const Tie &tie, double *way) const
 {
   if (bodies[0].field->lattice.dim == 2) {
@@ -544,7 +550,7 @@ double FixMPMContact::find_way(const Tie &tie, double *way) const
     return length;
   }
   if (ahead > 0.0) {
-    // as far round as one iteration turns
+    // the largest turn in one iteration
     const double across = std::sqrt(length * length - ahead * ahead),
                  sine = std::sqrt(1.0 - MOST_TURN * MOST_TURN);
     for (int d = 0; d < 3; d++)
@@ -555,7 +561,7 @@ double FixMPMContact::find_way(const Tie &tie, double *way) const
   return 0.0;
 }
 
-/** Adds a force on a, and its reaction. */
+/** Adds a force on a, and the reaction on b. */
 void FixMPMContact::rub(const Tie &tie, const double *on_a, double *force) const
 {
   const int dim = bodies[tie.a].field->lattice.dim;
@@ -566,7 +572,7 @@ void FixMPMContact::rub(const Tie &tie, const double *on_a, double *force) const
     }
 }
 
-/** Has this tie been let go so often in the step, with what holds it along the interface, that it goes on without that? */
+/** Has this tie been let go so often in the step that it now goes on without anything that holds it along the interface? */
 bool FixMPMContact::is_torn(const Tie &tie) const
 {
   return tie.parted >= (law == STICK ? MOST_PARTED : MOST_PARTED_RUBBING);
@@ -657,7 +663,7 @@ void FixMPMContact::add_friction_blocks(double *blocks)
   }
 }
 
-/** Of a tie that is in contact with friction: by how much of the force is its state wrong? Positive: it changes. */
+/** How wrong is the state of a tie in contact with friction, relative to the largest force? Positive: it changes. */
 double FixMPMContact::wrong_friction(const Tie &tie, double largest) const
 {
   if (!has_friction() || !can_slide(tie) || is_torn(tie) || !(largest > 0.0)) return 0.0;
@@ -671,7 +677,7 @@ double FixMPMContact::wrong_friction(const Tie &tie, double largest) const
   return -MathExtra::dot3(tie.slip, tie.way) / bodies[0].field->lattice.h;
 }
 
-/** Lets a tie slide against the force with which it stuck, or stick. */
+/** Changes a tie from sticking to sliding, against the force with which it stuck, or back. */
 void FixMPMContact::change_friction(Tie &tie) const
 {
   MathExtra::zero3(tie.slip);
@@ -686,9 +692,10 @@ void FixMPMContact::change_friction(Tie &tie) const
   tie.changes++;
 }
 
-/** A tie touches from now on, after it has gone into the other body by this. One with an inclined normal may be pulled while it sticks or rubs, by the shear
- *  that it bears, and go into the other body when it is let go, so that neither is a solution: after some times it slips instead. With friction, what has slid by more than friction could hold at the same stiffness goes on to slide: if it
- *  stuck first, its shear forces could pull it off again along an inclined normal, and so on without end. */
+/** Lets a tie touch from now on, after an overlap of this size. A tie with an inclined normal may be pulled by its own shear while it
+ *  sticks or rubs, and overlap when it is let go, so that neither is a solution: after some changes it slips instead. With
+ *  friction, a tie that has slid by more than friction could hold at the same stiffness keeps sliding: if it stuck first, its shear forces
+ *  could pull it off again along an inclined normal, and so on without end. */
 void FixMPMContact::begin_touch(Tie &tie, const double *u, double approach) const
 {
   tie.active = true;
@@ -704,8 +711,8 @@ void FixMPMContact::begin_touch(Tie &tie, const double *u, double approach) cons
 }
 
 /* ----------------------------------------------------------------------
-   All that is wrong is changed at first. Where this goes to and fro, only what is most wrong is, and what is all but right stays. While forces are not
-   in balance yet, what is wrong by no more than these stays, too
+   At first, everything that is wrong is changed. If this oscillates, only the worst is, and what is almost right stays. While forces are
+   not in balance yet, errors that are not larger than the imbalance stay, too
 ------------------------------------------------------------------------- */
 
 bool FixMPMContact::decide(const double *u, double unbalanced)
@@ -763,7 +770,7 @@ bool FixMPMContact::decide(const double *u, double unbalanced)
   return changed;
 }
 
-/** Lines that slip, once in a run. Collective. */
+/** Warns of lines that slip because they were let go too often, once in a run. Collective. */
 void FixMPMContact::warn_of_torn()
 {
   if ((law != STICK && !has_friction()) || told_of_torn) return;
@@ -786,7 +793,7 @@ void FixMPMContact::warn_of_torn()
 }
 
 /* ----------------------------------------------------------------------
-   Nodes have what they need besides the forces of contact, and walls, which act after this
+   Adds the forces of contact to the nodes, which have all other forces except those of walls; walls act after this
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::act_after_trials()
@@ -818,7 +825,7 @@ void FixMPMContact::act_after_trials()
     for (std::size_t k = 0; k < bodies.size(); k++) {
       const double *const record = nodes[n].record[k];
       Grid &grid = bodies[k].field->grid;
-      // another rank may own the node in this field: what else acts on it is booked there
+      // another rank may own the node in this field: other impulses on it are booked there
       if (!record || !grid.owns((record - grid.nodes()) / grid.nreal)) continue;
       double change[3] = {0.0, 0.0, 0.0};
       for (int d = 0; d < dim; d++) change[d] = record[d] - before[n][k][d];

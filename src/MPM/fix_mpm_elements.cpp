@@ -50,7 +50,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Those of three dimensions read the same in two. */
+/** The kernels of three dimensions serve two as well. */
 static const BatchKernels &kernels()
 {
   static const BatchKernels &all = *BatchKernels::select(3);
@@ -70,7 +70,7 @@ static bool bends(const double *row)
 // axes must have at least this part of their length along an element
 static constexpr double LEAST_AXIS = 0.1;
 
-// bending: error of a slope in parts of what the curvature makes of it, and part of all triangles that is many
+// bending: error of a slope relative to the effect of the curvature, and share of triangles from which on a warning is due
 static constexpr double ROUGH = 0.05, MANY_ROUGH = 0.1;
 
 static const ElementRule &rule_of(const double *row)
@@ -78,7 +78,7 @@ static const ElementRule &rule_of(const double *row)
   return ElementRule::of(type_of(row));
 }
 
-// nodes from which the owner of an element is chosen
+// number of nodes from which the owner of an element is chosen
 static int number_of_corners(const MeshElement &element)
 {
   return element.type == ElementType::PATCH ? 3 : element_nodes(element.type);
@@ -217,7 +217,7 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
 FixMPMElements::~FixMPMElements() = default;
 
 /* ----------------------------------------------------------------------
-   the material of the nodes is that of the elements
+   the material of the nodes must be that of the elements
 ------------------------------------------------------------------------- */
 
 FixMPMMaterial *FixMPMElements::find_material() const
@@ -278,14 +278,14 @@ void FixMPMElements::define_plane_stress()
   }
 }
 
-/** Of functions in the reference configuration; returns the volume of the point. */
+/** Gradients of the functions in the reference configuration; returns the volume of the point. */
 double FixMPMElements::gradients(const ElementRule &rule, int q, const double (*x)[3],
                                  double (*g)[3]) const
 {
   return thin ? thin.across() * rule.gradients_along(q, x, g) : rule.gradients(q, x, g);
 }
 
-/** Axes that are all but normal to an element have no direction in it. */
+/** Checks that no axis is almost normal to an element, where it would have no direction. */
 void FixMPMElements::check_frame(const double (*frame)[3], bigint label) const
 {
   double normal[3], size[3];
@@ -351,7 +351,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
   }
   MPI_Allreduce(mine.data(), x.data(), (int) (3 * nnodes), MPI_DOUBLE, MPI_SUM, world);
 
-  // each element belongs to the node that has fewest so far
+  // each element belongs to the node that owns fewest so far
 
   std::vector<int> owned(nnodes, 0);
   std::vector<std::pair<int, int>> here;    // (atom, element)
@@ -462,7 +462,7 @@ void FixMPMElements::init()
   comm_reverse = width = 18 + nhistory;
   comm_forward = 3;
 
-  // the fix mpm/material of the definition may have been removed or defined again
+  // the fix mpm/material at the time of definition may have been removed or redefined since
 
   material = find_material();
   if (names_of_history() != variables)
@@ -475,7 +475,7 @@ void FixMPMElements::init()
   define_plane_stress();
   if (bending) bending_frequency = largest_bending_frequency();
 
-  // nodes of elements may be ghosts; what has been stretched since is asked for with comm_modify
+  // nodes of elements may be ghosts; elements that have stretched since need comm_modify
 
   const double extent =
       largest_extent();    // less than that of a pair style is a warning of LAMMPS
@@ -484,7 +484,7 @@ void FixMPMElements::init()
 }
 
 /* ----------------------------------------------------------------------
-   the nodes are those of the definition, and of no other mesh, whose forces would be added
+   the nodes must be those of the definition, and of no other mesh, whose forces would be added
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::check_nodes() const
@@ -541,7 +541,7 @@ std::vector<NearNodes::Edge> FixMPMElements::edges() const
   return gather(mine);
 }
 
-/** What ranks have, on all of them and in their order. */
+/** Gathers the values of all ranks on all ranks, in the order of ranks. */
 template <class T> std::vector<T> FixMPMElements::gather(const std::vector<T> &mine) const
 {
   const int size = (int) (mine.size() * sizeof(T));
@@ -578,8 +578,8 @@ void FixMPMElements::check_fields() const
 }
 
 /* ----------------------------------------------------------------------
-   a bound of the distance of nodes of an element, with room for more deformation: the Frobenius
-   norm of F is sqrt(dim) for none
+   an upper bound for the distance of nodes of an element, with room for more deformation: the Frobenius
+   norm of F is sqrt(dim) without deformation
 ------------------------------------------------------------------------- */
 
 double FixMPMElements::largest_extent() const
@@ -620,7 +620,7 @@ double FixMPMElements::largest_extent() const
 }
 
 /* ----------------------------------------------------------------------
-   rows in the order of atoms, and where their nodes are
+   sorts rows in the order of atoms, and finds their nodes
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::find_nodes()
@@ -699,7 +699,7 @@ void FixMPMElements::compute(bool starting)
 }
 
 /* ----------------------------------------------------------------------
-   visit all elements, as many as fit into a batch at a time
+   visits all elements, as many at a time as fit into a batch
 ------------------------------------------------------------------------- */
 
 template <class Visit> void FixMPMElements::for_batches(bool moved, Visit visit) const
@@ -740,9 +740,9 @@ int FixMPMElements::nodes_of(const double *r) const
 }
 
 /* ----------------------------------------------------------------------
-   kinematics of an element: F = sum_k x_k grad_0 N_k, or, if it has not moved, what the row has.
-   F-bar (E.A. de Souza Neto et al., Int. J. Solids Struct. 33 (1996) 3277) takes the mean of J over
-   the element for the J of each point, in 2d by scaling the plane
+   kinematics of an element: F = sum_k x_k grad_0 N_k, or the stored F if the element has not moved.
+   F-bar (E.A. de Souza Neto et al., Int. J. Solids Struct. 33 (1996) 3277) replaces the J of each point by
+   the mean of J over the element, in 2d by scaling the plane
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
@@ -807,7 +807,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
     const int p = w.n + q;
     double *const f = F[q];
     const double *const s = w.state[p];
-    if (thin && moved) {    // find_stretches() goes on
+    if (thin && moved) {    // find_stretches() completes it
       const double inv = 1.0 / MPMPoints::det(s);
       for (int c = 0; c < 6; c++) b.stress[c][p] = inv * s[9 + c];
       b.vol0[p] = w.volume[p];
@@ -842,7 +842,7 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
   w.n += rule.npoint;
 }
 
-/** Axes for the motion along a surface or a line: those of the material, as they lie on a surface, if it has any. */
+/** Finds axes for the motion along a surface or a line: those of the material, projected on the surface, if it has any. */
 void FixMPMElements::find_frame(const double (*g)[3], double (*frame)[3]) const
 {
   if (!has_axes) return plane_stress->make_frame(g[1], g[along], frame);
@@ -856,7 +856,7 @@ void FixMPMElements::find_frame(const double (*g)[3], double (*frame)[3]) const
   plane_stress->make_frame(flat[0], flat[1], frame);
 }
 
-/** The motion along a surface or a line. */
+/** Sets the motion along a surface or a line. */
 void FixMPMElements::load_thin(PlaneStress::Point &point, const double (*x)[3],
                                const double (*g)[3], int nnode, const double *state) const
 {
@@ -865,7 +865,7 @@ void FixMPMElements::load_thin(PlaneStress::Point &point, const double (*x)[3],
   point.old = state;
 }
 
-/** sum_k x_k grad N_k. */
+/** Sets to = sum_k x_k grad N_k. */
 void FixMPMElements::find_motion(const double (*x)[3], const double (*g)[3], int nnode,
                                  double *to) const
 {
@@ -875,7 +875,7 @@ void FixMPMElements::find_motion(const double (*x)[3], const double (*g)[3], int
       for (int b = 0; b < dim; b++) to[3 * a + b] += x[m][a] * g[m][b];
 }
 
-/** Stress and deformation gradient of surfaces and lines. */
+/** Finds stress and deformation gradient of surfaces and lines. */
 void FixMPMElements::find_stretches(Work &w)
 {
   const int bad = plane_stress->update(w.batch, w.thin.data(), [this](Batch &b) {
@@ -892,8 +892,8 @@ void FixMPMElements::find_stretches(Work &w)
 }
 
 /* ----------------------------------------------------------------------
-   stress and history of the points in the batch. At the start of a run nothing has moved since the
-   stress was computed, unless a command has moved points
+   stress and history of the points in the batch. At the start of a run, nothing has moved since the last
+   evaluation of the stress, unless a command has moved points
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::material_update(Work &w, bool starting)
@@ -924,7 +924,7 @@ void FixMPMElements::material_update(Work &w, bool starting)
   if (thin) map_gradients(w);
 }
 
-/** Gradients in the reference configuration to those in space. */
+/** Maps gradients in the reference configuration to those in space. */
 void FixMPMElements::map_gradients(Work &w)
 {
   for (const auto &[number, row, rule, start] : w.elements)
@@ -941,12 +941,12 @@ void FixMPMElements::map_gradients(Work &w)
 
 /* ----------------------------------------------------------------------
    f_k = -sum_q V0 tau grad N_k. With F-bar the power of the stress is tau : (L + (mean - tr L)/dim I)
-   where mean is the rate of the mean of J, so the force has the mean of the pressure on the
-   gradients of the volume of the element in the place of the pressure of each point: force and
-   strain belong together, and an elastic body keeps its energy
+   where mean is the rate of the mean of J. In the force, the mean of the pressure acts on the gradients of
+   the volume of the element and replaces the pressure of each point: force and strain are consistent, and
+   an elastic body keeps its energy
 ------------------------------------------------------------------------- */
 
-/** Minus f_k, in units of stress times volume over length: adds to f. */
+/** Adds -f_k to f, in units of stress times volume over length. */
 void FixMPMElements::find_forces(const Work &w, int start, const ElementRule &rule,
                                  double (*f)[3]) const
 {
@@ -977,7 +977,7 @@ void FixMPMElements::find_forces(const Work &w, int start, const ElementRule &ru
   }
 }
 
-/** Forces and shares of the state of elements, to the sums of their nodes. */
+/** Adds the forces of elements, and shares of their state, to the sums of their nodes. */
 void FixMPMElements::add_sums(Work &w)
 {
   const double scale = 1.0 / force->nktv2p;
@@ -987,14 +987,14 @@ void FixMPMElements::add_sums(Work &w)
     w.mean.assign(15 + nhistory, 0.0);
     find_forces(w, start, rule, f);
     for (int q = 0; q < rule.npoint; q++) {
-      const double V = w.volume[start + q] / swell_of(row);    // as of the masses of nodes
+      const double V = w.volume[start + q] / swell_of(row);    // as for the masses of nodes
       for (int m = 0; m < rule.nnode; m++) share[m] += V * rule.N[q][m];
       size += V;
     }
     for (int q = 0; q < rule.npoint; q++) {
       const double *const s = w.state[start + q], weight = w.volume[start + q] / size;
       for (int c = 0; c < 15 + nhistory; c++) w.mean[c] += weight * s[c];
-      // elements of a fold have turned by angles of which there is no mean
+      // the elements of a fold are rotated by angles that have no mean
       if (thin) w.mean[0] += weight * (MPMPoints::det(s) - s[0]);
     }
     for (int m = 0; m < rule.nnode; m++) {
@@ -1032,8 +1032,8 @@ void FixMPMElements::set_pressure(MPMElementsPressure *who, bool closed)
 }
 
 /* ----------------------------------------------------------------------
-   visit triangles, two ways to divide a quadrangle with half a weight each, or lines: the positions of their nodes,
-   without jumps at periodic faces
+   visits triangles (for a quadrangle, both ways to divide it, with half a weight each) or lines: the positions of their
+   nodes, without jumps at periodic faces
 ------------------------------------------------------------------------- */
 
 template <class Visit> void FixMPMElements::for_faces(Visit visit) const
@@ -1079,7 +1079,7 @@ std::vector<FixMPMElements::NumberedFace> FixMPMElements::all_faces() const
 {
   std::vector<NumberedFace> mine;
   for (int i = 0; i < atom->nlocal && along == dim - 1;
-       i++)    // other rows may be left of before a restart
+       i++)    // other rows may be from before a restart
     for (int k = 0; k < count[i]; k++) {
       const double *const r = row((std::size_t) first[i] + k);
       if (bends(r)) continue;
@@ -1093,7 +1093,7 @@ std::vector<FixMPMElements::NumberedFace> FixMPMElements::all_faces() const
   return gather(mine);
 }
 
-/** Edges (in 2d: corners): the positions of their nodes, relative to the first one, and these. */
+/** Visits edges (in 2d: corners): the positions of their nodes, relative to the first one, and the edges. */
 template <class Visit> void FixMPMElements::for_curved_edges(Visit visit) const
 {
   for (std::size_t e = 0; e < nodes.size() && curved; e++) {
@@ -1122,8 +1122,8 @@ double FixMPMElements::widest_gap() const
 }
 
 /* ----------------------------------------------------------------------
-   p times the gradient of the volume that is enclosed, which is a third (in 2d half) of the area for each node, and that of what is between the triangles and
-   a curved surface, so that the work is p dV exactly
+   p times the gradient of the enclosed volume: a third (in 2d half) of the area for each node, and the gradient of the volume
+   between the triangles and a curved surface, so that the work is p dV exactly
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::add_pressure(bool starting)
@@ -1163,7 +1163,7 @@ void FixMPMElements::add_pressure(bool starting)
 }
 
 /* ----------------------------------------------------------------------
-   bending: a row has what mesh/bending.h knows of the patch or corner
+   bending: a row stores the data of mesh/bending.h for the patch or corner
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::define_bending(double *r, const double (*X)[3], bool inside,
@@ -1217,7 +1217,7 @@ BentTriangle FixMPMElements::bent_triangle(const double *r) const
   return bent;
 }
 
-/** Energy of a row, and forces. */
+/** Energy of a row, and its forces on the nodes. */
 double FixMPMElements::bend(const double *r, const double (*x)[3], double (*f)[3]) const
 {
   const double *const from = bent_of(r);
@@ -1232,7 +1232,7 @@ double FixMPMElements::bend(const double *r, const double (*x)[3], double (*f)[3
   return bent.bend(stiffness, dim, x, f);
 }
 
-/** visit(energy, row, number of nodes, forces on them). */
+/** Calls visit(energy, row, number of nodes, forces on them) for all rows. */
 template <class Visit> void FixMPMElements::for_bending(Visit visit) const
 {
   for (std::size_t e = 0; e < nodes.size(); e++) {
@@ -1256,13 +1256,14 @@ void FixMPMElements::add_bending()
   });
 }
 
-/** Of free nodes, by the theorem of Gerschgorin: the square is not above the largest sum of a row of the stiffness over its mass. */
+/** Largest frequency of free nodes, by the theorem of Gerschgorin: its square is at most the largest sum of a row of the stiffness
+ *  over its mass. */
 double FixMPMElements::largest_bending_frequency() const
 {
   std::vector<double> sum(ids.n, 0.0), all(ids.n);
   for (std::size_t e = 0; e < pool.size() / stride; e++) {
     double *const r = row(e), mine[PATCH_NODES];
-    if (!bends(r) || type_of(r) == ElementType::EDGE) continue;    // which makes nothing stiffer
+    if (!bends(r) || type_of(r) == ElementType::EDGE) continue;    // edges make nothing stiffer
     if (type_of(r) == ElementType::PATCH) {
       bent_triangle(r).stiffness_sums(nu, mine);
     } else {
@@ -1282,8 +1283,8 @@ double FixMPMElements::largest_bending_frequency() const
 }
 
 /* ----------------------------------------------------------------------
-   What a body without a lattice spends is not in the balance of the lattices, which has neither its kinetic energy nor the forces that
-   move it: the material gives it back, and this fix keeps it
+   Energy that a body without a lattice spends is not in the balance of the lattices, which has neither its kinetic energy nor
+   the forces that move it: the material returns it, and this fix keeps it
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::keep_spent(const std::function<void()> &strain)
@@ -1356,7 +1357,7 @@ double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
     }
   });
   const double gas = gas_frequency();
-  if (tag == 0) return smallest;    // no elements here: those of other ranks tell
+  if (tag == 0) return smallest;    // no elements here: other ranks know the limit
   const double others = hypot(2.0 / smallest, bending ? bending_frequency : 0.0);
   if (gas < LITTLE_GAS * others) return 2.0 / others;
   if (gas > others) speed = 0.0;
@@ -1365,8 +1366,8 @@ double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
 
 /* ----------------------------------------------------------------------
    The gas in a closed surface is one spring between all of its nodes, of the stiffness k = -dp/dV along the gradient g of the
-   volume: omega^2 = k sum_i g_i^2/m_i. That of a thin bag is as small as the bag, whatever its mesh. The pressure of this
-   step need not be known yet
+   volume: omega^2 = k sum_i g_i^2/m_i. For a thin bag, the limit follows from the size of the bag, whatever its mesh. The
+   pressure of this step may not be known yet
 ------------------------------------------------------------------------- */
 
 double FixMPMElements::gas_frequency() const
@@ -1422,13 +1423,13 @@ void FixMPMElements::check_dt() const
 }
 
 /* ----------------------------------------------------------------------
-   Where a slack element becomes taut its stiffness jumps, and Verlet steps that are not small then gain energy each time. A bag that unfolds
-   has 1.29 of its energy after 4000 steps of 0.8 of the limit, 1.007 with half and 1.001 with a quarter of it
+   Where a slack element becomes taut its stiffness jumps, and Verlet steps that are not small then gain energy each time. A
+   bag that unfolds has 1.29 of its energy after 4000 steps of 0.8 of the limit, 1.007 with half and 1.001 with a quarter of it
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::check_free_dt()
 {
-  constexpr double SLACK = 0.55;    // of the limit
+  constexpr double SLACK = 0.55;    // largest share of the limit without a warning
   check_dt();
   if (force->pair && update->setupflag)
     warn_of_points_as_grains(lmp, groupbit, fmt::format("Fix mpm/elements {}", id));
@@ -1459,7 +1460,7 @@ double FixMPMElements::memory_usage()
 }
 
 /* ----------------------------------------------------------------------
-   elements go where their atom goes. Rows that nobody has any more are dropped by find_nodes()
+   elements move with their atom. find_nodes() drops rows that no atom owns any more
 ------------------------------------------------------------------------- */
 
 int FixMPMElements::pack_exchange(int i, double *buf)

@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Elements after a motion that an implicit solver tries. They work as in a step, and their state is then put back. The stiffness of each is found
-// from central differences, one component of one of its nodes at a time, in all elements at once.
+// Elements after a trial motion of an implicit solver. They work as in a step, and their state is then restored. The stiffness of
+// each is found from central differences, one component of one of its nodes at a time, in all elements at once.
 
 #include "fix_mpm_elements.h"
 
@@ -23,9 +23,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double DIFFERENCE = 1.0e-5;    // in lengths of the shortest element
+static constexpr double DIFFERENCE = 1.0e-5;    // relative to the shortest element
 
-/** Displacements of nodes that are points of other ranks, too. */
+/** Stores the trial displacements, also of nodes that are points of other ranks. */
 void FixMPMElements::take_motion(const double *u)
 {
   const int nlocal = atom->nlocal;
@@ -45,7 +45,8 @@ void FixMPMElements::unpack_forward_comm(int n, int first_one, double *buf)
   std::copy_n(buf, 3 * (std::size_t) n, &motion[3 * (std::size_t) first_one]);
 }
 
-/** use(element, its number of nodes, forces on them [force]) with the state that the motion gives; the state is put back. False: not finite. */
+/** Calls use(element, its number of nodes, forces on them [force]) with the state after the motion, and restores the state. Returns
+ *  false if it is not finite. */
 template <class Use> bool FixMPMElements::try_elements(const Use &use)
 {
   const std::vector<double> before = pool;
@@ -70,7 +71,7 @@ template <class Use> bool FixMPMElements::try_elements(const Use &use)
   return good;
 }
 
-/** Nodes relative to the first one, after the motion or before. */
+/** Positions of nodes relative to the first one, after the motion or before. */
 void FixMPMElements::find_moved(std::size_t e, bool moved, double (*x)[3]) const
 {
   const auto first = (std::size_t) nodes[e][0];
@@ -82,7 +83,7 @@ void FixMPMElements::find_moved(std::size_t e, bool moved, double (*x)[3]) const
     }
 }
 
-/** The pressure that forces of the step have, on surfaces as they are after the motion or before, times a sign, to what is sent. */
+/** Adds to sent, times a sign, the pressure of this step on the surfaces as they are after the motion or before. */
 void FixMPMElements::add_pressure_after(bool moved, double sign)
 {
   const double factor = sign * side * pressure_before / (force->nktv2p * dim);
@@ -102,7 +103,8 @@ void FixMPMElements::add_pressure_after(bool moved, double sign)
   }
 }
 
-/** Of the same: a volume that is enclosed has a symmetric second derivative, of which each face then gets the symmetric part. */
+/** Adds the derivative of the pressure on surfaces. An enclosed volume has a symmetric second derivative, so each face gets the
+ *  symmetric part. */
 void FixMPMElements::differentiate_pressure()
 {
   const int size = maxnode * dim;
@@ -116,7 +118,7 @@ void FixMPMElements::differentiate_pressure()
       double high[3], low[3], K[9][9];
       for (int m = 0; m < 3; m++) at[m] = x[SPLIT[part][m]];
       for (int column = 0; column < dim * dim; column++) {
-        // the area is linear, or bilinear, in places of nodes, so that differences of any size are exact
+        // the area is linear, or bilinear, in the positions of nodes, so that differences of any size are exact
         double &place = x[SPLIT[part][column / dim]][column % dim];
         const double value = place;
         place = value + 0.5 * shortest;
@@ -139,7 +141,7 @@ void FixMPMElements::differentiate_pressure()
   }
 }
 
-/** Sums of values of nodes [local and ghost][3] over ranks, added to those of this one. */
+/** Sums the values of nodes in sent [local and ghost][3] over ranks, and adds those of this rank to the array to. */
 void FixMPMElements::bring_home(double *to)
 {
   comm->reverse_comm(this, 3);
@@ -161,7 +163,7 @@ bool FixMPMElements::forces_after(const double *u, double *f, double &carried)
       carried += std::sqrt(square);
     }
   });
-  // what forces() has at the start is without the pressure on surfaces that are open
+  // forces() does not include the pressure on open surfaces at the start
   if (pressure) add_pressure_after(true, 1.0);
   if (pressure && !kind.closed) add_pressure_after(false, -1.0);
   std::fill_n(f, 3 * (std::size_t) atom->nlocal, 0.0);

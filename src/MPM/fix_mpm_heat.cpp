@@ -231,7 +231,7 @@ int FixMPMHeat::setmask()
 }
 
 /* ----------------------------------------------------------------------
-   in the units of the input; 0 where these have no kelvins
+   constant of Stefan and Boltzmann in the units of the input; 0 where these have no kelvins
 ------------------------------------------------------------------------- */
 
 double FixMPMHeat::sigma() const
@@ -294,7 +294,7 @@ void FixMPMHeat::init()
   }
 }
 
-/** What other atoms give waits for no conduction. */
+/** Refuses every > 1 if other atoms give heat to nodes in each step. */
 void FixMPMHeat::require_each_step(const char *giver) const
 {
   if (every > 1)
@@ -303,7 +303,7 @@ void FixMPMHeat::require_each_step(const char *giver) const
                every, giver);
 }
 
-/** Pair styles between bodies, whose init() has been before. */
+/** Finds pair styles between bodies; their init() has been called before. */
 void FixMPMHeat::find_rubbers()
 {
   rubbers.clear();
@@ -320,7 +320,7 @@ void FixMPMHeat::find_rubbers()
                "give its pair_coeff one of these, or drop the keyword");
 }
 
-/** Friction whose heat nobody has, where the input does not say that this is so: once. */
+/** Warns once of friction whose heat is lost, unless the input says that this is intended. */
 void FixMPMHeat::warn_of_friction()
 {
   if (losses_known) return;
@@ -361,7 +361,7 @@ void FixMPMHeat::setup(int)
   check_temperatures();
 }
 
-/** Radiation of points that have less than no temperature is nonsense: they are in degrees Celsius. Collective. */
+/** Is there radiation? It needs kelvins: negative temperatures of points show that they are in degrees Celsius. Collective. */
 bool FixMPMHeat::radiates() const
 {
   const auto does = [](const MPMHeatCondition &c) {
@@ -418,13 +418,13 @@ void FixMPMHeat::give_rubbing(double dt)
   book(FRICTION, sum);
 }
 
-/** Do faces of the box take their weights from the surface that nodes know (MPMHeatBody)? */
+/** Do faces of the box take their weights from the surface that nodes have (MPMHeatBody)? */
 static bool weighs_faces(const MPMField &field)
 {
   return field.options.shape != LINEAR && field.options.shape != BERNSTEIN;
 }
 
-/** Temperatures in kelvins for radiation, and variables. */
+/** Checks that radiation has temperatures in kelvins, and that variables exist. */
 void FixMPMHeat::check(MPMHeatCondition &c, const std::string &name)
 {
   if (c.kind == MPMHeatCondition::RADIATION && sigma() == 0.0)
@@ -437,7 +437,7 @@ void FixMPMHeat::check(MPMHeatCondition &c, const std::string &name)
 
 void FixMPMHeat::init_physics(MPMPlan &plan)
 {
-  // fix mpm comes here before init() of this fix
+  // fix mpm calls this before init() of this fix
   const auto all = find_fixes<MPMRubbing>(lmp);
   rubs = std::any_of(all.begin(), all.end(), [](const auto *fix) {
     return fix->gives_heat();
@@ -476,7 +476,7 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
 }
 
 /* ----------------------------------------------------------------------
-   bodies on several lattices: what is at nodes of one of them alone would be wrong at the rims
+   bodies on several lattices: conduction on the nodes of each lattice alone would be wrong at the rims
 ------------------------------------------------------------------------- */
 
 void FixMPMHeat::init_levels(const MPMPlan &plan)
@@ -545,7 +545,7 @@ MPMHeatBody &FixMPMHeat::body_of(const MPMField &field)
   return *bodies.back();
 }
 
-/** Has a field points that conduct, on any rank? */
+/** Does a field have points that conduct, on any rank? */
 static bool conducts(const MPMField &field, MPI_Comm world)
 {
   const Atom &atom = *field.atom;
@@ -558,7 +558,7 @@ static bool conducts(const MPMField &field, MPI_Comm world)
   return all;
 }
 
-/** Bodies that touch hide free surfaces of each other, also those that do not conduct. */
+/** Finds bodies that touch: they hide free surfaces of each other, even if they do not conduct. */
 void FixMPMHeat::find_neighbors()
 {
   if (std::none_of(surfaces.begin(), surfaces.end(), [](const auto &s) {
@@ -651,7 +651,7 @@ void FixMPMHeat::topology_changed(MPMField &field)
   for (auto &contact : contacts) contact->topology_changed();
 }
 
-/** Conduction alone takes from nodes what points reach; lines through surfaces have other nodes, too. */
+/** Are nodes needed that no point reaches? Conduction alone needs none, but lines through surfaces do. */
 bool FixMPMHeat::looks_beyond_points() const
 {
   return !bodies.empty() || std::any_of(fields.begin(), fields.end(), [](const auto &field) {
@@ -669,7 +669,7 @@ MPMConduction &FixMPMHeat::of(const MPMField &field) const
 
 void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
-  // points strain at the end of a step with the temperatures that they have then: an implicit step must know these before
+  // points strain at the end of a step with their temperatures at that time: an implicit step must know these before
   const bool is_implicit = !find_fixes<FixMPMImplicit>(lmp).empty();
   if (place == (is_implicit ? MPMPlan::BEFORE_SOLVE : MPMPlan::AFTER_SOLVE))
     plan.together("conduction of heat", [this]() {
@@ -679,7 +679,7 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 /* ---------------------------------------------------------------------- */
 
-/** What the input may not have as a number, variables may not have either. */
+/** Checks the values of variables by the same rules as numbers in the input. */
 void FixMPMHeat::check_values() const
 {
   const auto refuse = [&](bool wrong, const std::string &where, const MPM_NS::NumberOrVariable &v,
@@ -742,7 +742,7 @@ void FixMPMHeat::evaluate_variables()
 }
 
 /* ----------------------------------------------------------------------
-   before temperatures go to nodes, as surfaces are sums over points of their own
+   called before temperatures go to nodes, as surfaces have sums over points of their own
 ------------------------------------------------------------------------- */
 
 void FixMPMHeat::find_surfaces()
@@ -766,7 +766,7 @@ void FixMPMHeat::find_surfaces()
   if (looks) report_thin();
 }
 
-/** Collective: one warning, of the same place for any number of ranks. */
+/** One warning, with the same place for any number of ranks. Collective. */
 void FixMPMHeat::report_thin()
 {
   MPMHeatThin::Found found;
@@ -792,10 +792,10 @@ int FixMPMHeat::exchanges(const MPMConduction &of_field) const
 }
 
 /* ----------------------------------------------------------------------
-   temperatures of nodes, and the stages that all fields need for their step
+   temperatures of nodes, and the number of stages that all fields need for their step
 ------------------------------------------------------------------------- */
 
-/** Lines of surfaces and contacts that cross others at edges, when all lines of the step are known. Collective. */
+/** Finds lines of surfaces and contacts that cross others at edges, when all lines of the step are known. Collective. */
 void FixMPMHeat::find_edges()
 {
   for (auto &body : bodies)
@@ -809,7 +809,7 @@ void FixMPMHeat::find_edges()
   }
 }
 
-/** Materials that do not conduct and are thinner than the reach of nodes: at the first step, once. */
+/** Warns of materials that do not conduct and are thinner than the reach of nodes, at the first step, once. */
 void FixMPMHeat::look_for_leaks()
 {
   if (leaks_known) return;
@@ -835,7 +835,7 @@ void FixMPMHeat::look_for_leaks()
 int FixMPMHeat::count_stages()
 {
   static constexpr int NRATE =
-      4;    // of a field: of its conduction, of its faces normal to each axis
+      4;    // rates of a field: of its conduction, and of its faces normal to each axis
   look_for_leaks();
   std::vector<double> mine(NRATE * fields.size(), 0.0), all;
   find_surfaces();
@@ -863,8 +863,8 @@ int FixMPMHeat::count_stages()
     greatest = std::max(greatest, all[NRATE * k]);
   }
 
-  // a node can be at faces, in contacts with several bodies, and at a surface; that of one field is not another's. What
-  // costs no stage needs no limit
+  // a node can be at faces, in contacts with several bodies, and at a surface; nodes of different fields are separate. Exchange
+  // that needs no stage needs no limit
   static constexpr double BELOW_ONE_STEP = 0.95;
   int most_at_a_node = 0;
   for (auto &field : fields) most_at_a_node = std::max(most_at_a_node, exchanges(*field));
@@ -934,7 +934,7 @@ void FixMPMHeat::find_rates()
 }
 
 /* ----------------------------------------------------------------------
-   the same equations for implicit steps
+   the same equations in implicit steps
 ------------------------------------------------------------------------- */
 
 bool FixMPMHeat::linearize()
@@ -1060,10 +1060,11 @@ void FixMPMHeat::conduct()
   warn_of_fronts();
 }
 
-/** Points take the heat of fusion at the end of a conduction, which in long ones cools or warms what is beyond a front too much. */
+/** Warns of long conductions with fronts: points take the heat of fusion at their end, which cools or warms the material beyond a front
+ *  too much. */
 void FixMPMHeat::warn_of_fronts()
 {
-  static constexpr double LONG = 4.0;    // explicit limits
+  static constexpr double LONG = 4.0;    // in explicit limits
   const double limits = dt_last / MPMSuperStep::explicit_limit(fastest);
   if (fronts_known || !(limits > LONG)) return;
   const bool melts = std::any_of(fields.begin(), fields.end(), [](const auto &field) {
@@ -1086,7 +1087,7 @@ void FixMPMHeat::warn_of_fronts()
 
 double FixMPMHeat::stable_dt(const MPMField &field, tagint &tag) const
 {
-  // other exchange is as fast as conduction at the most
+  // other exchange is at most as fast as conduction
   if (solver) return std::numeric_limits<double>::max();
   const auto &conduction = of(field);
   const double rate = conduction.greatest_rate_of_points(tag);
@@ -1121,7 +1122,7 @@ double FixMPMHeat::compute_vector(int i)
 }
 
 /* ----------------------------------------------------------------------
-   entries of compute mpm/energy. What points have got is a sum over points, apart from what nodes were given
+   entries of compute mpm/energy. The heat of points is a sum over points, separate from the heat that nodes were given
 ------------------------------------------------------------------------- */
 
 std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
@@ -1166,7 +1167,7 @@ void FixMPMHeat::write_restart(FILE *fp)
   fwrite(power.data(), sizeof(double), size_vector, fp);
 }
 
-/** The power is that of the last conduction until the next one; with other surfaces or contacts it is that of others. */
+/** The power is that of the last conduction until the next one; with other surfaces or contacts, it belongs to the old ones. */
 void FixMPMHeat::restart(char *buf)
 {
   if (comm->me == 0) memcpy(&past, buf, sizeof(Past));

@@ -49,17 +49,17 @@ using namespace MPM_NS;
 
 static const char *const PART_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "free"};
 
-// of a wait for the next flow: node spacings that waves go, and explicit limits of the flow
+// longest wait for the next flow: node spacings that waves travel, and explicit limits of the flow
 static constexpr double MOST_SPACINGS = 2.5, MOST_LIMITS = 10.0;
-// points that are farther apart than this many node spacings are as stiff as a lattice can be, whose waves have the frequency 2/crossing
+// points that are farther apart than this many node spacings are as stiff as a lattice can be; their waves have the frequency 2/crossing
 static constexpr double FINE = 0.6;
-// root of the mean square of slopes of points in layers (MPMPore::Layers), which is the frequency of their waves times crossing; the lattice
-// takes away those up to this in MOST_SPACINGS
+// root of the mean square of slopes of points in layers (MPMPore::Layers), equal to the frequency of their waves times crossing;
+// the lattice damps waves up to this frequency in MOST_SPACINGS
 static constexpr double SLOW = 1.45;
-// with auto, over the time in which flow crosses a layer that is so thin that the pressure changes across it by all of its range: of the explicit limit
-// it is 6 THIN times the square of the thickness in node spacings
+// longest wait with auto, over the time in which flow crosses a layer that is so thin that the pressure changes across it by all of its
+// range: in explicit limits it is 6 THIN times the square of the thickness in node spacings
 static constexpr double THIN = 0.02;
-// times that are equal on paper are told apart by this, as sums of ranks differ by round-off
+// factor within which times are equal on paper, as sums of ranks differ by round-off
 static constexpr double NEARLY = 1.0 + 1.0e-6;
 
 Options MPMPoreOptions::declare(int dim)
@@ -360,7 +360,7 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   state.declare(pressure, "mpm/pore:pressure", 1 + domain->dimension, [this](int, double *row) {
     row[0] = initial_value;
   });
-  // also where water does not wait now: the run that goes on from a restart file may have other conditions
+  // declared even if water does not wait now: a run that continues from a restart file may have other conditions
   if (can_wait()) state.declare(since, "mpm/pore:since");
   if (formulation == U_V_P) state.declare(inertia, "mpm/pore:flow", domain->dimension);
   if (can_dry())
@@ -395,7 +395,7 @@ FixMPMPore::~FixMPMPore()
 }
 
 /* ----------------------------------------------------------------------
-   of the points that there are now; a restart file has others
+   initial pressures of the present points; a restart file has others
 ------------------------------------------------------------------------- */
 
 std::vector<double> FixMPMPore::initial_pressures() const
@@ -468,7 +468,7 @@ void FixMPMPore::init()
   }
 }
 
-/** Of the soil without its water, as new points have it: by a compression that is small, and slow for any viscosity. */
+/** Bulk modulus of the soil without its water, for new points: by a compression that is small, and slow for any viscosity. */
 static double bulk_modulus(const Material &material)
 {
   constexpr double SMALL = 1.0e-6, LONG = 1.0e12;
@@ -479,8 +479,8 @@ static double bulk_modulus(const Material &material)
   return (point.pressure() - before) / (1.0 - point.batch.J[0]);
 }
 
-/** Grains that are not rigid. Their modulus and that of the soil make the coefficient of Biot, 1 - K/Ks, and no arrangement of grains is
- *  stiffer than their share of the volume (Voigt), which is the same as a coefficient that is not below the porosity. */
+/** Checks soils with grains that are not rigid. The moduli of grains and soil give the coefficient of Biot, 1 - K/Ks. No arrangement of
+ *  grains is stiffer than their share of the volume (Voigt), so this coefficient is not below the porosity. */
 void FixMPMPore::check_grains()
 {
   constexpr double CLOSE = 0.1, ROUNDED = 1.001;    // coefficients of Biot; numbers of few digits
@@ -506,7 +506,7 @@ void FixMPMPore::check_grains()
   grains_known = true;
 }
 
-/** Between points, pair styles do not know what water bears. */
+/** Warns of pair styles between points, which do not know the share of the water in a contact. */
 void FixMPMPore::warn_of_contact() const
 {
   if (comm->me || wet.empty()) return;
@@ -523,7 +523,7 @@ void FixMPMPore::warn_of_contact() const
   }
 }
 
-/** Bodies that close the free surface where they touch it. */
+/** Finds bodies that close the free surface where they touch it. */
 void FixMPMPore::find_seals()
 {
   rigid_bodies.clear();
@@ -551,8 +551,9 @@ double FixMPMPore::distance_to_bodies(const double *x, double far) const
   return least;
 }
 
-/** Soils without points, as with the ID of another material, leave the ground dry; one that is lighter than its water has grains with a weight
- *  below zero, which without gravity is a way to have longer steps. Here: which soils have points on this rank. */
+/** Warns of soils without points, as with the ID of another material, where the ground stays dry, and of soils that are lighter than their
+ *  water, whose grains have a negative weight; without gravity, this is a way to allow longer steps. here: which soils have points on
+ *  this rank. */
 static void warn_of_soils(LAMMPS *lmp, const std::string &id, const std::vector<MPMPoreSoil> &soils,
                           const std::vector<int> &here, const MPMPoreWater &water, bool has_weight)
 {
@@ -562,7 +563,7 @@ static void warn_of_soils(LAMMPS *lmp, const std::string &id, const std::vector<
     const auto &soil = soils[k];
     const auto *const fix =
         dynamic_cast<const FixMPMMaterial *>(lmp->modify->get_fix_by_id(soil.material));
-    if (!fix) continue;    // init() tells
+    if (!fix) continue;    // init() reports this
     const double density = fix->material->density(), of_water = soil.porosity * water.density;
     if (!anywhere[k])
       lmp->error->warning(FLERR,
@@ -624,14 +625,14 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   if (!waits()) end_wait();
   watched.points = -1;    // velocities may have been set since the last run
   watched.flows = 0;
-  // soils that dry have no other formulation, and bodies that are brought to rest no motion of their own
+  // soils that dry have no other formulation, and bodies that relax to rest have no motion of their own
   watches_inertia = !inertia_known && formulation == U_P && !is_implicit && !can_dry() &&
       find_fixes<FixMPMRelax>(lmp).empty();
   if (is_implicit) init_implicit();
 }
 
-/** Where water flows in each step from now on, a run before this one, or that of a restart file, may have ended between two flows:
- *  points have then all of their pressure, and the next flow the time of the wait, too. */
+/** Ends a wait if water flows in each step from now on. The run before, or that of a restart file, may have ended between two flows:
+ *  then points get all of their pressure, and the next flow also covers the time of the wait. */
 void FixMPMPore::end_wait()
 {
   for (int i = 0; i < atom->nlocal && can_wait(); i++) {
@@ -642,7 +643,7 @@ void FixMPMPore::end_wait()
   }
   waited.steps = 0.0;
   if (!is_implicit) return;
-  // explicit steps that follow begin anew
+  // explicit steps that follow start afresh
   waited.time = 0.0;
   rates_known = false;
   thinned = std::numeric_limits<double>::max();
@@ -661,7 +662,7 @@ void FixMPMPore::find_crossing()
       }
 }
 
-/** Implicit steps solve for the pressure of nodes in equations that are linear in it. */
+/** Checks options that implicit steps cannot have: their equations are linear in the pressure of nodes. */
 void FixMPMPore::init_implicit() const
 {
   const auto refuse = [&](bool broken, const char *what, const char *remedy) {
@@ -682,7 +683,7 @@ void FixMPMPore::init_implicit() const
   }
 }
 
-/** The mass that moves by itself must be less than all, and nodes have their accelerations. */
+/** Checks that the mass that moves by itself is less than all mass, and that nodes have accelerations. */
 void FixMPMPore::init_motion(MPMField &field)
 {
   field.keep_old = true;
@@ -729,7 +730,7 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
       flow();
     });
   }
-  // fix mpm/implicit has left the velocities of the step to nodes by then
+  // at this point, fix mpm/implicit has left the velocities of the step on nodes
   if (place == MPMPlan::BEFORE_STRAIN && is_implicit)
     plan.together("flow of pore water", [this]() {
       take_solution();
@@ -737,7 +738,7 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 }
 
 /* ----------------------------------------------------------------------
-   pores of soils without retention are full of water, also above its table, where it hangs on the air
+   pores of soils without retention are full of water, also above the water table, where suction holds it
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::setup_points()
@@ -788,7 +789,7 @@ void FixMPMPore::setup_points()
   });
 }
 
-/** The water of points that are new follows from their pressure. */
+/** Finds the water of new points from their pressure. */
 void FixMPMPore::weigh_points()
 {
   if (!can_dry()) return;
@@ -829,7 +830,7 @@ void FixMPMPore::evaluate_variables()
   });
 }
 
-/** Materials without water that are thinner than the reach of nodes: at the first step, once. */
+/** Warns of materials without water that are thinner than the reach of nodes, at the first step, once. */
 void FixMPMPore::look_for_leaks()
 {
   if (leaks_known) return;
@@ -853,7 +854,7 @@ void FixMPMPore::look_for_leaks()
   }
 }
 
-/** Pores that are shut: once. Neither the soil nor its water is then what the equations are for. */
+/** Warns once of pores that are shut, where the equations hold neither for the soil nor for its water. */
 void FixMPMPore::look_for_shut_pores()
 {
   if (shut_known) return;
@@ -879,8 +880,8 @@ void FixMPMPore::look_for_shut_pores()
         lowest, of_all[0], of_all[1]);
 }
 
-/** Where every is not given, water flows in each step with what cannot wait, what varies from step to step, and free surfaces, whose flow is the
- *  more exact the less of it comes at once. */
+/** Must water flow in each step if every is not given? It must with effects that cannot wait, with input that varies from step to step,
+ *  and with free surfaces, whose flow is more exact if less of it comes at once. */
 bool FixMPMPore::needs_each_step() const
 {
   const bool differs = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
@@ -894,8 +895,8 @@ bool FixMPMPore::needs_each_step() const
       !find_fixes<FixMPMImplicit>(lmp).empty();
 }
 
-/** Is the step that begins one with flow? With auto, flow takes one stage, which costs least and is as exact as flow in each step also where
- *  soil is soft next to its water and drains through a curved surface. */
+/** Is there flow in the step that begins? With auto, flow takes one stage, which costs least and is as exact as flow in each step
+ *  even where the soil is soft compared with its water and drains through a curved surface. */
 bool FixMPMPore::is_time_to_flow() const
 {
   if (!waits() || !rates_known || (every != AUTO && waited.steps + 1.0 >= every)) return true;
@@ -905,11 +906,11 @@ bool FixMPMPore::is_time_to_flow() const
   return waited.time + 2.0 * fields[0]->field.step_dt() > most * NEARLY;
 }
 
-/** Flow that starts and stops makes waves with the length that waves go in between. Those of up to some node spacings the lattice takes
- *  away; longer ones grow with each flow. In between, points have pressures of their own, of which a flow leaves what nodes see. A wave
- *  that these do not see must not have turned by more than half of its period by then, or it grows: one of points that are a node spacing
- *  apart has the frequency 2/crossing, and with closer points none is above 1.4/crossing, for which the former bound and what transfers of
- *  velocities take from such waves suffice. */
+/** Flow that starts and stops makes waves, whose length is the distance that waves travel in between. The lattice damps those of up to
+ *  some node spacings; longer ones grow with each flow. In between, points have pressures of their own, of which a flow keeps only what
+ *  nodes see. A wave that nodes do not see grows if it has turned by more than half of its period by then. For points that are a
+ *  node spacing apart its frequency is 2/crossing; with closer points none is above 1.4/crossing, for which the former bound is enough,
+ *  together with the damping of such waves by transfers of velocities. */
 double FixMPMPore::longest_wait() const
 {
   if (!coarse) return MOST_SPACINGS * crossing;
@@ -918,13 +919,13 @@ double FixMPMPore::longest_wait() const
   return dt * std::floor(MathConst::MY_PI / turns * NEARLY);
 }
 
-/** The longest flow, in limits of an explicit step. */
+/** Longest flow, in limits of an explicit step. */
 double FixMPMPore::reach_of_stages() const
 {
   return most_stages < 3 ? 0.5 : MPMSuperStep::reach(most_stages);
 }
 
-/** One suffices up to the explicit limit where the steps of the motion are shorter than half of it (see mpm_pore.cpp). */
+/** Number of stages. One is enough up to the explicit limit if steps of the motion are shorter than half of it (see mpm_pore.cpp). */
 int FixMPMPore::stages_of(double duration, double limit) const
 {
   const bool one = duration <= 0.5 * limit || (waited.steps > 0.0 && duration <= limit * NEARLY);
@@ -972,7 +973,7 @@ void FixMPMPore::find_greatest_rates()
   rates_known = true;
 }
 
-/** Of what pressures have become by a flow, see THIN. */
+/** Finds how thin layers are from the pressures after a flow, see THIN. */
 void FixMPMPore::find_thin_layers()
 {
   MPMPore::Slopes mine, all;
@@ -982,7 +983,8 @@ void FixMPMPore::find_thin_layers()
   thinned = range > 0.0 ? all.steepest / (range * range) : 0.0;
 }
 
-/** Those that are wide, or that lie in layers which are a node spacing apart along one axis and are close along another. */
+/** Finds whether points are coarse: wide, or in layers that are a node spacing apart along one axis and close along
+ *  another. */
 void FixMPMPore::find_coarse_points(double widest)
 {
   coarse = widest > FINE;
@@ -1002,7 +1004,7 @@ void FixMPMPore::find_coarse_points(double widest)
   }
 }
 
-/** Flow through a surface that is not a face of the box, in a lump that one stage cannot take: once. */
+/** Warns once of flow through a surface that is not a face of the box, in a lump that one stage cannot take. */
 void FixMPMPore::look_for_long_flow(double duration, double limit)
 {
   if (long_known || every == AUTO || waited.steps == 0.0 || duration <= limit * NEARLY ||
@@ -1017,7 +1019,8 @@ void FixMPMPore::look_for_long_flow(double duration, double limit)
                    every, waited.steps + 1.0, duration / limit);
 }
 
-/** Pressures that vary over some cells and that points have lost to nodes in long runs, where the flow is too slow to do so: once. */
+/** Warns once of pressures that vary over some cells and that points have lost to nodes in long runs, where the flow itself is too slow
+ *  for that. */
 void FixMPMPore::look_for_smoothing(double duration)
 {
   constexpr double MUCH = 0.02, OF_FLOW = 0.2;
@@ -1040,7 +1043,8 @@ void FixMPMPore::look_for_smoothing(double duration)
                    waits() ? "every 1 and a small relax" : "a smaller relax");
 }
 
-/** From one of some flows to the next, see MPMPore::inertia(): what counts is slower than waves of the lattice. */
+/** Measures the neglected acceleration between every fourth flow, see MPMPore::inertia(): relevant motion is slower than waves of the
+ *  lattice. */
 void FixMPMPore::watch_inertia()
 {
   constexpr int EACH = 4;
@@ -1067,11 +1071,11 @@ void FixMPMPore::watch_inertia()
 }
 
 /* ----------------------------------------------------------------------
-   does the acceleration count that u-p leaves out? It does where its part is not small in what the flow has
-   taken, and that is not small next to the energy of the motion. Waves of a load that comes at once have that,
-   too, but slow flow then takes far more in the end. Ground that nearly rests has accelerations that are small
-   next to that of its weight, and runs that end before what has begun to move comes to rest for the first time
-   tell nothing yet. Once
+   does the acceleration matter that u-p neglects? It does if its part in the energy that the flow has dissipated is not
+   small, and not small relative to the energy of the motion. Waves of a load that comes at once satisfy the latter,
+   too, but slow flow then dissipates far more in the end. Ground that nearly rests has small accelerations relative
+   to that of its weight, and runs that end before the motion has come to rest for the first time do not allow a
+   judgment yet. Warns once
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::post_run()
@@ -1094,7 +1098,7 @@ void FixMPMPore::post_run()
         id, std::min(999.0, 100.0 * sqrt(part / watched.flow)));
 }
 
-/** Those of the first step of all, before it begins. */
+/** Finds the rates before the very first step. */
 void FixMPMPore::know_rates()
 {
   if (rates_known) return;
@@ -1102,7 +1106,7 @@ void FixMPMPore::know_rates()
   plan->find_blocks_now();
   begin_step(true);
   find_greatest_rates();
-  for (auto *field : plan->fields) field->map->valid = false;    // the step finds its own
+  for (auto *field : plan->fields) field->map->valid = false;    // the step finds its own blocks
 }
 
 void FixMPMPore::flow()
@@ -1117,7 +1121,7 @@ void FixMPMPore::flow()
     if (!field->moves_first()) field->take_motion(dt);
     field->move_water();
   }
-  // waves limit the step of water with inertia, which is one of theirs
+  // with inertia, flow is a part of waves, and these limit the step
   if (formulation == U_P) find_greatest_rates();
   const double limit = MPMSuperStep::explicit_limit(conducted + exchanged);
   const int stages = stages_of(dt, limit);
@@ -1146,7 +1150,7 @@ void FixMPMPore::flow()
   flows_known = false;
 }
 
-/** The end of an implicit step, whose pressures have been found with the motion. */
+/** Takes the pressures at the end of an implicit step, which were solved together with the motion. */
 void FixMPMPore::take_solution()
 {
   const double dt = fields[0]->field.step_dt();
@@ -1177,7 +1181,7 @@ double FixMPMPore::stable_dt(const MPMField &field, tagint &tag) const
 }
 
 /* ----------------------------------------------------------------------
-   volume of water that has come in so far, and the volume in a time in the last step
+   volume of water that has come in so far, and the flow (volume per time) in the last step
 ------------------------------------------------------------------------- */
 
 double FixMPMPore::compute_scalar()
@@ -1199,8 +1203,8 @@ double FixMPMPore::compute_vector(int i)
 }
 
 /* ----------------------------------------------------------------------
-   what the water stores, and its kinetic energy, as far as mass and velocity of points do not have it, for
-   compute mpm/energy and the energy watch
+   the energy that the water stores, and the part of its kinetic energy that mass and velocity of points do not include,
+   for compute mpm/energy and the energy watch
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::account(double *values) const
@@ -1243,7 +1247,7 @@ void FixMPMPore::restart(char *buf)
   thinned = same[8];
 }
 
-/** Of a point between two flows. */
+/** Pressure of a point between two flows. */
 double FixMPMPore::pressure_now(int i) const
 {
   if (waited.steps == 0.0) return pressure[i][0];

@@ -57,7 +57,7 @@ void MPMGuard::check_other_points()
   npoints = warn_of_forgotten_points(lmp, "mpm", "have no stress");
 }
 
-/** Of new points, by the tangent at rest; 0: of fluids, and where the law has no tangent of its own. */
+/** Poisson ratio of new points, by the tangent at rest; 0 for fluids, and if the law has no tangent of its own. */
 static double poisson_ratio(const Material &material)
 {
   if (!material.is_solid() || !material.has_tangent()) return 0.0;
@@ -72,7 +72,7 @@ static double poisson_ratio(const Material &material)
 
 void MPMGuard::check_locking()
 {
-  // a panel of 12 cells that bends is 2 % too stiff with 0.49, 3 % with 0.495, 7 % with 0.499
+  // a bent panel of 12 cells is 2 % too stiff with 0.49, 3 % with 0.495, 7 % with 0.499
   constexpr double LOCKS = 0.4975;
   const auto &o = field.options;
   if (has_told_of_locking || o.averages_stress() || o.averages_volume() || o.averages_strain())
@@ -99,10 +99,10 @@ void MPMGuard::check_locking()
 }
 
 /* ----------------------------------------------------------------------
-   In the total frame points stay where they are in their cells, also where round-off decides about strain
+   In the total frame points stay at their positions in their cells, even where round-off decides about strain
    and stress. Linear and Bernstein functions have gradients that jump at faces of cells. Those of quadratic
-   functions do not, but near the end of one (grad N)^2/N does not vanish: as forces are made with one
-   grad N and strain, of new velocities, with another one, a node that only this point reaches, with
+   functions do not, but near the end of one (grad N)^2/N does not vanish. Forces have one factor grad N, and
+   the strain from new velocities has another one: a node that only this point reaches, with
    the mass m_p N, changes its strain by an amount that does not depend on N, unless N is zero. Only
    the outermost points have such nodes.
 ------------------------------------------------------------------------- */
@@ -121,7 +121,7 @@ void MPMGuard::check_places() const
     const double cells = (t - shape.shift) / shape.cell;
     return fabs(cells - std::round(cells)) < NEAR;
   };
-  // largest place, largest with the opposite sign, is any at an end: along each axis
+  // along each axis: largest position, largest with the opposite sign, and whether any is at an end
   double mine[9], all[9];
   std::fill_n(mine, 6, -std::numeric_limits<double>::max());
   std::fill_n(mine + 6, 3, 0.0);
@@ -217,7 +217,7 @@ void MPMGuard::check_points() const
   if (field.options.axisymmetric) check_rings();
 }
 
-/** Points that create_points made before the fix have areas in the place of the volumes of rings, the same at all radii. */
+/** Warns of points that create_points made before the fix: they have areas instead of volumes of rings, the same at all radii. */
 void MPMGuard::check_rings() const
 {
   constexpr double SAME = 1.0e-9, FAR = 1.01;
@@ -241,20 +241,20 @@ void MPMGuard::check_rings() const
 }
 
 /* ----------------------------------------------------------------------
-   Neighbor lists of points and grains: the two settings that make them slow. Pairs of points do
-   nothing but cost time, unless pair style mpm/penalty is there for them; and with bins of the size
+   Neighbor lists of points and grains: the two settings that make them slow. Pairs of points only
+   cost time, unless pair style mpm/penalty uses them; and with bins of the size
    of a grain, each point tests all points within reach of a grain.
 ------------------------------------------------------------------------- */
 
 void MPMGuard::check_neighbors() const
 {
-  constexpr bigint MANY = 1000;    // points for which it matters
+  constexpr bigint MANY = 1000;    // least number of points for a warning
   constexpr double RATIO = 2.0;
   const int ntypes = atom->ntypes;
   std::vector<int> mine(2 * (ntypes + 1), 0), all(2 * (ntypes + 1));    // points, other atoms
   bigint npoints = 0, npoints_all;
   const int listed = group->bitmask[neighbor->includegroup];    // 0: all
-  int moved = 0;    // groups of lattices: nodes of sheets without one need their pairs
+  int moved = 0;    // groups of lattices: nodes of sheets without a lattice need their pairs
   for (const auto *other : MPMField::all(lmp)) moved |= other->fix.groupbit;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & listed)) continue;
@@ -267,7 +267,7 @@ void MPMGuard::check_neighbors() const
   MPI_Allreduce(&npoints, &npoints_all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (npoints_all < MANY) return;
 
-  double cut_points = 0.0, cut_others = 0.0;    // squares
+  double cut_points = 0.0, cut_others = 0.0;    // squares of cutoffs
   for (int t = 1; t <= ntypes; t++) {
     const double cut = force->pair->cutsq[t][t];
     if (all[2 * t]) cut_points = std::max(cut_points, cut);
@@ -331,8 +331,8 @@ MPMGuard::Lists MPMGuard::lists() const
 }
 
 /* ----------------------------------------------------------------------
-   Fixes that are made for atoms: those that set forces do this to external ones, as those of stress never
-   leave the lattice, and thermostats take the motion of points for heat
+   Fixes that are made for atoms: those that set forces affect only external ones, as forces of stress never
+   leave the lattice, and thermostats treat the motion of points as heat
 ------------------------------------------------------------------------- */
 
 void MPMGuard::check_fixes() const
@@ -360,8 +360,8 @@ void MPMGuard::check_fixes() const
 }
 
 /* ----------------------------------------------------------------------
-   With the default skin of the units, lists and blocks of nodes may be made anew in each step. What is
-   small for grains is not known but for a small part of their size
+   With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A skin counts as small for
+   grains only if it is a small part of their size
 ------------------------------------------------------------------------- */
 
 void MPMGuard::check_skin() const
@@ -381,16 +381,16 @@ void MPMGuard::check_skin() const
 }
 
 /* ----------------------------------------------------------------------
-   Blocks of nodes and the order of points stand a large skin, but lists and ghosts grow with the cube
+   Blocks of nodes and the order of points work with a large skin, but lists and ghosts grow with the cube
    of skin and cutoff. Measured for two touching blocks, cutoff 0.55 and node spacing 1: with a skin of 0.5
-   0.7 pairs per atom, with 2 19 and 2.2 times the time of the run, with 4 180 and 6.8 times
+   0.7 pairs per atom; with 2, 19 pairs and 2.2 times the time of the run; with 4, 180 pairs and 6.8 times
 ------------------------------------------------------------------------- */
 
 void MPMGuard::check_lists() const
 {
-  constexpr double MANY = 10.0, RATIO = 8.0;    // pairs per atom; those of twice the cutoff in 3d
+  constexpr double MANY = 10.0, RATIO = 8.0;    // pairs per atom; ratio for twice the cutoff in 3d
   if (neighbor->skin <= field.lattice.h) return;
-  double mine[3] = {0.0, 0.0, (double) atom->nlocal}, all[3];    // pairs, those in reach
+  double mine[3] = {0.0, 0.0, (double) atom->nlocal}, all[3];    // pairs, pairs in reach, atoms
   for (const auto &style : MPMPairStyle::all(*force)) {
     const auto *const list = style.pair->list;
     if (!list) continue;
@@ -421,9 +421,9 @@ void MPMGuard::check_lists() const
 }
 
 /* ----------------------------------------------------------------------
-   Pair style granular takes its cutoffs from the radii, but what tells it to do so is not in restart
-   files: with the settings of a file alone cutoffs are anything, mostly 0. Then there are no ghosts,
-   and contacts across ranks and periodic faces are missed without a word.
+   Pair style granular takes its cutoffs from the radii, but restart files lack the data that it needs for this:
+   with the settings of a file alone, cutoffs are undefined, mostly 0. Then there are no ghosts,
+   and contacts across ranks and periodic faces are missed silently.
 ------------------------------------------------------------------------- */
 
 static void check_cutoffs(LAMMPS *lmp)
@@ -451,8 +451,8 @@ static void check_cutoffs(LAMMPS *lmp)
 }
 
 /* ----------------------------------------------------------------------
-   Grains see points by their radius. LAMMPS gives no error for a radius of zero, where no force
-   or one between centers remains, nor for one of 0.5, its default, in other units.
+   Grains see points by their radius. LAMMPS gives no error for a radius of zero, which leaves no force
+   or one between centers, nor for one of 0.5, its default, in other units.
 ------------------------------------------------------------------------- */
 
 void MPMGuard::check_radii() const
@@ -467,7 +467,7 @@ void MPMGuard::check_radii() const
     if (atom->vfrac[i] == 0.0) grains[atom->type[i]] = 1;
   MPI_Allreduce(grains.data(), grains_all.data(), ntypes + 1, MPI_INT, MPI_MAX, world);
 
-  bigint mine[3] = {0, 0, 0}, all[3];    // points that meet them, without radius, too large
+  bigint mine[3] = {0, 0, 0}, all[3];    // points that meet grains, without radius, too large
   tagint example = 0, example_all;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
@@ -529,7 +529,7 @@ void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &c
 
 void MPMGuard::check_positions()
 {
-  // nobody can go on with a point that is nowhere: if it is not deleted, it ends the run as one outside of the box
+  // nothing can be done with a point whose position is not finite: unless it is deleted, it ends the run as one outside the box
 
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++) {
@@ -558,7 +558,7 @@ void MPMGuard::handle_bad_points()
 
 void MPMGuard::wrap_far_points()
 {
-  constexpr double LIMIT = 1.0e6;    // periods; a point that has got so far is lost
+  constexpr double LIMIT = 1.0e6;    // periods; a point that is farther away is lost
   if (neighbor->dist_check && !neighbor->build_once && neighbor->every == 1 &&
       neighbor->delay == 0 && !neighbor->includegroup)
     return;
@@ -583,7 +583,7 @@ void MPMGuard::check_inside_box()
   double **x = atom->x;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
-    bool inside = true, somewhere = true;    // LAMMPS takes or adds one period at the most
+    bool inside = true, somewhere = true;    // LAMMPS wraps by at most one period
     for (int d = 0; d < 3; d++) {
       const double from_middle = fabs(x[i][d] - 0.5 * (domain->boxlo[d] + domain->boxhi[d]));
       if (domain->periodicity[d])
@@ -608,7 +608,7 @@ void MPMGuard::check_inside_box()
 }
 
 /* ----------------------------------------------------------------------
-   LAMMPS says how many atoms are lost, when it writes thermodynamic output, and not which
+   LAMMPS reports the number of lost atoms with thermodynamic output, but not which ones are lost
 ------------------------------------------------------------------------- */
 
 void MPMGuard::tell_lost_atoms() const

@@ -14,30 +14,31 @@
      S dp/dt = - alpha div v - div w,   w = - k (grad p - rho_f g),   S = n/K_f + (alpha - n)/K_s,
 
    sigma' is the stress of the material, w the volume of water that flows through a unit of area, and k the
-   mobility. The acceleration of the water relative to that of the soil is left out, and that of both in w;
-   with both it is mpm_pore_motion.cpp (u-v-p). With Forchheimer's term, -(grad p - rho_f g) = w/k + b |w| w,
-   which for the length of w is a quadratic equation.
+   mobility. The acceleration of the water relative to that of the soil is neglected, and both accelerations
+   are in the equation for w; mpm_pore_motion.cpp has both (u-v-p). With Forchheimer's term,
+   -(grad p - rho_f g) = w/k + b |w| w, which is a quadratic equation for the length of w.
 
    On nodes, with C_p = S_p V_p, and D the matrix of sum_p alpha V_p N_ip grad N_jp,
 
      p_i = sum_p C_p N_ip (p_p + g_p . (x_i - x_p))/C_i,    M dv/dt = ... + D^T p,    C dp/dt = - D v - ...,
 
-   which means that forces have the pressure sum_i N_ip p_i of each point, and that what the motion squeezes
-   out goes to nodes with the same weights: what the pressure takes from the motion is what the water stores,
-   for any position of points in their cells. Both matter. With pressures of their own in forces, several
-   points per cell ask for more constraints than the velocities of the nodes can give (locking). As D maps
-   onto what D^T sees, motion never excites pressures that make no force on nodes, such as one that alternates
-   from node to node. Only what changes the pressure otherwise does: drained faces, see mpm_pore_surface.cpp.
+   so that the pressure sum_i N_ip p_i of each point acts in forces, and the volume that the motion squeezes
+   out goes to nodes with the same weights: the water stores the work that the pressure takes from the motion,
+   for any position of points in their cells. Both matter. If points had their own pressures in forces, several
+   points per cell would ask for more constraints than the velocities of the nodes can satisfy (locking). As D
+   maps onto what D^T sees, motion never excites pressures that make no force on nodes, such as one that
+   alternates from node to node. Only other changes of the pressure do: drained faces, see mpm_pore_surface.cpp.
 
-   Time. v is new when p follows: symplectic Euler, stable up to 2/omega of undrained waves without flow. An
-   explicit step of the flow multiplies a pressure by a = 1 - lambda dt; together they are stable up to
+   Time. The update of p uses the new v: symplectic Euler, stable up to 2/omega of undrained waves without flow.
+   An explicit step of the flow multiplies a pressure by a = 1 - lambda dt; together they are stable up to
    (omega dt)^2 < 2 (1 + a): not at all near the explicit limit a = -1. Stages of RKL2 have a > 0 whatever
-   their number is (their greatest share is 2b < 1 with b = (s^2 + s - 2)/(2 s^2 + 2 s)), hence stages begin
-   at half of that limit, and waves and flow do not make each other's limit smaller. A flow for several steps (mpm_pore_wait.cpp) has one
-   stage up to all of it: the limit is that of nodes at a corner which hardly see a point, and of points in the middle of cells, where
-   pressures that alternate make no force, while a > 0 for what waves excite.
+   their number is (their greatest share is 2b < 1 with b = (s^2 + s - 2)/(2 s^2 + 2 s)). Hence stages begin
+   at half of that limit, and waves and flow do not reduce each other's limit. A flow for several steps
+   (mpm_pore_wait.cpp) has one stage up to the full limit: this is the limit of nodes at a corner that hardly see a
+   point, and of points in the middle of cells, where alternating pressures make no force, while a > 0 for the
+   pressures that waves excite.
 
-   The motion changes the volume of a point by exactly det(I + dt L) - 1, and water is what fills it.
+   The motion changes the volume of a point by exactly det(I + dt L) - 1, and water fills the change.
 ------------------------------------------------------------------------- */
 
 #include "mpm_pore.h"
@@ -117,7 +118,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
   suction.reset();
   if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
   init_layers();
-  // with interfaces, no line through what nodes see tells what is next to the surface
+  // with interfaces, a line through the values of nodes does not give the permeability next to the surface
   const bool varies = !layers && std::any_of(soils.begin(), soils.end(), [](const auto &s) {
     return s.of.law != MPMPoreSoil::CONSTANT;
   });
@@ -136,12 +137,12 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
   }
 }
 
-/** Soils of different permeability in one field get means next to their interfaces (mpm_layer_mean.cpp). One whose permeability depends on its
- *  porosity needs none: this varies as smoothly as its strain, and what a crust at a drained surface lets out is found there
- *  (MPMPoreSurface::mobility_to_surface()). In soil that dries
- *  these are of full pores, and what suction leaves of them is that of each point: it changes by orders of magnitude within a front,
- *  and with means across that water would not get into dry soil. The square of the flow has a mean across interfaces, too; along
- *  them points have their own resistance then, as flows with one gradient and different laws have no common one. */
+/** Sets up means next to interfaces for soils of different permeability in one field (mpm_layer_mean.cpp). A single soil whose permeability
+ *  depends on its porosity needs none: the permeability varies as smoothly as the strain, and MPMPoreSurface::mobility_to_surface() covers
+ *  the flow through a crust at a drained surface. In soil that dries, the means are those of full pores, and each point has its own
+ *  relative permeability: this changes by orders of magnitude within a front, and with means across the front, water would not get into
+ *  dry soil. The square of the flow has a mean across interfaces, too; along them points then keep their own resistance, as flows
+ *  with one gradient and different laws have no common one. */
 void MPMPore::init_layers()
 {
   layers.reset();
@@ -202,8 +203,8 @@ MPMPoreMotion::Pores MPMPore::pores(const Soil &s, int i, double J, double mobil
           quadratic.empty() ? 0.0 : quadratic[i]};
 }
 
-/** Mobility for the flow through the surface: that of the gradient in the step before, as there it is not
- *  known before the flow is. */
+/** Mobility for the flow through the surface. The flow there is not known yet, so the gradient of the step before is
+ *  used. */
 double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, const double *row) const
 {
   if (motion) return motion->response(i, pores(s, i, J, mobility));
@@ -216,13 +217,14 @@ double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, cons
 
 /* ---------------------------------------------------------------------- */
 
-/** Bound of the mobility of a point with layers, k: its own. */
+/** Upper bound of the mobility of a point with layers; k: its own mobility. */
 double MPMPore::most_of_layers(int i, double k) const
 {
   return quadratic.empty() ? layers->most(i) : std::max(k, 1.0 / linear_mean[i]);
 }
 
-/** With drag by the square of the flow, interfaces are where the resistance changes at the flow that points have by their gradient. */
+/** Finds interfaces. With drag by the square of the flow, they are where the resistance changes, at the flow that points have by their
+ *  gradient. */
 void MPMPore::find_layers(const MPMRows &state, const double *formula)
 {
   const int dim = field.lattice.dim;
@@ -269,7 +271,7 @@ void MPMPore::find_layers(const MPMRows &state, const double *formula)
 
 MPMPoreResistance MPMPore::at_interface(int i) const
 {
-  // next to soil without pores nothing flows across, which must not be infinite or, by differences, negative
+  // across to soil without pores there is no flow; the result must be neither infinite nor, by differences, negative
   const auto least = MPMLayerMean::LEAST;
   if (quadratic.empty())
     return {{1.0 / std::max(layers->across(i), least), 1.0 / std::max(layers->along(i), least)},
@@ -277,7 +279,7 @@ MPMPoreResistance MPMPore::at_interface(int i) const
   return {{linear_mean[i], volumes[i] / conductance[i]}, {quadratic_mean[i], quadratic[i]}};
 }
 
-/** Gradients and pressures of points whose soil can dry, see MPMPoreSuction::limit_slope(). */
+/** Limits gradients and pressures of points whose soil can dry, see MPMPoreSuction::limit_slope(). */
 void MPMPore::limit_slopes(const Soil &s, int first, int n, const MPMRows &state,
                            MPMNodeScalar::Rows row) const
 {
@@ -290,7 +292,7 @@ void MPMPore::limit_slopes(const Soil &s, int first, int n, const MPMRows &state
   }
 }
 
-/** Grains and water of points take more room, or less, since temperatures changed after the step before. */
+/** Changes the volume of grains and water of points by the change of temperatures after the step before. */
 void MPMPore::expand(const Soil &s, int first, int n, const double *J, const double *V)
 {
   for (int p = 0; p < n && s.temperature >= 0; p++) {
@@ -380,9 +382,9 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 }
 
 /* ----------------------------------------------------------------------
-   the best fit of nodes to values and gradients, and of gradients to nodes, in turns. Inside of a body a
+   alternates between the best fit of nodes to values and gradients, and of gradients to nodes. Inside a body a
    linear pressure is found at once; next to surfaces, where nodes have points on one side, the error falls
-   from one turn to the next
+   with each iteration
 ------------------------------------------------------------------------- */
 
 void MPMPore::find_gradients(const MPMRows &state, const double *formula)
@@ -452,7 +454,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
       if (nodes.capacity[k] > 0.0) unseen[k] /= nodes.capacity[k];
   }
   if (!surface.any()) return;
-  // places at surfaces look at nodes of periodic images, too
+  // places at surfaces also use nodes of periodic images
   field.nodes.complete(nodes.capacity.data(), 1, 1);
   field.nodes.complete(nodes.volume.data(), 1, 1);
   if (suction)
@@ -463,9 +465,10 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
   if (motion) surface.share_area(nodes);
 }
 
-/** The gradient of the pressure lacks rho_f times the acceleration of the soil in u-p, by which the resistance would take the power
- *  K (rho_f dv/dt)^2. From one step to another the root of the sum of K (rho_f v)^2 changes by no more than dt times the root of that power,
- *  and by as much where a motion keeps its shape, as a standing wave does: a bound that needs no accelerations of points. */
+/** Sums that measure the acceleration that u-p neglects. The gradient of the pressure lacks rho_f times the acceleration of the soil, by
+ *  which the resistance would dissipate the power K (rho_f dv/dt)^2. From one step to another, the root of the sum of K (rho_f v)^2 changes
+ *  at most by dt times the root of that power, and by as much if a motion keeps its shape, as a standing wave does: this bound
+ *  needs no accelerations of points. */
 MPMPore::Inertia MPMPore::inertia(const MPMRows &state) const
 {
   const int dim = field.lattice.dim;
@@ -523,7 +526,7 @@ void MPMPore::take_off()
 
 /* ----------------------------------------------------------------------
    int N p n dA = int (p grad N + N grad p) dV, where the first term is the force of the pressure on nodes:
-   nothing is left inside of the soil, and of the surface what water pushes with
+   nothing is left inside the soil, and at the surface it is the force of the water
 ------------------------------------------------------------------------- */
 
 void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &near,
@@ -624,7 +627,7 @@ void MPMPore::move_water()
   surface.take_flow(of_flow);
 }
 
-/** From the gradient that drives it, in place. */
+/** Flow from the gradient that drives it, in place. */
 static void flow_at_interface(const MPMPoreResistance &r, const double *normal, double *q)
 {
   const double across = MPM_NS::dot(q, normal);
@@ -714,18 +717,18 @@ void MPMPore::find_rates(std::vector<double> &inflow)
 }
 
 /* ----------------------------------------------------------------------
-   What nodes do not see of the pressures of points, r_p, goes in the time in which flow crosses a cell, as in the
-   conduction of heat (mpm_conduction.cpp), and also in about 1/relax of the time in which a wave does, but for what
-   of it is smooth:
+   The part r_p of the pressures of points that nodes do not see decays in the time in which flow crosses a cell, as in
+   the conduction of heat (mpm_conduction.cpp). It also decays in about 1/relax of the time in which a wave crosses a
+   cell, except its smooth part
 
      s_p = sum_i N_ip sum_q C_q N_iq r_q/C_i,  sum_p C_p s_p = sum_p C_p r_p,
 
    as nodes give it back to points without slopes. On the way from nodes to points and back an alternating pressure
    keeps 0.61 of itself with slopes, 0.14 without, and a linear one all, with the errors k^4 and k^2 for a wave with
-   the number k: per time, k^6 is taken from it. So a pressure that alternates with next to no force on nodes, which
-   a load that the lattice does not resolve makes, goes in some crossings of a cell, and one over many cells stays.
-   Without s this would be k^4, and pressures too even in long runs of slow flow. Points need no pass of their own
-   for s: nodes have its values before they give points theirs.
+   the number k: per time, k^6 is removed. So a pressure that alternates with almost no force on nodes, which
+   a load makes that the lattice does not resolve, vanishes in some crossings of a cell, and one over many cells
+   stays. Without s this would be k^4, and affect pressures in long runs of slow flow. Points need no pass of their
+   own for s: nodes have its values before they give points theirs.
 ------------------------------------------------------------------------- */
 
 double MPMPore::rate_of_waves() const
@@ -738,9 +741,9 @@ double MPMPore::rate_of_lag() const
   return slowest / (field.lattice.h * field.lattice.h) + rate_of_waves();
 }
 
-/** By a flow that follows steps without one all that nodes do not see is lost, but for what is smooth. Of a wave with the number k they see,
- *  and give back to points with its slopes, 1 - 0.056 (k h)^4, and without slopes 1 - (k h)^2/4, from the moments of quadratic functions. Soil
- *  that gives way holds the rest. */
+/** Loss of smooth pressures in one flow. A flow that follows steps without flow removes everything that nodes do not see, except its smooth
+ *  part. Nodes see, and give back to points, 1 - 0.056 (k h)^4 of a wave with the number k with its slopes, and 1 - (k h)^2/4
+ *  without slopes, from the moments of quadratic functions. Soil that gives way holds the rest. */
 MPMPore::Smoothing MPMPore::smoothing(double duration) const
 {
   constexpr double PHASE = MathConst::MY_2PI / Smoothing::WAVELENGTH, SQUARE = PHASE * PHASE,
@@ -847,7 +850,7 @@ double MPMPore::wave_speed(int i, double p, double c) const
   if (s->of.retention.can_dry()) {
     const auto moisture = MPMPoreMoisture::at(s->of, J, p, water);
     more = moisture.bishop * std::min(1.0, moisture.filling) / moisture.storage;
-    c *= sqrt(s->fix->density(i) * atom->vfrac[i] / atom->rmass[i]);    // it is that of full pores
+    c *= sqrt(s->fix->density(i) * atom->vfrac[i] / atom->rmass[i]);    // c is that of full pores
   }
   return sqrt(c * c + more / (density * force->mvv2e * force->nktv2p));
 }

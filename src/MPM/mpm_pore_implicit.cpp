@@ -7,24 +7,24 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Pore water in implicit steps. The equations on nodes are those at the top of mpm_pore.cpp, with the pressure p of the end of the step in
-   forces and in flow (backward Euler) and the volume that the motion squeezes out in the whole step:
+   Pore water in implicit steps. The equations on nodes are those at the top of mpm_pore.cpp, with the pressure p at the end of the
+   step in forces and in flow (backward Euler), and the volume that the motion squeezes out in the whole step:
 
      C (p - p0) = - sum_p alpha dV_p N_ip + dt (flow to the node by p) - sum_p b_p V_p grad N_ip . grad (p - p0).
 
-   Capacities, permeabilities, and the places of the flow are those of the start of the step, as in explicit ones; fix mpm/implicit solves
-   for p and the motion together (mpm_implicit_pressure.cpp).
+   Capacities, permeabilities, and the positions of the flow are those at the start of the step, as in explicit ones;
+   fix mpm/implicit solves for p and the motion together (mpm_implicit_pressure.cpp).
 
-   The last term keeps pressures from alternating. Where water has no time to flow through a cell, what the soil makes of the pressure is
-   D K^-1 D^T with its stiffness K: for a wave with q radians from node to node 1/M of it, with the modulus M of soil that cannot widen, but
-   1 - q^2/4 of this for small q and nothing at q = pi, as for linear finite elements, and a pressure that jumps from cell to
-   cell (load on one row of points, drained surface) would overshoot. The flow b grad(p - p0) with b = alpha^2 h^2/(4 M)
-   makes that 1 + O(q^4) (G. Aguilar, F. Gaspar, F. Lisbona, C. Rodrigo, Int. J. Numer. Methods Eng. 75 (2008) 1282). It
-   moves water between nodes, so that none is lost, and vanishes with the change of the pressure in a step: what is
-   steady is as without it. With inertia M is that of a soil that does not get far in the step, M + rho h^2/dt^2.
+   The last term keeps pressures from alternating. Where water has no time to flow through a cell, the soil responds to the pressure
+   by D K^-1 D^T with its stiffness K. For a wave with q radians from node to node, this should be 1/M, with the modulus M of soil that
+   cannot widen. As for linear finite elements, it is 1 - q^2/4 of this for small q and nothing at q = pi, and a pressure that jumps from
+   cell to cell (load on one row of points, drained surface) would overshoot. The flow b grad(p - p0) with b = alpha^2 h^2/(4 M) makes
+   that 1 + O(q^4) (G. Aguilar, F. Gaspar, F. Lisbona, C. Rodrigo, Int. J. Numer. Methods Eng. 75 (2008) 1282). It moves water
+   between nodes, so that none is lost, and vanishes with the change of the pressure in a step: steady states do not depend on it.
+   With inertia M is that of a soil that does not get far in the step, M + rho h^2/dt^2.
 
-   Points keep what nodes do not see of their pressures as long as water needs to cross a cell, as in explicit steps, but
-   with the storage of soil and water together; the same share of it everywhere, so that its sum stays zero.
+   Points keep the part of their pressures that nodes do not see as long as water needs to cross a cell, as in explicit steps, but
+   with the storage of soil and water together. They keep the same share of it everywhere, so that its sum stays zero.
 ------------------------------------------------------------------------- */
 
 #include "mpm_pore.h"
@@ -56,7 +56,7 @@ void MPMPore::begin_solve(double dt, bool inertial)
   const std::size_t nmax = atom->nmax;
   const double h = field.lattice.h, unit = force->mvv2e * force->nktv2p;
   if (!solve) solve = std::make_unique<Solve>();
-  unseen.clear();    // of a step that was not known to be implicit
+  unseen.clear();    // from a step that was not known to be implicit
   Solve &s = *solve;
   s.dt = dt;
   s.capacity = nodes.capacity;
@@ -115,7 +115,7 @@ double MPMPore::find_residual(const std::vector<double> &p, const double *dV, do
     r[k] = s.capacity[k] * (s.start[k] + s.dt * nodes.rate[k] - p[k]);
     if (field.grid.owns((int64_t) k)) taken += s.capacity[k] * fabs(p[k] - s.start[k]);
   }
-  // all that moves may be what comes through the surface, where soil and water were at rest before
+  // where soil and water were at rest before, the flow through the surface may be the only one
   for (int part = 0; part < MPMPoreSurface::NPART; part++) taken += s.dt * fabs(inflow[part]);
   return taken + s.dt * s.carried;
 }
@@ -130,7 +130,7 @@ double MPMPore::response() const
   return sum;
 }
 
-/** Flow of a point by minus the gradient of the pressure, times its volume, in place. */
+/** Flow of a point from minus the gradient of the pressure, times its volume, in place. */
 void MPMPore::conduct(int i, double *q) const
 {
   double more[3];
@@ -165,7 +165,7 @@ void MPMPore::find_changes(const double *p, const double *dV, double *y)
 
 void MPMPore::find_softness(const std::vector<double> &moduli, std::vector<double> &softness)
 {
-  static constexpr double LEAST = 1.0e-3;    // of the elastic modulus, where soil flows
+  static constexpr double LEAST = 1.0e-3;    // least share of the elastic modulus, where soil flows
   const Solve &s = *solve;
   const double h = field.lattice.h;
   softness.assign(atom->nmax, 0.0);
@@ -210,8 +210,8 @@ void MPMPore::each_term(const std::vector<double> &softness, const Term &use)
 }
 
 /* ----------------------------------------------------------------------
-   What the solution leaves of the equations, within its tolerance, goes to the mass of points as well, so that what they get is what comes
-   through the surface to round-off
+   The residual of the equations, within the tolerance of the solution, goes to the mass of points as well, so that points get
+   exactly the water that comes through the surface, to round-off
 ------------------------------------------------------------------------- */
 
 void MPMPore::take_solution(std::vector<double> &inflow)

@@ -16,18 +16,17 @@
      S dp/dt             = - alpha div v - div w
 
    Unknowns are the velocity of the soil on nodes, as without water, the pressure on nodes (mpm_pore.cpp), and
-   w in points. With w in points no boundary condition for it is needed at walls, which may be anywhere in a
-   cell: where no water goes through is where the weak form of div w ends; the places of points do not lose w
-   to the lattice in transfers; and where drag rules, the equations on nodes become those of u-p. The
-   alternative, a velocity of the water on nodes of its own, needs a second set of walls, and damps what
-   transfers do not see.
+   w in points. With w in points, walls need no boundary condition for it, and may be anywhere in a cell: no
+   water goes through where the weak form of div w ends. Points do not lose w to the lattice in transfers, and
+   where drag dominates, the equations on nodes become those of u-p. The alternative, a separate velocity of the
+   water on nodes, needs a second set of walls, and damps the part of w that transfers do not see.
 
-   Drag. In a step with the duration t all but w is constant, and w is integrated exactly: with the rate of
+   Drag. In a step with the duration t everything except w is constant, and w is integrated exactly: with the rate of
    drag r = n R/rho_f and the mean f = (1 - exp(-r t))/(r t) of its decay,
 
      w' = w + t f n (A - a),    A = g - (grad p + R w)/rho_f.
 
-   That is a fading difference without acceleration, and Darcy's law where r t is large, so that drag does not
+   That is a decaying difference without acceleration, and Darcy's law where r t is large, so that drag does not
    limit the step: leapfrog of waves with this factor is stable up to 2/omega of the waves without drag
    (f < (1 + exp(-r t))/2).
 
@@ -36,20 +35,19 @@
 
      (m_i - mu_i) a_i = F_i - sum_p mu_p N_ip A_p,    a_p = sum_i N_ip a_i,
 
-   so that both unknowns are solved at once, node by node. What walls and contact do to the node they do to
-   the mass m_i - mu_i, which is what they feel. Momentum is kept to round-off, as mu_i is the sum of mu_p
-   N_ip; the inverse of the mass matrix, (1/s, -N^T/s; -N/s, n/(rho_f V) + N N^T/s) with s = m_i - mu_i, is
-   symmetric and positive, as soil is heavier than its water: waves have an energy which this integration
-   keeps bounded.
+   so that both unknowns are solved at once, node by node. Walls and contact act on the mass m_i - mu_i of the
+   node. Momentum is kept to round-off, as mu_i is the sum of mu_p N_ip. The inverse of the mass matrix,
+   (1/s, -N^T/s; -N/s, n/(rho_f V) + N N^T/s) with s = m_i - mu_i, is symmetric and positive, as soil is heavier
+   than its water: waves have an energy which this integration keeps bounded.
 
    Surface. Where the pressure p_s outside is given, the flow out of an area A with the normal m is that of
-   the points next to it, Q = A m . <w>, and by the same weights c_p of this mean what is left of the pressure
-   difference drives these points, with A m c_p (p - p_s)/V_p beside - grad p. This is how the weak form of
-   the second equation has a given pressure, and as what it takes from the flow is what comes to the pressure,
-   it is part of the same symmetric system as all else. One pressure makes no flow: one that rises to the
-   surface with just the gradient of its own push, for which nodes beyond the surface give room. So there
-   flows what a step would make of p - p_s from rest, too. A linear pressure is a solution, and whatever flows
-   is bounded by the resistance: a surface that is loaded faster than water can leave does not make pressures
+   the points next to it, Q = A m . <w>. With the same weights c_p of this mean, the remaining pressure
+   difference drives these points by A m c_p (p - p_s)/V_p in addition to - grad p. In this way, the weak form
+   of the second equation includes a given pressure. What this term takes from the flow goes to the pressure, so
+   it is part of the same symmetric system as everything else. One pressure makes no flow: one that rises to the
+   surface with just the gradient that balances its own push, for which nodes beyond the surface leave room. So the
+   flow that p - p_s would make from rest in a step is added. A linear pressure is a solution, and
+   the resistance bounds every flow: a surface that is loaded faster than water can leave does not make pressures
    oscillate.
 
    A resistance that depends on w (Forchheimer) is taken at the flow w* that an implicit step would leave,
@@ -120,7 +118,7 @@ double MPMPoreMotion::response(int i, const Pores &pores) const
   return std::isfinite(resistance) ? -expm1(-fading(pores, resistance)) / resistance : 0.0;
 }
 
-/** Vectors of nodes, the first reals of each, to field.work.vectors of points. */
+/** Interpolates vectors of nodes, the first reals of each, to field.work.vectors of points. */
 void MPMPoreMotion::to_points(std::vector<double> &of_nodes, const Wanted &wanted)
 {
   field.nodes.complete(of_nodes.data(), WIDTH, field.lattice.dim);
@@ -182,8 +180,8 @@ void MPMPoreMotion::begin_point(int i, const Pores &pores, const MPMPoreResistan
   for (int d = 0; d < dim; d++) mine[d] = free[d] - unit * resistance * w[d];
 }
 
-/** Drag differs across and along the interface, and so does the mean of its decay; what the acceleration of the soil
- *  takes of the flow is that of the stronger one in both. */
+/** Starts the step of w at an interface. Drag differs across and along the interface, and so does the mean of its decay; the stronger
+ *  drag determines the effect of the acceleration of the soil on the flow in both directions. */
 void MPMPoreMotion::begin_at_interface(int i, const Pores &pores, const MPMPoreResistance &r,
                                        const double *normal, const double *w, const double *free)
 {
@@ -213,7 +211,7 @@ void MPMPoreMotion::begin_at_interface(int i, const Pores &pores, const MPMPoreR
 }
 
 /* ----------------------------------------------------------------------
-   to [node][8] = sums over points of weight times vector, 0, and of the weight: weigh(i, weight, vector)
+   sums over points to [node][8]: weight times vector, 0, and weight, from weigh(i, weight, vector)
 ------------------------------------------------------------------------- */
 
 template <class Weigh>
@@ -253,7 +251,7 @@ void MPMPoreMotion::take_off()
 }
 
 /* ----------------------------------------------------------------------
-   Also the ledger, which has seen nodes without the mass that moves by itself: to the soil, the inertia of
+   Includes the ledger, which has seen nodes without the mass that moves by itself: for the soil, the inertia of
    the water is a force, whose work is like that of the pressure
 ------------------------------------------------------------------------- */
 

@@ -15,39 +15,40 @@
 
    so that the storage is n (dS/dp + S/K) as far as p is small beside K. Grains are rigid.
 
-   The water of a point is what flow has brought to it: its volume W is a state of the point, and what W grows
-   by goes to the mass of the point, too. The pressure follows from w = W/(volume of pores), the mixed form
-   (M.A. Celia, E.T. Bouloutas, R.L. Zarba, Water Resour. Res. 26 (1990) 1483): a step is linear in p, with
-   the capacity at its start, and what this would get wrong where the capacity changes by orders of magnitude,
-   at fronts and the water table, is no error in the mass of water but one of the time at which it comes. The
+   Flow brings water to a point: its volume W is a state of the point, and each increase of W also goes to the
+   mass of the point. The pressure follows from w = W/(volume of pores), the mixed form
+   (M.A. Celia, E.T. Bouloutas, R.L. Zarba, Water Resour. Res. 26 (1990) 1483). A step is linear in p, with
+   the capacity at its start. Where the capacity changes by orders of magnitude, at fronts and the water table,
+   this makes no error in the mass of water, but one in the time at which it comes. The
    volume of pores is that after the motion of the step, so that a closed body of any motion keeps both W and
-   the relation of p and W. Only where pores are full before and after the step p is what the step makes it,
-   as 1e-16 of W are 1e-7 Pa of water, and as in soil that is always full.
+   the relation of p and W. Only where pores are full before and after the step, p is taken from the step, as in
+   soil that is always full, because 1e-16 of W are 1e-7 Pa of water.
 
-   Lag. What nodes do not see of the pressures of points, p_p - sum_i N_ip p_i, goes at the rate k/(G C h^2)
-   in which flow crosses a cell and, in full pores, in some crossings of waves (mpm_pore.cpp). In dry soil
-   flow takes 1e5 times as long, and at the rate of full pores points would have the pressure of nodes after
-   each step, which is a diffusion of its own: the share of waves falls as the storage grows. With factors e_p
+   Lag. The part of the pressures of points that nodes do not see, p_p - sum_i N_ip p_i, decays at the rate
+   k/(G C h^2) in which flow crosses a cell and, in full pores, in some crossings of waves (mpm_pore.cpp). In dry
+   soil flow takes 1e5 times as long, and at the rate of full pores points would have the pressure of nodes after
+   each step, which would be a numerical diffusion: the share of waves falls as the storage grows. With factors e_p
    of a step that differ from point to point the sum of C_p e_p (p_p - ...) is not zero, and water would be
    lost. Hence nodes get the rate C_p (e - e_p) (p_p - ...)/dt, with the greatest factor e: with the weights
-   N_ip, of which the sum is one, what all points and nodes have together is kept, and in full pores nothing
+   N_ip, whose sum is one, the total of all points and nodes is kept, and in full pores nothing
    changes.
 
    Full pores next to very dry soil. The conductance is that at the start of a step, while the capacity of
-   full pores is next to nothing: in one step more water would leave them than they have. Hence a flow of more
-   than a fifth of the water of a point through a cell in a step is held at that; where pores are full on both
-   sides, flow is never so fast but in steps much too long for the scene.
+   full pores is almost zero: in one step more water would leave them than they have. Hence the flow through a
+   cell in a step is limited to a fifth of the water of a point. Where pores are full on both sides, flow is
+   never so fast, except in steps much too long for the scene.
 
    Slopes. Nodes get p_p + g_p (x_i - x_p) with the gradient g_p of the step before (mpm_pore.cpp). At a front
    that falls by many 1/alpha within a cell, this made pressures far above those of any point at nodes next to
-   it: the front held its own water back, to a third of what comes into a dry soil at a surface that stays wet, and
-   more of it on finer lattices and with stiffer water. Hence the part of g_p that differs from water at rest changes the
-   pressure of points with suction through a cell by 1/alpha + s at the most, with the suction s, in which S and k_r change
-   by a factor. As sum_i N_ip (x_i - x_p) = 0, any g_p leaves the water of all points what it is.
+   it: the front held its own water back, to a third of the inflow into a dry soil at a surface that stays wet, and
+   more so on finer lattices and with stiffer water. Hence the part of g_p that differs from water at rest changes
+   the pressure of points with suction through a cell by 1/alpha + s at most, with the suction s, in which S and
+   k_r change by a factor. As sum_i N_ip (x_i - x_p) = 0, any g_p leaves the water of all points unchanged.
 
    Surface. Through half a cell next to the surface, water comes in with the mean of the permeabilities at the
-   pressure outside and inside: rain on dry soil would otherwise not get in. It leaves with that inside: what
-   leaves the nodes at the surface must be able to come to them, or their pressure would fall without bound.
+   pressure outside and inside: rain on dry soil would otherwise not get in. It leaves with the permeability
+   inside: the water that leaves the nodes at the surface must be able to reach them, or their pressure would fall
+   without bound.
 ------------------------------------------------------------------------- */
 
 #include "mpm_pore_suction.h"
@@ -69,9 +70,9 @@ static constexpr double FULLEST =
     100.0;    // pressure times alpha, above which water that fills the last pores is very stiff
 static constexpr double STIFF_ENOUGH = 300.0;    // bulk modulus of the water times alpha
 static constexpr double MOST_LAG =
-    0.1;    // of the water of a point that leaves by its lag in a step
+    0.1;    // largest share of the water of a point that leaves by its lag in a step
 static constexpr double UNDERSHOOT =
-    0.05;    // water that a point may have too little, in its pores
+    0.05;    // largest lack of water of a point, relative to its pores
 
 /* ---------------------------------------------------------------------- */
 
@@ -88,7 +89,7 @@ MPMPoreMoisture MPMPoreMoisture::at(const MPMPoreSoil &soil, double J, double p,
           state.bishop};
 }
 
-/** Newton's method within bounds. */
+/** Pressure for this filling, by Newton's method within bounds. */
 double MPMPoreMoisture::pressure(const MPMPoreSoil &soil, double filling, double before,
                                  double guess, const MPMPoreWater &water)
 {
@@ -119,7 +120,7 @@ double MPMPoreMoisture::pressure(const MPMPoreSoil &soil, double filling, double
   return p;
 }
 
-/** By the rule of Gauss with four points, for parts that are longer the greater the suction is. */
+/** Energy by Gauss quadrature with four points, in intervals that grow with the suction. */
 double MPMPoreMoisture::energy(const MPMPoreSoil &soil, double J, double p,
                                const MPMPoreWater &water)
 {
@@ -240,7 +241,7 @@ double MPMPoreSuction::take_motion(int i, double more, double dt)
   Point &point = of[i];
   point.full += more;
   point.keep = exp(-point.keep * dt);
-  // a wet point in dry soil: its capacity is not that of the way to the pressure there
+  // a wet point in dry soil: its capacity does not hold on the way to the pressure there
   const double lag = fabs(point.lag) * point.capacity, most = MOST_LAG * point.filling * point.full;
   if ((1.0 - point.keep) * lag > most) point.keep = 1.0 - most / lag;
   return point.filling;
@@ -270,7 +271,7 @@ double MPMPoreSuction::take_water(int i, const MPMPoreSoil &soil, double before,
   return now;
 }
 
-/** Once on each rank that has such a point. */
+/** Warns, once on each rank that has such a point. */
 void MPMPoreSuction::tell_of_stiff_water(int i, const MPMPoreSoil &soil, double p)
 {
   if (told) return;

@@ -8,31 +8,31 @@
 
 /* ----------------------------------------------------------------------
    The sum g_i = sum_p V_p grad N_ip of a node is the integral of its function over the surface of the soil,
-   times the normal: nothing inside, and the area of surface that belongs to the node. The volume at the node
-   over this area tells how deep below the surface the node is (MPMNodeProfile). Of the nodes on a line
-   through the surface, those within a node spacing stand for it, with shares 1 - |depth| that have the sum
-   one, and on a surface that is inclined the sum one in the mean; what is missing of the area at a node, at
-   the sides of a body, is missing in its share.
+   times the normal: zero inside, and at the surface the area that belongs to the node. The volume at the node
+   over this area gives the depth of the node below the surface (MPMNodeProfile). Of the nodes on a line
+   through the surface, those within a node spacing represent it, with shares 1 - |depth|. Their sum is
+   one, and on an inclined surface it is one in the mean; where a node lacks area, at the sides of a body, its
+   share is smaller by as much.
 
    The place of a node is s = half a node spacing below the surface, where
 
      q = k (p(s) - p_s - rho_f g . (x(s) - x_s))/s
 
-   is the flow by the pressure p_s at the surface, where it leaves the nodes: with it, a pressure that is
-   linear up to the surface is a solution on nodes, too. Were the water taken where the pressure is, a column
+   is the flow from the pressure p_s at the surface, where it leaves the nodes: with it, a pressure that is
+   linear up to the surface is a solution on nodes, too. If the water were taken where the pressure is, a column
    of 10 cells between two drained faces would let through 3.8 % too much.
    To hold p = p_s at the surface itself, as heat does, lets the water of a whole cell out at once: where
    water has not yet had the time to flow through a cell, pressures then oscillate from the surface into the
-   soil, the more, the less permeable it is (a column of 20 cells, K_f = 2.2e9, M = 1.35e7, loaded in 10 ms, k
-   = 1e-8: by 30 % of the load three cells below the surface; with this 0.8 %, which are waves). What can flow
-   is bounded by the permeability here.
+   soil, and more so the less permeable it is (a column of 20 cells, K_f = 2.2e9, M = 1.35e7, loaded in 10 ms, k
+   = 1e-8: by 30 % of the load three cells below the surface; with this method 0.8 %, which are waves). Here,
+   the permeability bounds the flow.
 
-   With a k that changes with the depth, 1/k is the mean of that from the surface to s. Nodes have means of k over some node
-   spacings, of which the mean at the place of the node would be that of soil deeper than s: where soil consolidates and k
+   With a k that changes with the depth, 1/k is its mean from the surface to s. Nodes have means of k over some node
+   spacings, and the mean at the place of the node would be that of soil deeper than s: where soil consolidates and k
    falls by ten within a cell of the drained surface, 20 cells would settle 2 % too much, and 10 cells 10 %. So a line through
    the means of the nodes, at the depths of the soil that they see, gives k at both ends of s, and between these it is linear.
 
-   Each place is one of the rank that owns its node, so that sums over ranks follow.
+   Each place belongs to the rank that owns its node; sums over ranks follow.
 ------------------------------------------------------------------------- */
 
 #include "mpm_pore_surface.h"
@@ -55,22 +55,22 @@ using namespace MPM_NS;
 
 enum { VOLUME = 3, GRADIENT = 4 };    // reals of a record
 
-static constexpr double INSET = 0.5;    // of places below the surface, in node spacings
-// gaps between material and a face of the box up to which it touches, and from which on not
+static constexpr double INSET = 0.5;    // depth of places below the surface, in node spacings
+// gaps between material and a face of the box, in node spacings, up to which they touch, and from which on they are apart
 static constexpr double TOUCHES = 0.25, IS_APART = 0.5;
-// such gaps up to which they may be noise of sums over points, and from which on the soil ends there and not at the face
+// gaps that may be noise of sums over points, and gaps from which on the soil ends there and not at the face
 static constexpr double AT_FACE = 0.05, OFF_FACE = 0.1;
-// permeabilities on the line through those of nodes, over the least and the greatest of these: means of what changes within
-// a cell hide its extremes
+// limits of permeabilities on the line through those of nodes, relative to the least and the greatest of these: means of
+// a permeability that changes within a cell hide its extremes
 static constexpr double LOW = 0.25, HIGH = 2.0;
-static constexpr double LEAK = 0.5;       // of what a step makes from rest, for water with inertia
-static constexpr double FULL = 0.97;      // of a cell: sums over points are not exactly integrals
-static constexpr double ENOUGH = 0.01;    // of a cell at a node, for its whole weight
+static constexpr double LEAK = 0.5;     // share of the flow of a step from rest, with inertia
+static constexpr double FULL = 0.97;    // share of a cell; sums over points are not exact integrals
+static constexpr double ENOUGH = 0.01;    // share of a cell at a node, for its whole weight
 static constexpr double ONE_SIDED =
-    0.8;    // of the area at a node is left of its normals, unless surfaces face each other there
-static constexpr double MOSTLY = 0.5;    // part of a place that has water, for its whole area
+    0.8;    // share of the area at a node that its normals keep, unless surfaces face each other there
+static constexpr double MOSTLY = 0.5;    // share of a place that has water, for its whole area
 static constexpr double NOISE =
-    0.1;    // of the area of a cell: no surface, but sums that are not integrals
+    0.1;    // share of the area of a cell below which there is no surface, but an error of sums
 
 /* ---------------------------------------------------------------------- */
 
@@ -110,8 +110,8 @@ void MPMPoreSurface::extend_topology()
     }
 }
 
-/** Blocks that are not full of material, and those next to them. What a rank has of a block does not tell
- *  that: where one of the ranks that share it finds it near, all must add their points. */
+/** Finds blocks that are not full of material, and those next to them. The part of a block on one rank is not enough to decide:
+ *  if one of the ranks that share it finds it near, all must add their points. */
 void MPMPoreSurface::find_blocks_near()
 {
   const auto &blocks = field.grid.blocks;
@@ -152,8 +152,8 @@ bool MPMPoreSurface::is_near(int slot) const
   });
 }
 
-/** Volumes of nodes, and what is minus the force of the stress -I, with the gradients of the functions:
- *  those that moving least squares take in their place see a surface elsewhere. */
+/** Maps volumes of nodes, and minus the force of the stress -I, with the gradients of the functions: the replacements of
+ *  moving least squares would see a surface elsewhere. */
 void MPMPoreSurface::map_volume()
 {
   const auto &pic = field.pic;
@@ -164,7 +164,7 @@ void MPMPoreSurface::map_volume()
   work.stress.resize(6 * nmax);
   PointRows rows = field.rows_at_rest(work.vectors.data(), work.weights.data());
   rows.tau = work.stress.data();
-  // read, and multiplied by zero: the means that steps of every K have in this place are not there before the first one
+  // read, and multiplied by zero: the means that steps of every K store here do not exist before the first such step
   rows.f = &field.atom->f[0][0];
   TransferStep step = field.step_data(1.0);
   step.force_scale = 0.0;
@@ -199,10 +199,10 @@ double MPMPoreSurface::pressure_outside(const MPMPoreCondition &c, const double 
     along += gravity[d] * x[d];
   }
   const double p = water.density * force->nktv2p * (sqrt(size) * c.now + along);
-  return std::max(0.0, p);    // above the table there is air
+  return std::max(0.0, p);    // above the water table there is air
 }
 
-/** at: on the surface; normal: out of the soil. */
+/** Adds a place; at: on the surface, normal: out of the soil. */
 void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, double touch,
                                const double *at, const double *normal, double open)
 {
@@ -232,7 +232,7 @@ void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, doubl
   if (place.n && place.n_at) places.push_back(place);
 }
 
-/** What is left of the free surface at a place next to bodies that close it. */
+/** Open share of the free surface at a place next to bodies that close it. */
 double MPMPoreSurface::open_part(const double *x) const
 {
   if (!distance_to_seals) return 1.0;
@@ -240,7 +240,7 @@ double MPMPoreSurface::open_part(const double *x) const
   return std::clamp((gap - TOUCHES) / (IS_APART - TOUCHES), 0.0, 1.0);
 }
 
-/** Only next to bodies, which close it all if they do. */
+/** Sets p to the pressure outside, times a factor, unless the surface is closed, has a flux, or bodies can close it. */
 void MPMPoreSurface::replace_by_outside(const double *x, double factor, double &p) const
 {
   const auto &c = conditions[FREE];
@@ -249,7 +249,7 @@ void MPMPoreSurface::replace_by_outside(const double *x, double factor, double &
   p = factor * pressure_outside(c, x);
 }
 
-/** The nodes that a place reaches; returns their number, 0: not all of them are there. */
+/** Adds the nodes that a place reaches. Returns their number; 0: some of them do not exist. */
 int MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
 {
   const std::size_t first = node.size();
@@ -260,9 +260,9 @@ int MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
   return there ? (int) (node.size() - first) : 0;
 }
 
-/** Of the line of nodes through this one and a face of the box: sum_i x_i g_i/sum_i g_i is the place of a surface, and
- *  sum_i g_i the share of the area of the line that it has, both exactly for points in even distances: those of one node are off
- *  by up to 5 %. A gap that may be noise is 0. */
+/** End of the material on the line of nodes through this one and a face of the box. sum_i x_i g_i/sum_i g_i is the place of a
+ *  surface, and sum_i g_i its share of the area of the line. Both are exact for evenly spaced points, while those of one node have
+ *  errors of up to 5 %. A gap that may be noise is 0. */
 MPMPoreSurface::End MPMPoreSurface::end_at_face(const int *index, int face, double wall) const
 {
   const auto &lattice = field.lattice;
@@ -317,7 +317,7 @@ void MPMPoreSurface::find_places()
         g[d] = nodes[number * field.pic.nreal + GRADIENT + d] / side;
       }
 
-      // what a face of the box takes is not free
+      // the part of the surface at a face of the box is not free
 
       for (int face = 0; face < 2 * dim; face++) {
         const int axis = face / 2;
@@ -337,7 +337,8 @@ void MPMPoreSurface::find_places()
         double at[3] = {x[0], x[1], x[2]}, normal[3] = {0.0, 0.0, 0.0};
         at[axis] = wall - sign * end.gap * h;
         normal[axis] = sign;
-        // a flux brings as much as its area is, that of the line; with pressures the resistance of the soil decides, of which a node has its own part
+        // a flux is proportional to its area, that of the line; with pressures the resistance of the soil decides, of which each
+        // node has its own part
         const bool is_flux = conditions[face].kind == MPMPoreCondition::FLUX;
         const double part = is_flux ? end.share : std::min(1.0, out / function(below));
         add_place(stencil, face, touch * part * (1.0 - fabs(below)) * side, touch, at, normal);
@@ -369,9 +370,9 @@ bool MPMPoreSurface::by_area() const
   return kind == MPMPoreCondition::FLUX || kind == MPMPoreCondition::RAIN;
 }
 
-/** Area of the free surface at places, where a volume of water for each area and time is given: that which nodes next to a place have, which is the integral of
- *  their functions over the surface, over what they would have by the areas of places so far. Where surfaces face each other, normals cancel
- *  at nodes between these, which then know less than others. */
+/** Area of the free surface at places with a given volume of water per area and time. It is the area of the nodes next to a place, which is
+ *  the integral of their functions over the surface, relative to the area that the places give them so far. Where surfaces face
+ *  each other, normals cancel at nodes between these, which then have less weight than others. */
 void MPMPoreSurface::find_areas()
 {
   const int dim = field.lattice.dim, width = 1 + dim;
@@ -387,7 +388,7 @@ void MPMPoreSurface::find_areas()
     });
   field.nodes.sum(sums.data(), width, 0, width);
   field.nodes.complete(sums.data(), width, width);
-  field.nodes.sum(free_normals.data(), dim, 0, dim);    // ranks have those of their nodes
+  field.nodes.sum(free_normals.data(), dim, 0, dim);    // each rank has the normals of its nodes
   field.nodes.complete(free_normals.data(), dim, dim);
   for (auto &place : places) {
     double area = 0.0, known = 0.0;
@@ -409,11 +410,11 @@ void MPMPoreSurface::find_areas()
 
 /* ---------------------------------------------------------------------- */
 
-/** Makes the sum of weights one; enough: capacity of a node for its whole weight. Returns the sum before.
+/** Scales the weights to the sum one; enough: capacity from which on a node has its whole weight. Returns the sum before.
  *
- *  A point in the middle of a cell gives a node that is out of reach of all others next to no capacity.
- *  Conduction bounds what a node stores, C p^2, hence p there may be as large as 1/sqrt(C): such nodes
- *  must not be asked with their whole weight, neither for water nor for their pressure. */
+ *  A point in the middle of a cell gives almost no capacity to a node that is out of reach of all others.
+ *  Conduction bounds the stored C p^2 of a node, so p there may be as large as 1/sqrt(C): such nodes
+ *  must not have their whole weight, neither for water nor for their pressure. */
 double MPMPoreSurface::normalize(int first, int n, double enough,
                                  const std::vector<double> &capacity)
 {
@@ -433,14 +434,14 @@ double MPMPoreSurface::suction_outside(int part) const
   return c.kind == MPMPoreCondition::PRESSURE ? std::min(0.0, c.now) : 0.0;
 }
 
-/** Mean of the mobilities between the surface and a place with the resistances of both in series: linear in the depth, by the
- *  sums over points of capacity times mobility, conductance, and of capacity at its nodes. */
+/** Mean of the mobilities between the surface and a place, with the resistances of both in series. The mobility is linear in the depth, by
+ *  the sums over points of capacity times mobility (conductance) and of capacity at its nodes. */
 double MPMPoreSurface::mobility_to_surface(const Place &place,
                                            const std::vector<double> &conductance,
                                            const std::vector<double> &capacity) const
 {
-  constexpr double SPREAD = 1.0e-3;    // of depths, too small for a slope
-  constexpr double SAME = 1.0e-4;      // change of the mobility that is none
+  constexpr double SPREAD = 1.0e-3;    // spread of depths that is too small for a slope
+  constexpr double SAME = 1.0e-4;      // relative change of the mobility that counts as none
   const auto &grid = field.grid;
   const auto &lattice = field.lattice;
   double z = 0.0, zz = 0.0, mean = 0.0, zk = 0.0;
@@ -469,10 +470,10 @@ double MPMPoreSurface::mobility_to_surface(const Place &place,
   return (inside - top) / log(inside / top);
 }
 
-/** With the lists a_k of weights where water comes in and b_k where the pressure is taken, the exchange is
- *  the matrix sum_k c_k a_k b_k^T, which is not symmetric: what counts is its norm, not its eigenvalues,
- *  as conduction is added to it. In the norm of the capacities it is at most that of sum_k c_k a_k a_k^T
- *  and of sum_k c_k b_k b_k^T in the geometric mean, and these are at most their greatest sum of a row,
+/** With the weights a_k for the inflow of water and b_k for the pressure, the exchange is the matrix
+ *  sum_k c_k a_k b_k^T, which is not symmetric. As conduction is added to it, its norm counts, not its
+ *  eigenvalues. In the norm of the capacities it is at most the geometric mean of the norms of sum_k c_k a_k a_k^T
+ *  and sum_k c_k b_k b_k^T, and these are at most their greatest sum of a row,
  *  (sum_k c_k a_ki)/C_i, as weights have the sum one. */
 double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage, const Wet *wet)
 {
@@ -486,14 +487,14 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
       const double V = nodes[node[k] * field.pic.nreal + VOLUME];
       has_water = has_water || (V > ENOUGH * cell && capacity[node[k]] > 0.0);
     }
-    // the surface may be that of another material, without water
+    // the surface may belong to another material, without water
     const double inside = normalize(place.first, place.n, enough, capacity);
     const double at = normalize(place.first_at, place.n_at, enough, capacity);
     has_water = has_water && inside > 0.0 && at > 0.0;
     place.area *= has_water ? std::min(1.0, std::min(inside, at) / MOSTLY) : 0.0;
     const std::vector<double> *outer = nullptr;
     if (wet) outer = &wet->conductance[suction_outside(place.part) < 0.0 ? 1 + place.part : 0];
-    double K = 0.0, K_in = 0.0, C = 0.0, full = 0.0;    // that of full pores, where it varies
+    double K = 0.0, K_in = 0.0, C = 0.0, full = 0.0;    // full pores, if it varies
     for (int k = place.first; k < place.first + place.n && has_water; k++) {
       const double inner = scalar.volume[node[k]];
       K += weight[k] * inner;
@@ -524,10 +525,10 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
 }
 
 /* ----------------------------------------------------------------------
-   What an even flow brings to a node by its sum over points, w . g_i, must go through the surface there: else
-   pressures of nodes beyond the surface grow until they stop the flow next to it. So each place takes from
-   its nodes their g_i instead of the values of their functions, shared with other places by these. Where they
-   have their mean place is where the pressure outside counts.
+   The flow that a uniform gradient brings to a node by its sum over points, w . g_i, must go through the surface there:
+   otherwise pressures of nodes beyond the surface grow until they stop the flow next to it. So each place takes
+   from its nodes their g_i instead of the values of their functions, shared with other places by these. The
+   pressure outside counts at the mean position of these nodes.
 ------------------------------------------------------------------------- */
 
 void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)
@@ -592,7 +593,7 @@ void MPMPoreSurface::find_push(const MPMNodeScalar &scalar, std::vector<double> 
     for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
       const double V = nodes[nreal * node[k] + VOLUME];
       if (!(weight[k] > 0.0 && V > 0.0)) continue;
-      // the gradient is that of a fall to the pressure outside
+      // the gradient corresponds to a drop to the pressure outside
       for (int d = 0; d < 3; d++)
         of_nodes[nreal * node[k] + d] -= weight[k] * ahead / V * place.normal[d];
     }
@@ -621,7 +622,7 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
     const auto &condition = conditions[place.part];
     double Q = place.area * condition.now;
     const double p = at_surface(scalar, place);
-    // where a pressure is given, water comes and goes with that, and what p is off is dissipated
+    // where a pressure is given, water comes and goes with it, and the difference to p is dissipated
     double behind = p;
     if (condition.kind != MPMPoreCondition::FLUX) {
       double inside = 0.0;

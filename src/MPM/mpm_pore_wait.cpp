@@ -9,16 +9,17 @@
 /* ----------------------------------------------------------------------
    Steps between two flows of pore water, in which no water leaves its point (keyword every of fix mpm/pore).
 
-   The motion changes the pressure of a point by dp = - alpha dV/C, with the change dV of its volume since the last flow and what it
-   stores, C = S V. That needs no nodes, and forces have p + dp. The step with the flow takes dp to nodes with the weights of each step
-   that does not wait (mpm_pore.cpp), so that nodes see the same of the motion, and points get the pressure of nodes: what these
-   cannot see of dp, with which points would lock, is lost before it is more than what waves make of it in so many steps.
+   The motion changes the pressure of a point by dp = - alpha dV/C, with the change dV of its volume since the last flow and its
+   storage C = S V. This needs no nodes, and forces have p + dp. The step with the flow takes dp to nodes with the same weights as
+   each step that does not wait (mpm_pore.cpp), so that nodes see the same part of the motion, and points get the pressure of
+   nodes. The part of dp that nodes cannot see, with which points would lock, is lost before it exceeds the effect of waves in so
+   many steps.
 
-   A flow in the step after another one is that of fix mpm/pore without waits, to the last bit.
+   A flow right after a step with flow is the same as without waits, to the last bit.
 
-   The flow begins with all of dp but that of its own step. With what the motion squeezes out spread over the time of the flow, forces would
-   have the flow half of that time too late, and waves a frequency that is too high by a quarter of what flow takes of their pressure in
-   that time.
+   The flow starts with all of dp except that of its own step. If the squeezed volume were spread over the time of the flow, the flow
+   would act in forces half of that time too late, and waves would have a frequency that is too high by a quarter of the share of
+   their pressure that flow takes in that time.
 ------------------------------------------------------------------------- */
 
 #include "mpm_pore.h"
@@ -33,7 +34,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Of a point with this J, since the last flow. */
+/** Change of the pressure of a point with this J since the last flow. */
 double MPMPore::undrained(const Soil &s, int i, double J) const
 {
   const double last = (*waiting)[i];
@@ -46,7 +47,8 @@ double MPMPore::undrained(int i) const
   return s ? undrained(*s, i, field.points->jacobian(i)) : 0.0;
 }
 
-/** The flow begins: all of it is in the pressure of points, and in forces. Squeezed has their volumes, and capacity what these store. */
+/** Starts a flow: all changes go into the pressure of points, and into forces. squeezed has the volumes of points, and capacity their
+ *  storage. */
 void MPMPore::gather(const Soil &s, int first, int n, const double *J, const MPMRows &state)
 {
   const int width = 1 + field.lattice.dim;
@@ -69,8 +71,8 @@ void MPMPore::gather(const Soil &s, int first, int n, const double *J, const MPM
   std::copy_n(J, n, last);
 }
 
-/** With quadratic functions, velocities of nodes that alternate along an axis have no slope at nodes, and one of two in a cell in the
- *  middle between them, for velocities of 1 and -1; in between it is linear. */
+/** Measures how much points lie in layers. With quadratic functions, velocities of nodes that alternate between 1 and -1 along an axis have
+ *  the slope 0 at nodes, and 2 per cell in the middle between them; in between the slope is linear. */
 void MPMPore::look_at_layers(Layers &sum, int first, int n, const double *V) const
 {
   double volume = 0.0;
@@ -128,7 +130,7 @@ void MPMPore::begin_wait(const MPMRows &state)
       for (int p = 0; p < n; p++) unknown += !(last[p] > 0.0);
       for (int p = 0; unknown && p < n; p++) last[p] = last[p] > 0.0 ? last[p] : J[p];
       for (int p = 0; p < n; p++, row += width) p_old[p] = row[0];
-      // apart from the rest, where the compiler has vectors for divisions
+      // a loop of its own, which the compiler can vectorize with its divisions
       s->of.storage_at(n, J, water, storage);
       for (int p = 0; p < n; p++)
         part[p] = alpha * (J[p] * p_old[p] + alpha * J[p] * (last[p] - J[p]) / storage[p]);

@@ -69,7 +69,7 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   }
 
   const auto limits = [&](int i, double speed) {
-    if (speed * smallest <= field.lattice.h) return false;    // NaN does not pass unseen
+    if (speed * smallest <= field.lattice.h) return false;    // a NaN must not be skipped
     smallest = field.lattice.h / speed;
     id_min = atom->tag[i];
     return true;
@@ -78,7 +78,7 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   for (int i = 0, last; i < atom->nlocal && !std::isnan(smallest); i = last) {
     last = i + 1;
     if (!field.is_point(i)) continue;
-    if (field.is_element_node(i)) {    // must not cross a cell in a step; the rest: FixMPMElements
+    if (field.is_element_node(i)) {    // must not cross a cell; the rest: FixMPMElements
       if (!field.frame->is_total()) limits(i, sqrt(dot(atom->v[i], atom->v[i])));
       continue;
     }
@@ -106,7 +106,7 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   return smallest;
 }
 
-/** Change of volume of the points of a batch in this step; inverted ones are errors anyway. */
+/** Notes the largest change of volume of the points of a batch in this step; inverted ones are errors anyway. */
 void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
 {
   double most = 0.0;
@@ -148,12 +148,12 @@ void MPMTimeLimit::check()
 }
 
 /* ----------------------------------------------------------------------
-   largest stable time step in parts of h/(c + |v|) where it is below 1: the smallest of what
-   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress that is made
-   from velocities which the same stress has just changed (USL without affine matrix) costs most;
-   with points of finite size it goes with the square root of their half size s in node spacings, as
+   largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
+   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from velocities that
+   the same stress has just changed (USL without affine matrix) reduces it most. With points of finite size it
+   is proportional to the square root of their half size s in node spacings, as
    the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s). Domains (CPDI)
-   do not care for size. Linear functions without any limit have warnings of their own, see
+   do not depend on size. Linear functions without any limit have warnings of their own, see
    mpm_stage_light.cpp and share_of_thin_nodes().
 ------------------------------------------------------------------------- */
 
@@ -186,9 +186,9 @@ double MPMTimeLimit::stable_share(double size) const
 }
 
 /* ----------------------------------------------------------------------
-   The total frame has no cure, but its lattice does not change: the largest stable time step in h/c is
-   known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and the mass m = sum_p m_p N_ip is stable
-   for dt < (m/k)^1/2 with USL; this is what trials give within 15 %, and 1.6 times as much with affine
+   The total frame has no remedy for light nodes, but its lattice does not change: the largest stable time step
+   in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and the mass m = sum_p m_p N_ip is
+   stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and give 1.6 times as much with affine
    matrices. Bernstein functions of the middle of a cell begin like linear ones.
 ------------------------------------------------------------------------- */
 
@@ -210,7 +210,7 @@ double MPMTimeLimit::share_of_thin_nodes() const
       stencil.visit(grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
         const double weight = node.weight, *const r = node.r;
         if (weight <= 0.0) return;
-        double slope = 0.0;    // square of grad N / N
+        double slope = 0.0;    // square of (grad N)/N
         int index[3];
         grid.node_index(node.number, index);
         for (int d = 0; d < field.lattice.dim; d++) {
@@ -253,15 +253,15 @@ void MPMTimeLimit::warn() const
 }
 
 /* ----------------------------------------------------------------------
-   Nobody has set the time step, and the default of the units is that of atoms: for most bodies so small
-   that nothing moves. Where a pair style tells of atoms or grains, it may be right, unless it is tiny.
-   One that was set for other reasons than these points (grains, finite elements), or by fix mpm/dt, may
+   Warns if nobody has set the time step, and the default of the units is that of atoms: for most bodies so small
+   that nothing moves. If a pair style indicates atoms or grains, it may be right, unless it is tiny.
+   A time step that was set for other reasons than these points (grains, finite elements), or by fix mpm/dt, may
    have to be small
 ------------------------------------------------------------------------- */
 
 void MPMTimeLimit::warn_of_small() const
 {
-  constexpr double SMALL = 1.0e-2;    // of the limit
+  constexpr double SMALL = 1.0e-2;    // share of the limit below which a time step is small
   tagint tag;
   double c, mine = std::numeric_limits<double>::max(), limit;
   for (const auto *other : field.plan->fields)
