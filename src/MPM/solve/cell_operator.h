@@ -43,7 +43,8 @@ class CellOperator {
   CellOperator(const Grid &grid, LatticeRanks &ranks) : grid(grid), ranks(ranks) {}
 
   void clear();    ///< clears the coefficients, for the present blocks of the grid
-  /** Call if coefficients are the same on all ranks and images that have them. Collective. */
+  /** For coefficients that are the same on all ranks and images that have them: divides each by their
+   *  number, so that the sum is right. Collective. */
   void share();
   void finish();    ///< call when coefficients are complete. Collective
 
