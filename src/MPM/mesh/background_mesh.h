@@ -24,53 +24,56 @@ class BackgroundMesh {
     ElementType type;
     int nnode, nface;
     int node[8];
-    int neighbor[6];    ///< across each face, -1: none
-    int64_t label;      ///< its number in the file
+    int neighbor[6];    ///< the cell across each face; -1: none
+    int64_t label;      ///< its number in the mesh file
     double
         height;    ///< volume over the area of its largest face (of a simplex: times the dimension)
     double low[3], high[3];
-    /** Of a square or cube, whose places are the sum of these times 1, xi, eta, zeta, xi eta, eta zeta, zeta xi, xi eta zeta. */
+    /** Of a square or cube: coefficients of the map from natural coordinates to positions, for the terms 1,
+     *  xi, eta, zeta, xi eta, eta zeta, zeta xi, xi eta zeta. */
     double map[8][3];
-    bool parallel;    ///< are sides that face each other parallel: is that map linear?
+    bool parallel;    ///< are opposite sides parallel, so that the map is linear?
   };
-  /** A side of a cell with no other cell behind it; nodes go around counterclockwise as seen from outside, in the
-   *  plane with the mesh on the left. */
+  /** A side of a cell with no other cell behind it. Seen from outside, its nodes go around
+   *  counterclockwise; in the plane, the mesh is on their left. */
   struct Face {
     int cell, nnode;
     int node[4];
   };
-  /** Where a point is. */
+  /** Location of a point in the mesh. */
   struct Place {
-    int cell = -1;     ///< -1: in none
-    double outside;    ///< by which share of the width of the cell it is outside, 0 inside
-    double N
-        [8];    ///< shape functions of the nodes of the cell; of points outside those of a place at its rim
-    double g[8][3];    ///< and their gradients [1/length]
+    int cell = -1;     ///< -1: in no cell
+    double outside;    ///< distance outside of the cell as a share of its width, 0 inside
+    /** Shape functions of the nodes of the cell. For a point outside, they are those of a place at the rim
+     *  of the cell. */
+    double N[8];
+    double g[8][3];    ///< gradients of the shape functions [1/length]
   };
 
   int dim = 0;
   std::vector<std::array<double, 3>> nodes;
   std::vector<Cell> cells;
 
-  /** The cells are the elements of dimension dim in a mesh, or those of a physical group or set. Throws
-   *  std::runtime_error when there are none, when one is turned inside out or without volume, or when a face belongs to
-   *  three cells. */
+  /** Makes cells of the elements of dimension dim in a mesh, or only of those in the physical group or set
+   *  part, unless it is empty. Throws std::runtime_error if there are none, if an element is inside out or
+   *  has no volume, or if a face belongs to three cells. */
   BackgroundMesh(const Mesh &, int dim, const std::string &part);
 
-  /** Finds the cell of a point by walking from the cell hint (-1: from none), and else by search; of several those that
-   *  come first in the file. */
+  /** Finds the cell of a point by walking from the cell hint (-1: no hint), and by search if that fails. If
+   *  several cells contain the point, the first one in the file is taken. */
   void find(const double *x, int hint, Place &) const;
 
-  /** Nodes of elements of a physical group or set of any dimension, in ascending order; throws
-   *  std::runtime_error when there is no such group, or none of its nodes belongs to a cell. */
+  /** Nodes of the elements of a physical group or set of any dimension, in ascending order. Throws
+   *  std::runtime_error if there is no such group, or if none of its nodes belongs to a cell. */
   std::vector<int> nodes_of(const std::string &group) const;
 
-  /** Sides of cells that are the elements of a group; throws std::runtime_error as nodes_of(), and when one of its
-   *  elements is not a side, or lies between two cells. */
+  /** Sides of cells that are the elements of a group. Throws std::runtime_error in the same cases as
+   *  nodes_of(), and if an element of the group is not a side of a cell, or lies between two cells. */
   std::vector<Face> faces_of(const std::string &group) const;
 
-  /** Normal with the length of its area, of a side whose nodes are at these positions; share[k]: the part of its area that belongs to its node k (the
-   *  integral of its shape function). */
+  /** Area of a side whose nodes are at these positions. normal: normal vector whose length is the area.
+   *  share[k]: the part of the area that belongs to node k of the side (the integral of its shape
+   *  function). */
   void area(const Face &, const std::vector<std::array<double, 3>> &positions, double normal[3],
             double share[4]) const;
 

@@ -9,7 +9,7 @@
 #ifndef MPM_MESH_CELL_VOLUMES_H
 #define MPM_MESH_CELL_VOLUMES_H
 
-// What cells of a lattice have of a body inside of a surface of triangles. Nothing here knows about
+// The share of each cell of a lattice that is inside of a surface of triangles. Nothing here knows about
 // LAMMPS.
 
 #include <array>
@@ -19,41 +19,45 @@
 
 namespace MPM_NS {
 
-/** The volume that each cell of a lattice has of the body inside of a closed surface of triangles, and its center, exact to
- *  rounding.
+/** For each cell of a lattice, the volume of the part of a body in it and the center of that part, exact to
+ *  rounding. The body is the inside of a closed surface of triangles.
  *
- *  A place is inside if a ray from it along +x leaves the body once more often than it enters it: each triangle adds to the places that it is seen
- *  from along x, with the sign of its normal. So the volume in a cell is a sum of integrals over the parts
- *  of the triangles in its column of cells along x, of polynomials. Where the surface winds twice around places, these count twice. */
+ *  A place is inside if a ray from it along +x leaves the body once more often than it enters it. Each
+ *  triangle counts, with the sign of its normal, for the places from which it is seen along x. So the
+ *  volume in a cell is a sum of integrals of polynomials over the parts of the triangles in its column of
+ *  cells along x. Places around which the surface winds twice count twice. */
 class CellVolumes {
  public:
   using Point = std::array<double, 3>;
 
-  /** Of a cell: volume, and the integral of the position relative to its lower corner. */
+  /** Integrals over the part of the body in a cell: its volume, and the position relative to the lower
+   *  corner of the cell. */
   struct Sums {
     double volume = 0.0;
     Point moment = {0.0, 0.0, 0.0};
   };
 
-  /** Cells that are asked for along an axis, the last one included. */
+  /** Range of cells along an axis, including the last one. */
   struct Range {
     int64_t first, last;
   };
 
-  /** Cell i has its lower corner at origin + i size; what is known is that of the cells in the ranges [3], whose number bounds the
-   *  effort, however far the surface reaches. Throws std::runtime_error if that is more than 1e9 cells along an axis. */
+  /** Cell i has its lower corner at origin + i size. Only cells in the ranges [3] can be asked for; their
+   *  number bounds the effort, however far the surface reaches. Throws std::runtime_error if a range has
+   *  more than 1e9 cells. */
   CellVolumes(const std::vector<std::array<Point, 3>> &triangles, const double *origin,
               const double *size, const Range *ranges);
 
+  /** The sums of a cell within the ranges. */
   Sums operator()(int64_t i, int64_t j, int64_t k) const;
 
  private:
-  struct Entry {    // where triangles are in a column
+  struct Entry {    // contribution of triangles in a column
     int64_t cell;
     double part[4] = {0.0};     // volume and moments in this cell
-    double below[3] = {0.0};    // area, and its moments along y and z, for the cells below it
+    double below[3] = {0.0};    // area and its moments along y and z, for the cells below it
   };
-  using Column = std::vector<Entry>;    // in increasing order of the cells at last
+  using Column = std::vector<Entry>;    // sorted by increasing cell once complete
 
   double origin[3], size[3];
   Range ranges[3];

@@ -26,16 +26,18 @@ struct ElementRule {
   double N[MAX_ELEMENT_POINTS][MAX_ELEMENT_NODES];        ///< shape functions at the points
   double dN[MAX_ELEMENT_POINTS][MAX_ELEMENT_NODES][3];    ///< their derivatives
 
-  /** Gradients of the shape functions at point q with respect to the positions x[nnode][3] of the
-   *  nodes; returns the weight of the point as area or volume, negative for an inverted element. */
+  /** Gradients g[nnode][3] of the shape functions at point q with respect to the positions x[nnode][3] of
+   *  the nodes. Returns the weight of the point as area or volume, negative for an inverted element. */
   double gradients(int q, const double (*x)[3], double (*g)[3]) const;
 
-  /** The same for a surface or a line in space (for a line also in the plane): gradients along it, and area or length. */
+  /** The same for a surface or a line in space (a line also in the plane): gradients along it; returns area
+   *  or length. */
   double gradients_along(int q, const double (*x)[3], double (*g)[3]) const;
 
   /** Largest eigenvalue of the sum over the nodes of g x g, with the gradients g[nnode][3]. */
   double largest_eigenvalue(const double (*g)[3]) const;
 
+  /** The rule of an element type. */
   static const ElementRule &of(ElementType);
 };
 

@@ -9,8 +9,8 @@
 #ifndef MPM_MESH_GMSH_H
 #define MPM_MESH_GMSH_H
 
-// Meshes of linear elements, and files of Gmsh with them (others: mesh/mesh_file.h). Nothing here knows
-// about LAMMPS.
+// Meshes of linear elements, and the reader for Gmsh files (other files: mesh/mesh_file.h). Nothing here
+// knows about LAMMPS.
 
 #include <array>
 #include <cstdint>
@@ -24,17 +24,18 @@ namespace MPM_NS {
 
 /** Linear elements; their nodes are in Gmsh's order, which is that of VTK. */
 enum class ElementType : int {
+  /** A triangle and its neighbors, see mesh/bending.h. This type and the next two are never in a file. */
   TRIANGLE,
   QUAD,
   TETRAHEDRON,
   HEXAHEDRON,
   LINE,
-  PATCH,    ///< a triangle and its neighbors, see mesh/bending.h; never in a file, nor is the next one
-  CORNER,    ///< two lines
-  EDGE,      ///< two triangles, see mesh/shared_strain.h
+  PATCH,
+  CORNER,    ///< two lines that meet, see BentLine
+  EDGE,      ///< two triangles that meet, see mesh/shared_strain.h
 };
 
-/** Number of nodes of an element, and its dimension (1, 2 or 3). */
+/** Number of nodes of an element. */
 constexpr int element_nodes(ElementType t)
 {
   switch (t) {
@@ -53,6 +54,7 @@ constexpr int element_nodes(ElementType t)
       return 4;
   }
 }
+/** Dimension of an element: 1, 2 or 3. */
 constexpr int element_dimension(ElementType t)
 {
   if (t == ElementType::LINE) return 1;
@@ -62,70 +64,74 @@ constexpr int element_dimension(ElementType t)
 /** An element of a mesh; plain data, so that a mesh can be sent as bytes. */
 struct MeshElement {
   ElementType type;
-  int physical;           ///< tag of its physical group, 0 for none (the first one of several)
-  int64_t label;          ///< its number in the file
-  int node[12];           ///< places in Mesh::nodes
-  bool inside = false;    ///< of a PATCH: is none of its nodes on a rim of the surface?
+  int physical;           ///< tag of its physical group (the first one of several), 0: none
+  int64_t label;          ///< number of the element in the file
+  int node[12];           ///< indices in Mesh::nodes
+  bool inside = false;    ///< PATCH: is none of its nodes on a rim of the surface?
 };
 
-/** Elements that have a name together. */
+/** A named set of elements. */
 struct MeshSet {
   std::string name;
-  std::vector<int> elements;    ///< places in Mesh::elements
+  std::vector<int> elements;    ///< indices in Mesh::elements
 };
 
-/** Numbers that a file has for each node, or each element. */
+/** Data of a file for each node or each element. */
 struct MeshData {
   std::string name;
   bool at_nodes;
-  int width;                     ///< numbers of each
+  int width;                     ///< values per node or element
   std::vector<double> values;    ///< [node or element][width]
 };
 
-/** What the elements of a surface (in the plane: lines) are together. */
+/** Topology of the elements of a surface (in the plane: lines). */
 struct SurfaceKind {
   bool closed;      ///< does each rim belong to two elements?
   bool oriented;    ///< do all elements have their normals on the same side?
 };
 
-/** Nodes and elements of a mesh file. */
+/** Nodes and elements of a mesh. */
 struct Mesh {
   std::vector<std::array<double, 3>> nodes;
   std::vector<MeshElement> elements;
   std::map<std::pair<int, int>, std::string> groups;    ///< (dimension, tag) -> name
-  std::vector<MeshSet>
-      sets;    ///< of files whose elements can be in several; filled by keep() for others
-  std::vector<MeshData> data;    ///< of files that have any
+  /** Sets from files in which an element can be in several sets; for other files, keep() fills this. */
+  std::vector<MeshSet> sets;
+  std::vector<MeshData> data;    ///< data of the file, if any
 
-  /** Keep only elements of a dimension (drop the surface of a solid, say) and, when not empty, of a
-   *  physical group (a name, or a tag) or set, then only the nodes that these use. Physical groups become
-   *  sets, with their tags as names if they have none. Throws std::runtime_error when nothing is left. */
+  /** Keeps only the elements of a dimension (for example, drops the surface of a solid) and, if group is
+   *  not empty, of a physical group (name or tag) or set, and then only the nodes that these elements use.
+   *  Physical groups become sets, named by their tags if they have no name. Throws std::runtime_error if
+   *  nothing is left. */
   void keep(int dim, const std::string &group = "");
 
-  /** Divide each element into those of half of its size along each edge, 4 of a triangle or a quadrangle and 8 of a
-   *  solid, with its label, groups, and data. They do not share their nodes, and data of nodes are dropped. */
+  /** Divides each element into elements of half its size along each edge, 4 for a triangle or quadrangle
+   *  and 8 for a solid. They inherit label, groups, and data of the element. They do not share nodes, and
+   *  data of nodes are dropped. */
   void halve_elements();
 
-  /** Number the nodes of elements of a dimension whose size is negative in the opposite sense (a body of elements of
-   *  dimension 2 has its normal along +z). */
+  /** Reverses the numbering of the nodes of elements of a dimension whose size is negative (a body of
+   *  elements of dimension 2 has its normal along +z). */
   void orient(int dim);
 
-  /** Throws std::runtime_error if two elements have the same nodes, which would be twice their mass. */
+  /** Throws std::runtime_error if two elements have the same nodes, as their mass would count twice. */
   void check_repeated(const std::string &hint = "") const;
 
-  /** Number the nodes of elements of a surface such that those of neighbors go around in the same sense. */
+  /** Numbers the nodes of the elements of a surface such that neighbors go around in the same sense. */
   SurfaceKind orient_surface();
 
-  /** Append patches and corners for the bending of a surface or of lines. Throws std::runtime_error where it cannot bend. */
+  /** Appends patches and corners for the bending of a surface or of lines. Throws std::runtime_error if it
+   *  cannot bend somewhere. */
   void add_bending();
 
-  /** Area or volume of an element of the dimension of the mesh, negative when its nodes are numbered in the wrong
-   *  sense. */
+  /** Area or volume of an element of the dimension of the mesh, negative if its nodes are numbered in the
+   *  wrong sense. */
   double size(const MeshElement &) const;
 };
 
-/** Read the formats 2.2 and 4.1 of Gmsh, ASCII or binary of either order of bytes. Points of the mesh are left out, as are
- *  sections that describe no mesh. Throws std::runtime_error that begins with name:line. */
+/** Reads the Gmsh formats 2.2 and 4.1, ASCII or binary in either byte order. Point elements are left out,
+ *  and sections that do not describe the mesh are skipped. Throws std::runtime_error with a message that
+ *  begins with name:line. */
 Mesh read_gmsh(std::istream &, const std::string &name);
 
 /** The same from a file. */

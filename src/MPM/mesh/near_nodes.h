@@ -14,26 +14,27 @@
 
 namespace MPM_NS {
 
-/** Which nodes of a surface or a line are near each other along it, however it is folded: those that a path along edges joins which is
- *  shorter than a given length. Nothing here knows about LAMMPS. */
+/** Tells which nodes of a surface or a line are near each other along it, however it is folded: two nodes
+ *  are near if a path along edges shorter than a given length connects them. Nothing here knows about
+ *  LAMMPS. */
 class NearNodes {
  public:
   struct Edge {
-    int64_t a, b;     ///< nodes, from 0 on
-    double length;    ///< without deformation
+    int64_t a, b;     ///< nodes, numbered from 0
+    double length;    ///< length without deformation
   };
 
   NearNodes(int64_t nnodes, const std::vector<Edge> &, double length);
 
-  /** Is b near a? A node is near itself. */
+  /** Is b near a? Each node is near itself. */
   bool near(int64_t a, int64_t b) const;
 
-  /** In bytes. */
+  /** Memory in bytes. */
   double memory() const;
 
  private:
-  std::vector<int64_t> start;    // in list, of a node
-  std::vector<int64_t> list;     // nodes near it, in order
+  std::vector<int64_t> start;    // first entry of each node in list
+  std::vector<int64_t> list;     // near nodes of each node, sorted
 };
 
 }    // namespace MPM_NS

@@ -14,18 +14,21 @@
 #include <utility>
 #include <vector>
 
-// Where triangles, or lines, of a surface meet. Nothing here knows about LAMMPS.
+// Rims at which triangles, or lines, of a surface meet. Nothing here knows about LAMMPS.
 
 namespace MPM_NS {
 struct Mesh;
 
-/** Two nodes of triangles, or one of lines, twice; the elements that are there, and which of their nodes is across from it (of lines: at it). */
+/** Maps the two nodes of an edge of triangles, or twice the end node of lines, to the elements there: the
+ *  index of each element, and which of its nodes is opposite to the edge (lines: which node is at it). */
 using Rims = std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, int>>>;
 
-/** Throws std::runtime_error where there are other elements, or more than two at a rim. */
+/** Finds all rims of a surface. Throws std::runtime_error if there are other elements than triangles or
+ *  lines, or more than two elements at a rim. */
 Rims find_rims(const Mesh &);
 
-/** Append an EDGE for two triangles that meet, nodes as in SharedStrain, and a CORNER for two lines, nodes along these. */
+/** Appends an EDGE for each pair of triangles that meet, with nodes as in SharedStrain, and a CORNER for
+ *  each pair of lines, with nodes in order along the lines. */
 void add_edges(Mesh &, const Rims &);
 
 }    // namespace MPM_NS

@@ -13,21 +13,29 @@
 
 namespace MPM_NS {
 
-/** Two triangles of constant strain take, in a third of each, the mean of their strains, which belongs to their common edge (G.R. Liu,
- *  T. Nguyen-Thoi, K.Y. Lam, J. Sound Vib. 320 (2009) 1100): of their energy, a third of V1 V2/(V1 + V2) times that of the difference of their strains goes, of
- *  which this takes PART, so that what is left is positive also where the material is softer than at rest. Strains are those of Green in axes of the
- *  edge, with the second triangle unfolded to the plane of the first one, so that rotations, and folds along the edge, are no strains. For
- *  strains toward SMALL this ends. Nodes are 0 and 1 of the edge, 2 of the triangle with the edge from 0 to 1, and 3 of that with the
- *  edge from 1 to 0. */
+/** Correction of the energy of two triangles of constant strain that share the mean of their strains at
+ *  their common edge.
+ *
+ *  In a third of each triangle, the strain is the mean of both strains, which belongs to the edge (G.R.
+ *  Liu, T. Nguyen-Thoi, K.Y. Lam, J. Sound Vib. 320 (2009) 1100). This removes a third of V1 V2/(V1 + V2)
+ *  times the energy of the difference of their strains. Only the fraction PART of that is removed here, so
+ *  that the rest is positive also where the material is softer than at rest. Strains are Green strains in
+ *  axes of the edge, with the second triangle unfolded to the plane of the first one, so that rotations,
+ *  and folds along the edge, cause no strain. The correction fades to zero as strains approach SMALL. Nodes
+ *  0 and 1 are at the edge; node 2 belongs to the triangle with the edge from 0 to 1, and node 3 to the
+ *  triangle with the edge from 1 to 0. */
 struct SharedStrain {
   static constexpr double PART = 0.7, SMALL = 0.05;
-  double g[2][3][2];    ///< gradients of the functions of both triangles: nodes 0 1 2 and 1 0 3
-  double weight;    ///< PART of a third of A1 A2/(A1 + A2); 0: they are not of one smooth surface
+  /** Gradients of the shape functions of both triangles: nodes 0 1 2 and 1 0 3 */
+  double g[2][3][2];
+  /** PART of a third of A1 A2/(A1 + A2); 0: the triangles do not form one smooth surface */
+  double weight;
 
-  /** From the positions in the reference configuration. */
+  /** Sets gradients and weight from the positions X[4] in the reference configuration. */
   void define(const double (*X)[3]);
 
-  /** Energy, which is not positive, of a sheet with the stiffness K = E t/(1 - nu^2) and Poisson's ratio nu; adds forces on the nodes to f[4]. */
+  /** Energy of the correction, which is never positive, for a sheet with the stiffness K = E t/(1 - nu^2)
+   *  and Poisson's ratio nu at the positions x[4]. Adds the forces on the nodes to f[4]. */
   double energy(double K, double nu, const double (*x)[3], double (*f)[3]) const;
 };
 

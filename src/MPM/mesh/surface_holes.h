@@ -18,23 +18,23 @@
 
 namespace MPM_NS {
 
-/** What patch_surface() found and did. */
+/** Result of patch_surface(). */
 struct SurfaceHoles {
-  std::size_t edges = 0;         ///< edges of holes
-  std::size_t holes = 0;         ///< of edges that hang together
-  double widest = 0.0;           ///< diagonal of the box around the largest one
-  std::array<double, 3> at{};    ///< center of that
-  double area = 0.0;             ///< of the patches, as a share of the area of the surface before
-  std::size_t turned = 0;        ///< triangles that looked the wrong way
-  std::size_t repeated = 0;      ///< triangles that were there twice
+  std::size_t edges = 0;         ///< number of edges of holes
+  std::size_t holes = 0;         ///< number of holes, that is of connected groups of edges
+  double widest = 0.0;           ///< diagonal of the box around the largest hole
+  std::array<double, 3> at{};    ///< center of that box
+  double area = 0.0;             ///< area of the patches relative to the area of the surface before
+  std::size_t turned = 0;        ///< number of triangles that faced the wrong way
+  std::size_t repeated = 0;      ///< number of repeated triangles
   bool none() const { return edges + turned + repeated == 0; }
 };
 
-/** Makes a surface one without boundary, that is, one along each of whose edges as many triangles run
- *  forward as backward, so that its winding number is an integer everywhere: triangles that are there twice go;
- *  those that look to another side than their neighbors are turned, the larger area of those that hang together
- *  decides; the edges of a hole are joined to its center. triangles: numbers of corners, patches and their
- *  centers are appended. */
+/** Closes a surface: along each edge, as many triangles run forward as backward afterward, so that its
+ *  winding number is an integer everywhere. Repeated triangles are removed. Triangles that face another
+ *  side than their neighbors are turned; among connected triangles, the side with the larger area decides.
+ *  The edges of a hole are joined to its center. triangles: indices of corners. Patches and their centers
+ *  are appended. */
 SurfaceHoles patch_surface(std::vector<std::array<double, 3>> &corners,
                            std::vector<std::array<int, 3>> &triangles);
 

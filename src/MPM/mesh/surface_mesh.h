@@ -22,14 +22,14 @@ namespace MPM_NS {
 
 class WindingNumber;
 
-/** How a surface is read from its file. */
+/** Options for reading a surface. */
 struct SurfaceOptions {
-  /** Take surfaces with holes, with triangles that look the wrong way, and of parts that reach into each other: see
-   *  patch_surface(). What is inside is where the winding number is above one half. Only inside() and what the
-   *  surface is as a whole can be asked for then. */
+  /** Accept surfaces with holes, with triangles that face the wrong way, and of parts that intersect: see
+   *  patch_surface(). The inside is where the winding number is above one half. Only inside() and the
+   *  properties of the surface as a whole are available then. */
   bool leaky = false;
   double turn[3][3] = {
-      {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};    ///< rotation of the positions in the file
+      {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};    ///< rotation applied to the positions in the file
 };
 
 /** Surface of a body, made of triangles.
@@ -44,27 +44,27 @@ class SurfaceMesh {
  public:
   using Point = std::array<double, 3>;
 
-  /** From the bytes of a file, see read_surface(), positions turned, times scale, plus shift. Corners closer
-   *  than 1e-6 of the size of the body become one. Throws std::runtime_error, with name in the
-   *  message, for what is no such file, when the surface is not closed, and when its closed parts have
-   *  no volume, reach into each other, or look the wrong way: inward, but for walls of cavities. A
-   *  surface that has all of this inside out is turned. */
+  /** Reads a surface from the bytes of a file, see read_surface(). Positions are turned, multiplied by
+   *  scale, and moved by shift. Corners closer than 1e-6 of the size of the body are merged. Throws
+   *  std::runtime_error, with name in the message, if the file is invalid, if the surface is not closed, or
+   *  if its closed parts have no volume, intersect, or face the wrong way (inward, except for walls of
+   *  cavities). A surface that is inside out as a whole is turned. */
   SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift,
               const SurfaceOptions &options = SurfaceOptions());
   ~SurfaceMesh();
 
-  /** Distance of x from the surface, negative inside; closest: the point there. */
+  /** Distance of x from the surface, negative inside. closest: the closest point of the surface. */
   double distance(const Point &x, Point &closest) const;
 
-  /** As distance(), where the surface is nearer than the cutoff; else the cutoff, negative inside, and
-   *  closest is not set. start: a triangle that may be near, -1: none; becomes the one that is closest. It makes the
-   *  search short, and does not alter the result. */
+  /** As distance() if the surface is nearer than the cutoff. Otherwise the cutoff, negative inside, and
+   *  closest is not set. start: a triangle that may be near (-1: none), replaced by the closest one. It
+   *  shortens the search and does not change the result. */
   double distance_within(const Point &x, double cutoff, Point &closest, int &start) const;
 
-  /** As distance(), with the unit normal outward: along the line through x and the closest point, on the
-   *  surface the mean normal. Where several points are equally close (to 1e-6 of the size of the body)
-   *  it is the mean of their directions, so that it has the symmetry of the body and does not depend
-   *  on rounding errors; zero where that leaves no direction, as at the center of a ball. */
+  /** As distance(), with the outward unit normal along the line through x and the closest point; on the
+   *  surface it is the mean normal. If several points are equally close (to 1e-6 of the size of the body),
+   *  it is the mean of their directions, so that it has the symmetry of the body and does not depend on
+   *  rounding errors. It is zero if that leaves no direction, as at the center of a ball. */
   double distance_and_normal(const Point &x, Point &normal) const;
 
   /** Where a ball touches the surface. */
@@ -74,28 +74,29 @@ class SurfaceMesh {
     int part;
   };
 
-  /** Of each part of the surface (see nparts) the closest point that is seen from the side of x, within
-   *  the cutoff, unless one next to it beyond the edge of the part is closer. The list begins with the
-   *  closest of them, and has no more than most. Returns how many there are. */
+  /** For each part of the surface (see nparts), finds the closest point that is seen from the side of x,
+   *  within the cutoff, unless an adjacent point beyond the edge of the part is closer. The list has no
+   *  more than most entries and begins with the closest one. Returns their number. */
   int touches(const Point &x, double cutoff, Touch *list, int most) const;
 
-  /** Lower bound of the distance, without a search: positive outside, negative inside, 0: unknown. */
+  /** Lower bound of the distance, without a search: positive outside, negative inside; 0: unknown. */
   double bound(const Point &x) const;
 
   /** Is x inside of the body or on its surface? */
   bool inside(const Point &x) const;
 
   Point lo, hi;         ///< box around the body
-  double volume;        ///< of the body
-  Point center;         ///< of its volume
-  double inertia[6];    ///< about the center, of unit density: xx yy zz xy xz yz
-  int nparts;           ///< parts between sharp edges: with normals more than 45 degrees apart
+  double volume;        ///< volume of the body
+  Point center;         ///< centroid of the volume
+  double inertia[6];    ///< moments of inertia about the center for unit density: xx yy zz xy xz yz
+  /** Number of parts between sharp edges, where normals are more than 45 degrees apart */
+  int nparts;
   std::size_t size() const { return triangles.size(); }
   std::vector<std::array<Point, 3>>
-  soup() const;          ///< corners of all triangles, patches among them
-  SurfaceHoles holes;    ///< of a leaky surface
-  bool overlaps =
-      false;    ///< winds twice around some places, or backward: its volume counts them so
+  soup() const;          ///< corners of all triangles, including patches
+  SurfaceHoles holes;    ///< repairs of a leaky surface
+  /** Does a leaky surface wind twice, or backward, around some places? Its volume counts them so. */
+  bool overlaps = false;
 
  private:
   struct Triangle {
@@ -109,11 +110,11 @@ class SurfaceMesh {
     double volume = 0.0, area = 0.0;    // volume: negative when it looks inward
     std::vector<int> triangles;
   };
-  struct Node {    // of the tree of boxes
+  struct Node {    // node of the tree of boxes
     Point lo, hi;
-    int first, last;    // triangles of a leaf; else last < 0 and the children are
+    int first, last;    // triangles of a leaf; otherwise last < 0 and the children are used
     int child[2];
-    int part;    // of all triangles in it; -1: of several
+    int part;    // part of all triangles in it; -1: of several
   };
 
   std::vector<Point> corners, corner_normals;
@@ -125,7 +126,7 @@ class SurfaceMesh {
   std::vector<float> coarse;                 // distances at the centers of cells
   int ncells[3];
   double cell;
-  double near;    // points closer than this are one
+  double near;    // points closer than this are merged
 
   void weld(const std::vector<Point> &soup, const std::string &name);
   void close(const std::string &name);

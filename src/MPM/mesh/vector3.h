@@ -44,7 +44,7 @@ namespace vector3 {
   {
     return std::sqrt(dot(a, a));
   }
-  /** Make a box larger so that x is in it. */
+  /** Enlarges a box so that it contains x. */
   inline void include(const Vector &x, Vector &lo, Vector &hi)
   {
     for (int d = 0; d < 3; d++) {

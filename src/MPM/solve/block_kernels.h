@@ -13,20 +13,22 @@
 
 namespace MPM_NS {
 
-/** Rows and columns of the blocks of EnvelopeFactors. */
+/** Number of rows and of columns of the blocks of EnvelopeFactors. */
 constexpr int FACTOR_BLOCK = 16;
 
-/** Products of dense blocks, compiled for each instruction set.  a and b are n columns of FACTOR_BLOCK reals, one column after the
- *  other: blocks that stand side by side in a row of blocks are one such list. */
+/** Products of dense blocks, compiled for each instruction set. a and b consist of n columns of
+ *  FACTOR_BLOCK reals, one column after the other; blocks side by side in a row of blocks form one such
+ *  list. */
 struct BlockKernels {
-  /** S -= a b^T, S: [FACTOR_BLOCK] columns. */
+  /** S -= a b^T, with FACTOR_BLOCK columns in S. */
   void (*subtract)(double *S, const double *a, const double *b, int64_t n);
   /** y -= a x, x: [n], y: [FACTOR_BLOCK] */
   void (*subtract_from_rows)(double *y, const double *a, const double *x, int64_t n);
   /** y -= a^T x, x: [FACTOR_BLOCK], y: [n] */
   void (*subtract_from_columns)(double *y, const double *a, const double *x, int64_t n);
 
-  /** Those of the best set that runs here, or that the environment variable MPM_ISA names. */
+  /** The kernels of the best instruction set of this CPU, or of the set in the environment variable
+   *  MPM_ISA. */
   static BlockKernels select();
 };
 

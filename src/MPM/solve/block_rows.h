@@ -23,7 +23,7 @@ struct MatrixBlock {
   double value[9];
 };
 
-/** What each of many functions has in it of the functions of a coarser level. */
+/** Each function as a weighted sum of functions of a coarser level. */
 struct CoarseParts {
   struct Part {
     int node;
@@ -37,7 +37,9 @@ struct CoarseParts {
   std::vector<int> first{0};    // [functions + 1] ranges in parts
   std::vector<Part> parts;
 
+  /** The parts of function i. */
   Range of(int64_t i) const { return {parts.data() + first[i], parts.data() + first[i + 1]}; }
+  /** Ends the parts of the current function. */
   void end_function() { first.push_back((int) parts.size()); }
 
   double memory_usage() const
@@ -46,22 +48,23 @@ struct CoarseParts {
   }
 };
 
-/** A symmetric matrix of blocks [width][width], of which each rank has the rows of its own: one range after the other.
- *  Vectors are whole on all ranks. */
+/** A symmetric matrix of blocks [width][width]. Each rank has a range of rows, in order of ranks. Vectors
+ *  are complete on all ranks. */
 class BlockRows {
  public:
   using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
-  /** first: [ranks + 1] rows of each rank. lower: blocks of one triangle, row >= column; those of all ranks are added.  Collective. */
+  /** Builds the matrix. first: [ranks + 1], the first row of each rank. lower: blocks of one triangle, row
+   *  >= column; the blocks of all ranks are added. Collective. */
   void assemble(LatticeRanks &, int width, const std::vector<int> &first,
                 const std::vector<MatrixBlock> &lower);
 
   int rows() const { return first.empty() ? 0 : first.back(); }
   int begin() const { return first[ranks->me()]; }
   int end() const { return first[ranks->me() + 1]; }
-  /** The block of a row of this rank; null: there is none. */
+  /** The block at a row of this rank and a column; null: there is none. */
   const double *find(int row, int column) const;
-  /** Calls f(column, value) for the blocks of a row of this rank, in ascending order. */
+  /** Calls f(column, value) for the blocks in a row of this rank, in ascending order of columns. */
   template <class F> void each(int row, const F &f) const
   {
     const int64_t from = start[row - begin()], to = start[row - begin() + 1];
@@ -70,11 +73,13 @@ class BlockRows {
 
   /** y = A x.  Collective. */
   void multiply(const double *x, double *y);
-  /** mine: [rows of this rank][n].  Those of all ranks, [rows][n].  Collective. */
+  /** Gathers rows of all ranks, [rows][n], from the rows of each rank, mine [rows of this rank][n].
+   *  Collective. */
   std::vector<double> of_all(const std::vector<double> &mine, int n) const;
-  /** Blocks of one triangle of P^T A P that rows of this rank give, where functions are these parts P of functions of the next level. */
+  /** Contribution of the rows of this rank to P^T A P, as blocks of one triangle, where P gives the parts
+   *  of each function in functions of the next level. next: number of functions of that level. */
   std::vector<MatrixBlock> coarsened(const CoarseParts &, int next) const;
-  /** All of it.  Collective. */
+  /** The whole matrix. Collective. */
   Sparse matrix() const;
 
   double memory_usage() const;
@@ -83,11 +88,11 @@ class BlockRows {
   LatticeRanks *ranks = nullptr;
   int width = 0;
   std::vector<int> first;
-  std::vector<int64_t> start;    // [rows of this rank + 1]
+  std::vector<int64_t> start;    // [rows of this rank + 1] ranges in column and value
   std::vector<int> column;
   std::vector<double> value;
   std::vector<double> product;
-  std::vector<int> bytes;    // [rank] of a product
+  std::vector<int> bytes;    // [rank] bytes of its part of a product
 
   template <int W> void multiply_rows(const double *x, double *y) const;
 };

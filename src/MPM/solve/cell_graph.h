@@ -15,20 +15,23 @@
 
 namespace MPM_NS {
 
-/** Cells, and what flows between them: the part that one rank has of (A x)_i = sum_j face_ij (x_i - x_j) + outside_i x_i. */
+/** Cells and the coefficients between them: the contribution of one rank to (A x)_i = sum_j face_ij (x_i -
+ *  x_j) + outside_i x_i. */
 struct CellGraph {
-  std::vector<int> index;        ///< [cell][3] place on the lattice of the level, within the period
-  std::vector<int64_t> where;    ///< [cell] its place in vectors
-  std::vector<int> first;        ///< [cells + 1] range in these two:
-  std::vector<int64_t> neighbor;    ///< place in vectors of the cell behind a face
-  std::vector<double> face;         ///< its coefficient, not negative
-  std::vector<double> outside;      ///< [cell] coefficient to what is 0
-  std::vector<double> inverse;      ///< [cell] one over the diagonal of all ranks, 0 where that is
-  std::vector<int> colored[2];      ///< cells with an even, and with an odd sum of their index
+  std::vector<int> index;        ///< [cell][3] index on the lattice of the level, within the period
+  std::vector<int64_t> where;    ///< [cell] its index in vectors
+  std::vector<int> first;        ///< [cells + 1] ranges in neighbor and face
+  std::vector<int64_t> neighbor;    ///< index in vectors of the cell behind a face
+  std::vector<double> face;         ///< coefficient of a face, not negative
+  std::vector<double> outside;      ///< [cell] coefficient to places where x is 0
+  /** [cell] one over the diagonal, summed over ranks; 0 where the diagonal is 0 */
+  std::vector<double> inverse;
+  std::vector<int> colored[2];    ///< cells with an even, and with an odd sum of their index
 
   int size() const { return where.size(); }
-  void color();    ///< make the lists of colors
-  /** Have neighbors different colors? For graphs whose places in vectors are their cells. */
+  void color();    ///< makes the lists of colors
+  /** Do neighbors always have different colors? For graphs in which the index of a cell in vectors is its
+   *  number. */
   bool is_proper() const;
 
   /** This rank's part of (A x) at a cell. */
@@ -39,6 +42,7 @@ struct CellGraph {
     for (int k = first[cell]; k < first[cell + 1]; k++) sum += face[k] * (mine - x[neighbor[k]]);
     return sum;
   }
+  /** This rank's contribution to the diagonal of A at a cell. */
   double diagonal(int cell) const
   {
     double sum = outside[cell];

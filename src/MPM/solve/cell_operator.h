@@ -14,39 +14,45 @@
 
 namespace MPM_NS {
 
-/** Poisson's equation for cells of a lattice, such as that of the pressure of an incompressible flow:
+/** Poisson's equation for the cells of a lattice, such as the equation for the pressure of an
+ *  incompressible flow:
  *
- *    (A p)_i = sum over faces to cells j of face_ij (p_i - p_j) + outside_i p_i.
+ *      (A p)_i = sum over faces to cells j of face_ij (p_i - p_j) + outside_i p_i.
  *
- *  There is one unknown for each node of a Grid; node i of an axis may stand for the cell between nodes i and i + 1.  A face
- *  coefficient is, for example, the open share of the face times its area over density and spacing; 0 at walls.  outside is
- *  the sum of those of faces to places of known pressure (a free surface, with the distance to it
- *  instead of the spacing); this pressure itself goes to the right side.
+ *  There is one unknown for each node of a Grid; node i of an axis may stand for the cell between nodes i
+ *  and i + 1. A face coefficient is, for example, the open share of the face times its area over density
+ *  and spacing; it is 0 at walls. outside is the sum of the coefficients of faces to places of known
+ *  pressure (a free surface, with the distance to it instead of the spacing); the known pressure itself
+ *  goes to the right side.
  *
- *  Coefficients are what a rank adds to the sum over ranks and periodic images, like sums over points: who knows a face on several ranks, or
- *  on several images, gives it once, or the same everywhere and then calls share().  Coefficients are for nodes that a rank shares with
- *  others where these have them, too (Grid::Block::reached), not for others in its blocks.
+ *  The coefficients of a rank are contributions to a sum over ranks and periodic images, like sums over
+ *  points. If several ranks or images know a face, either one of them gives its coefficient, or all give
+ *  the same value and share() is called. Coefficients are set at nodes that a rank shares with others if
+ *  these ranks have the nodes, too (Grid::Block::reached), and not at other nodes in its blocks.
  *
- *  A cell without any coefficient is not in the system: all vectors are 0 there.  Cells that faces join and that have nothing
- *  outside are a closed pool, where pressures are known but for a constant (CellMultigrid::project()). */
+ *  A cell without any coefficient is not in the system: all vectors are 0 there. Cells that faces connect
+ *  and that have no outside coefficients form a closed pool, in which pressures are determined up to a
+ *  constant (CellMultigrid::project()). */
 class CellOperator {
  public:
   const Grid &grid;
   LatticeRanks &ranks;
-  std::vector<double> face;       ///< [node][dim] to the next node along each axis
-  std::vector<double> outside;    ///< [node]
+  std::vector<double> face;       ///< [node][dim] coefficient to the next node along each axis
+  std::vector<double> outside;    ///< [node] sum of the coefficients to known pressures
 
   CellOperator(const Grid &grid, LatticeRanks &ranks) : grid(grid), ranks(ranks) {}
 
-  void clear();     ///< no coefficients, for the blocks that the grid has now
-  void share();     ///< coefficients are alike on all ranks and images that have them.  Collective
-  void finish();    ///< coefficients are there.  Collective
+  void clear();    ///< clears the coefficients, for the present blocks of the grid
+  /** For coefficients that are the same on all ranks and images that have them: divides each by their
+   *  number, so that the sum is right. Collective. */
+  void share();
+  void finish();    ///< call when coefficients are complete. Collective
 
-  /** y = A x, the same on all that have a node if x is.  Collective. */
+  /** y = A x. If x is the same on all ranks and images that have a node, so is y. Collective. */
   void apply(const double *x, double *y) const;
-  /** z = r over the diagonal. */
+  /** z = r divided by the diagonal. */
   void scale(const double *r, double *z) const;
-  /** After finish(): this rank's part. */
+  /** The contribution of this rank to the operator; call after finish(). */
   const CellGraph &cells() const { return graph; }
   double memory_usage() const;
 

@@ -16,49 +16,49 @@
 
 namespace MPM_NS {
 
-/** One triangle of a symmetric matrix in dense blocks, each row of blocks from its first entry to the diagonal, and its Cholesky
- *  factors A = L L^T in their place.
+/** One triangle of a symmetric matrix in dense blocks, with each row of blocks stored from its first entry
+ *  to the diagonal, and its Cholesky factors A = L L^T, which replace it.
  *
- *  The last rows may be left without factors: they get A22 - A21 A11^-1 A12 (I. Schur) in the place of A22, which stands for what all
- *  unknowns before them do. */
+ *  The last rows may be left without factors. Then A22 is replaced by A22 - A21 A11^-1 A12 (I. Schur),
+ *  which represents the effect of all preceding unknowns. */
 class Envelope {
  public:
   Envelope() : kernels(BlockKernels::select()) {}
 
-  /** inner, rest: rows of blocks with factors, and without. All of them are empty. */
+  /** Starts an empty matrix. inner, rest: number of rows of blocks with and without factors. */
   void start(int inner, int rest);
-  /** There is an entry of a row at this column, which is not behind the diagonal block. */
+  /** Notes that a row has an entry at this column, which must not be behind the diagonal block. */
   void reach(int row, int column);
-  /** The number of reals by what has been reached. */
+  /** The number of reals needed for the entries noted by reach(). */
   int64_t count() const;
-  /** The column at which half of them have come. */
+  /** The row, in unknowns, up to which half of them are needed. */
   int place_of_half() const;
-  /** There is room for all that has been reached, with zeros in it. */
+  /** Makes room for all noted entries and sets them to zero. */
   void clear();
   int64_t size() const { return begin.empty() ? 0 : begin.back(); }
-  /** An entry, which has been reached. */
+  /** An entry that has been noted by reach(). */
   double &at(int row, int column);
-  /** False: it is not positive definite, or not finite. */
+  /** Replaces the matrix by its factors. Returns false if it is not positive definite or not finite. */
   bool factorize();
 
-  /** The blocks of the rows without factors, [row][column up to the row], one after the other. */
+  /** Copies the blocks of the rows without factors, [row][column up to the row], one after the other. */
   void give_rest(std::vector<double> &blocks) const;
-  /** Adds such a list, which has as many reals as this one. */
+  /** Adds a list of blocks from give_rest(), which must have as many reals as this matrix. */
   void add(const double *blocks);
 
-  /** y <- L^-1 y: of rows with factors; of the others y <- y - L21 (that). */
+  /** y1 <- L^-1 y1 for the rows with factors, and y2 <- y2 - L21 y1 for the others. */
   void solve_forward(double *y) const;
-  /** y <- L^-T (y - L21^T y2) of rows with factors, where those without have y2. */
+  /** y1 <- L^-T (y1 - L21^T y2) for the rows with factors, where y2 belongs to the rows without factors. */
   void solve_backward(double *y) const;
   double memory_usage() const;
 
  private:
   const BlockKernels kernels;
   int inner = 0;
-  std::vector<int> first;        // [row of blocks] its first block
-  std::vector<int64_t> begin;    // [row of blocks] that block in values
-  std::vector<double>
-      values;    // columns of FACTOR_BLOCK reals; at the diagonal the inverse of that block of L
+  std::vector<int> first;        // [row of blocks] column of its first block
+  std::vector<int64_t> begin;    // [row of blocks] start of that block in values
+  // columns of FACTOR_BLOCK reals; a diagonal block holds the inverse of that block of L
+  std::vector<double> values;
 
   int rows() const { return (int) first.size(); }
   int64_t reals_of(int row) const;

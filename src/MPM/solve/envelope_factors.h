@@ -20,29 +20,33 @@ namespace MPM_NS {
 
 /** Cholesky factors of a sparse symmetric matrix, A = L L^T.
  *
- *  Unknowns are numbered in layers from one end of a body to the other (E. Cuthill, J. McKee, Proc. 24th ACM Conf. (1969) 157), so that
- *  what a row has stands close to the diagonal, and L is kept in an envelope: more
- *  entries than with orderings that make them few, but products of blocks run at the speed of the processor.  For systems of
- *  some thousand unknowns this is ten times faster.
+ *  Unknowns are numbered in layers from one end of a body to the other (E. Cuthill, J. McKee, Proc. 24th
+ *  ACM Conf. (1969) 157), so that the entries of a row are close to the diagonal, and L is stored in an
+ *  envelope. This has more entries than orderings that minimize their number, but products of blocks run at
+ *  the full speed of the processor. For systems of some thousand unknowns this is ten times faster.
  *
- *  Where that is long, a layer in the middle is put last, and both halves are eliminated towards it, each from its end: as many operations, but two
- *  ranks can share them.  The order is the same on any number of ranks, and so is the result. */
+ *  If the envelope is large, a layer in the middle is put last, and both halves are eliminated toward it,
+ *  each from its end. This takes the same number of operations, but two ranks can share them. The order
+ *  does not depend on the number of ranks, and neither does the result. */
 class EnvelopeFactors {
  public:
-  /** ranks: of which the first two have a half each; all of them call each function with the same matrix and the same vectors, and get
-   *  the same.  Null: this one has both.  split: reals in the envelope from which on there are halves. */
+  /** ranks: the first two of them have one half each. All ranks must call each function with the same
+   *  matrix and the same vectors, and get the same results. Null: this rank has both halves. split: number
+   *  of reals in the envelope from which on there are halves. */
   explicit EnvelopeFactors(LatticeRanks *ranks = nullptr, int64_t split = 500000) :
       ranks(ranks), split(split)
   {
   }
 
-  /** The matrix, both triangles; false: it is not positive definite, or not finite, and factors are of no use. */
+  /** Factorizes a matrix, given with both triangles. Returns false if it is not positive definite or not
+   *  finite; the factors must not be used then. */
   bool compute(const Eigen::SparseMatrix<double> &A);
-  /** The same where entries stand in the same places as in the last matrix, in an order that is known already. */
+  /** The same for a matrix with entries in the same places as in the last matrix, with the known order. */
   bool compute_again(const Eigen::SparseMatrix<double> &A);
-  /** x = A^-1 b, b and x: [unknowns], which may be the same. */
+  /** x = A^-1 b, with b and x [unknowns], which may be the same array. */
   void solve(const double *b, double *x);
   int size() const { return unknowns; }
+  /** Is the elimination divided into halves? */
   bool has_halves() const { return part[2] > part[1]; }
   double memory_usage() const;
 
@@ -51,13 +55,13 @@ class EnvelopeFactors {
   LatticeRanks *const ranks;
   const int64_t split;
   int unknowns = 0;
-  std::vector<int> number;           // [unknown] its place
-  std::vector<int> queue, layer;     // unknowns in layers, and the layer of each one
-  int part[3] = {0, 0, 0};           // places where each of the halves ends, and the middle
-  Envelope half[2], middle;          // a half has the rows of the middle as its last ones
-  std::vector<int> unused;           // places of no unknown
-  std::vector<double> solution;      // of the places
-  std::vector<double> of_half[2];    // with those of the middle
+  std::vector<int> number;          // [unknown] its place in the order
+  std::vector<int> queue, layer;    // unknowns in the order of layers, and the layer of each one
+  int part[3] = {0, 0, 0};          // ends of both halves and of the middle, as places in the order
+  Envelope half[2], middle;         // the last rows of a half are those of the middle
+  std::vector<int> unused;          // places without an unknown
+  std::vector<double> solution;     // [place]
+  std::vector<double> of_half[2];    // solutions of each half, with those of the middle
   std::vector<double> sent, of_ranks;
 
   bool is_mine(int which) const;

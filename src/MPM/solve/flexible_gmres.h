@@ -13,28 +13,31 @@
 
 namespace MPM_NS {
 
-/** Flexible generalized minimal residuals with restarts (Y. Saad, SIAM J. Sci. Comput. 14 (1993) 461) for systems that need not
- *  be symmetric.  The preconditioner acts from the right, so that residuals are those of the system, and may differ from
- *  iteration to iteration: it may be a solve of its own.  Two vectors are kept for each iteration of a cycle, after which
- *  the method begins again with what is left.  A singular system is solved if its right side is in the range, unless the space of
- *  Krylov ends before (SINGULAR).  x: first guess and solution.  The object keeps its vectors from solve to solve. */
+/** Flexible generalized minimal residuals (GMRES) with restarts (Y. Saad, SIAM J. Sci. Comput. 14 (1993)
+ *  461) for systems that need not be symmetric. The preconditioner acts from the right, so that residuals
+ *  are those of the system. It may differ from iteration to iteration, for example be an iterative solve
+ *  itself. Two vectors are kept for each iteration of a cycle, after which the method restarts with the
+ *  remaining residual. A singular system is solved if its right side is in the range, unless the Krylov
+ *  space ends earlier (SINGULAR). x: first guess and solution. The object keeps its vectors from solve to
+ *  solve. */
 class FlexibleGMRES {
  public:
-  /** cycle: iterations from restart to restart. */
+  /** cycle: number of iterations between restarts. */
   explicit FlexibleGMRES(int cycle = 50) : longest(cycle) {}
   SolveReport solve(LinearSystem &, const double *b, double *x, const SolveGoal &);
   double memory_usage() const;
 
  private:
   const int longest;
-  std::vector<std::vector<double>> v, z;    // basis, and what the preconditioner makes of it
+  std::vector<std::vector<double>> v, z;    // basis, and the preconditioned basis
   std::vector<double> h;          // columns of the Hessenberg matrix, rotated to a triangle
   std::vector<double> c, s, g;    // rotations, and the rotated right side
-  std::vector<const double *> left, right;    // of products with the vectors of the basis
+  std::vector<const double *> left, right;    // for products with the vectors of the basis
   std::vector<double> part;
 
   double *column(int j) { return h.data() + (std::size_t) j * (longest + 2); }
-  /** Vector j + 1 of the basis; its part along each of the others and its length become column j. */
+  /** Finds vector j + 1 of the basis. Its components along the other vectors and its length become column
+   *  j. */
   void orthogonalize(LinearSystem &, int j, double &largest);
   void update(int n, double *x);
 };

@@ -17,38 +17,40 @@
 
 namespace MPM_NS {
 
-/** When a solution is good enough: |b - A x| <= max(relative |b|, absolute), in the norm of LinearSystem::products(). With
- *  natural, for conjugate gradients that start at x = 0, in that of the preconditioner M, (r . M r)^1/2, which does not know of the units of
- *  single unknowns. */
+/** Criterion of convergence: |b - A x| <= max(relative |b|, absolute), in the norm of
+ *  LinearSystem::products(). With natural, which is for conjugate gradients that start at x = 0, the norm
+ *  is that of the preconditioner M, (r . M r)^1/2, which is independent of the units of single unknowns. */
 struct SolveGoal {
   double relative = 1.0e-8;
   double absolute = 0.0;
   int most_iterations = 1000;
   bool natural = false;
 
-  /** The largest residual that is good enough for |b|. */
+  /** The largest residual that meets the criterion for |b|. */
   double enough(double right_side) const { return std::max(relative * right_side, absolute); }
 };
 
 /** r = b - A x.  Collective. */
 void find_residual(LinearSystem &, const double *b, const double *x, double *r);
 
-/** What became of a solve. */
+/** Result of a solve. */
 struct SolveReport {
   enum Outcome {
     CONVERGED,
-    TOO_MANY,    ///< iterations
-    INDEFINITE,    ///< the operator or its preconditioner is not positive definite, as the method needs
-    SINGULAR,     ///< no more can be gained: the right side is not in the range of the operator
+    TOO_MANY,    ///< the most iterations allowed were not enough
+    /** The operator or its preconditioner is not positive definite, as the method requires */
+    /** No further progress is possible: the right side is not in the range of the operator */
+    INDEFINITE,
+    SINGULAR,
     NOT_FINITE    ///< a residual is not a number
   };
   Outcome outcome = CONVERGED;
   int iterations = 0;
   double right_side = 0.0;          ///< |b|
-  std::vector<double> residuals;    ///< |b - A x|, at first and after each iteration
+  std::vector<double> residuals;    ///< |b - A x| at the start and after each iteration
 
   bool converged() const { return outcome == CONVERGED; }
-  /** For messages: the outcome, and how residuals went. */
+  /** Text for messages: the outcome and the history of residuals. */
   std::string describe() const;
 };
 

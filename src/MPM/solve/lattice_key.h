@@ -16,7 +16,8 @@ namespace MPM_NS {
 
 using LatticeIndex = std::array<int, 3>;
 
-/** One number for the index of a node or cell, each part of which is from -2^20 to 2^20 - 1: in the order of indices. */
+/** One number for the index of a node or cell, each component of which is from -2^20 to 2^20 - 1. Keys have
+ *  the same order as indices. */
 inline uint64_t lattice_key(const LatticeIndex &index)
 {
   uint64_t key = 0;
@@ -24,7 +25,7 @@ inline uint64_t lattice_key(const LatticeIndex &index)
   return key;
 }
 
-/** And back. */
+/** The index of a key. */
 inline LatticeIndex lattice_index(uint64_t key)
 {
   LatticeIndex index;

@@ -16,17 +16,19 @@
 
 namespace MPM_NS {
 
-/** Nodes by their index, in the order in which they came. */
+/** Nodes, found by their index and numbered in the order in which they were added. */
 struct LatticeNodes {
   std::vector<LatticeIndex> index;
   std::unordered_map<uint64_t, int> number;
 
+  /** Adds a node, unless it is there already; returns its number. */
   int add(const LatticeIndex &at)
   {
     const auto inserted = number.emplace(lattice_key(at), (int) index.size());
     if (inserted.second) index.push_back(at);
     return inserted.first->second;
   }
+  /** The number of a node; -1: it is not there. */
   int find(const LatticeIndex &at) const
   {
     const auto found = number.find(lattice_key(at));

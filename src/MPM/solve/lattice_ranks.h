@@ -16,28 +16,29 @@
 
 namespace MPM_NS {
 
-/** What solves on a lattice need of other ranks, and of periodic images. */
+/** Communication that solves on a lattice need, with other ranks and with periodic images. */
 class LatticeRanks {
  public:
   virtual ~LatticeRanks() = default;
 
+  /** Number of ranks. */
   virtual int number() const { return 1; }
-  virtual int me() const { return 0; }    ///< from 0 on
+  virtual int me() const { return 0; }    ///< number of this rank, from 0 on
 
-  /** values: [node][width].  At each node of the Grid: the sum of what its images, and the same node on all ranks, have.  All of
-   *  them have the same sum afterwards, bit by bit.  Collective. */
+  /** Sums values [node][width] at each node of the Grid over its periodic images and over the ranks that
+   *  have it. Afterward all of them have the same sum, bit by bit. Collective. */
   virtual void sum(double *values, int width) = 0;
 
-  /** What ranks give, in order of ranks.  Valid until the next call.  Collective. */
+  /** Concatenates the bytes of all ranks, in order of ranks. Valid until the next call. Collective. */
   virtual const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) = 0;
 
-  /** The same where ranks give as much as sizes [rank] tells. */
+  /** The same if the number of bytes of each rank is known on all ranks: sizes [rank]. */
   virtual const std::vector<char> &gather_sizes(const void *mine, const std::vector<int> &sizes)
   {
     return gather_bytes(mine, sizes[me()]);
   }
 
-  /** The same for lists of any plain type. */
+  /** The same for lists of any plain type. Collective. */
   template <class T> void gather(const std::vector<T> &mine, std::vector<T> &all)
   {
     const auto &bytes = gather_bytes(mine.data(), mine.size() * sizeof(T));
@@ -52,7 +53,7 @@ class LatticeRanks {
   }
 };
 
-/** There is but one rank. */
+/** The implementation for a single rank. */
 class OneRank : public LatticeRanks {
  public:
   explicit OneRank(const Grid &grid) : grid(grid) {}

@@ -13,12 +13,14 @@
 
 namespace MPM_NS {
 
-/** Preconditioned minimal residuals (C.C. Paige, M.A. Saunders, SIAM J. Numer. Anal. 12 (1975) 617; in the form of H.C. Elman,
- *  D.J. Silvester, A.J. Wathen, Finite Elements and Fast Iterative Solvers, Oxford 2014, algorithm 4.1) for symmetric systems
- *  that may be indefinite, such as those with Lagrange multipliers; the preconditioner has to be positive definite.
- *  What decreases with each iteration is the residual in the norm of the preconditioner; what is reported, and compared with the goal, is
- *  its plain norm.  A singular system whose right side is in its range is solved; of another one x is a least-squares solution, and the
- *  outcome is SINGULAR.  x: first guess and solution.  The object keeps its vectors from solve to solve. */
+/** Preconditioned minimal residuals (MINRES; C.C. Paige, M.A. Saunders, SIAM J. Numer. Anal. 12 (1975) 617;
+ *  in the form of H.C. Elman, D.J. Silvester, A.J. Wathen, Finite Elements and Fast Iterative Solvers,
+ *  Oxford 2014, algorithm 4.1) for symmetric systems that may be indefinite, such as those with Lagrange
+ *  multipliers. The preconditioner must be positive definite. The residual in the norm of the
+ *  preconditioner decreases with each iteration; its plain norm is reported and compared with the goal. A
+ *  singular system is solved if its right side is in the range; otherwise x is a least-squares solution,
+ *  and the outcome is SINGULAR. x: first guess and solution. The object keeps its vectors from solve to
+ *  solve. */
 class MinimalResiduals {
  public:
   SolveReport solve(LinearSystem &, const double *b, double *x, const SolveGoal &);

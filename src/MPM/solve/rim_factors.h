@@ -20,36 +20,45 @@
 
 namespace MPM_NS {
 
-/** [node] Is it in the rim: at the surface of a body, as of those around it, up to reach along each axis, some do not exist, or at an
- *  interface, as stiffnesses (more than zero) around it differ much? period: in nodes, 0: none. */
+/** Tells for each node whether it is in the rim. This is so at the surface of a body, where some of the
+ *  nodes up to reach along each axis do not exist, and at an interface, where the stiffnesses (positive) of
+ *  the nodes around it differ much. period: in nodes; 0: not periodic. */
 std::vector<char> rim_of(const LatticeNodes &, const std::vector<double> &stiffness, int dim,
                          int reach, const int *period);
 
-/** Factors of a symmetric matrix with a shift of its diagonal: functions that points cannot tell apart, and free bodies, make it
- *  singular, and more than that where a tangent is not positive definite.  Factors are.  False: no shift makes it so, or it is
- *  not finite; the factors are of no use then.  again: entries stand where those of the last matrix were. */
+/** Factorizes a symmetric matrix with a shift of its diagonal. The shift is needed because functions that
+ *  points cannot distinguish, and free bodies, make the matrix singular, and because a tangent may not even
+ *  be positive semi-definite; the factors must be positive definite. Returns false if no shift is
+ *  sufficient, or if the matrix is not finite; the factors must not be used then. again: the entries are in
+ *  the same places as in the last matrix. */
 bool factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &, bool again = false);
 
-/** An approximate inverse for nodes at the surface of a body, or of what is much stiffer than what is next to it.
+/** An approximate inverse for nodes at the surface of a body, or at the surface of a part that is much
+ *  stiffer than its surroundings.
  *
- *  There B-splines have little of the body in their support, and those of a corner are nearly dependent: the blocks of
- *  single nodes are no smoother.  Chunks of the surface, which overlap, are factorized, and their solutions added.  They are as large as
- *  factors of them are cheap, and none is much smaller than others: a thin one at an edge would be no smoother either.
+ *  B-splines at a surface have little of the body in their support, and those at a corner are nearly
+ *  dependent, so that the diagonal blocks of single nodes are not a smoother there. Instead, overlapping
+ *  chunks of the surface are factorized, and their solutions are added. Chunks are as large as their
+ *  factors remain cheap, and none is much smaller than the others: a thin chunk at an edge would not be a
+ *  smoother either.
  *
- *  Each chunk is with one rank; if there is but one, two ranks share it. */
+ *  Each chunk belongs to one rank; a single chunk is shared by two ranks. */
 class RimFactors {
  public:
-  /** ranks: which share the work, and all call each function with the same. Null: this one does it. */
+  /** ranks: they share the work, and all of them must make the same calls. Null: this rank does all the
+   *  work. */
   explicit RimFactors(LatticeRanks *ranks = nullptr) : ranks(ranks) {}
-  /** Nodes at the surface, the same on all ranks but for their order; width: values of each. */
+  /** Starts with these nodes at the surface, which must be the same on all ranks except for their order.
+   *  width: number of values per node. */
   void start(const std::vector<LatticeIndex> &nodes, int dim, int width);
   int size() const { return first.empty() ? 0 : (int) first.size() - 1; }
-  /** Have two nodes a chunk together? Only then their block of the matrix is wanted. */
+  /** Do two nodes have a chunk in common? Only then is their block of the matrix needed. */
   bool together(int a, int b) const;
-  /** value: [width][width] of both triangles is added to the matrix, and its transposed if the nodes are not the same. */
+  /** Adds the block value [width][width] to the matrix and, if the nodes differ, its transpose at the
+   *  transposed place. */
   void add(int row, int column, const double *value);
-  bool factorize();    ///< false: the factors are of no use.  Collective
-  /** x, b: [node][width].  Collective. */
+  bool factorize();    ///< false: the factors must not be used. Collective
+  /** Solves for x with the right side b, both [node][width]. Collective. */
   void solve(const double *b, double *x);
   double memory_usage() const;
 
@@ -57,12 +66,12 @@ class RimFactors {
   LatticeRanks *const ranks;
   int width = 0;
   struct Copy {
-    int chunk, place;    // place: in the chunk
+    int chunk, place;    // place: number of the node in the chunk
   };
-  std::vector<int> first;    // [node + 1] range in copies
+  std::vector<int> first;    // [node + 1] ranges in copies
   std::vector<Copy> copies;
-  std::vector<int64_t> begin_of;    // [chunk] where the solution begins in those of all ranks
-  std::vector<int> bytes;           // [rank] of its solutions
+  std::vector<int64_t> begin_of;    // [chunk] start of its solution in the solutions of all ranks
+  std::vector<int> bytes;           // [rank] bytes of its solutions
 
   /** A chunk of this rank. */
   struct Chunk {
@@ -71,7 +80,7 @@ class RimFactors {
     EnvelopeFactors factors;
     explicit Chunk(LatticeRanks *ranks) : factors(ranks) {}
   };
-  std::vector<std::unique_ptr<Chunk>> chunks;    // null: that of another rank
+  std::vector<std::unique_ptr<Chunk>> chunks;    // null: the chunk of another rank
   std::vector<double> solutions;
 
   int number_of_ranks() const { return ranks ? ranks->number() : 1; }

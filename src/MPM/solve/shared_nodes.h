@@ -16,28 +16,29 @@
 
 namespace MPM_NS {
 
-/** One order of the nodes of all ranks, which stays when nodes come to other ranks. For vectors that all ranks have whole: these serve as long
- *  as the nodes are the same, whoever owns them. */
+/** A common order of the nodes of all ranks, which remains the same when nodes move to other ranks. It is
+ *  for vectors that are complete on all ranks: these remain valid as long as the set of nodes is the same,
+ *  whichever ranks own them. */
 class SharedNodes {
  public:
   explicit SharedNodes(LatticeRanks &ranks) : ranks(ranks) {}
 
-  /** A new order. mine: indices of the nodes that this rank has to do with, each owned by one rank; the first owned ones by this one.
-   *  Collective. */
+  /** Makes a new order. mine: indices of all nodes that this rank uses, beginning with those that it owns,
+   *  owned in number; each node is owned by one rank. Collective. */
   void number(const std::vector<LatticeIndex> &mine, std::size_t owned);
-  /** The nodes of this rank are others, and the order stays. False, on all ranks: together they are not those that there were. Then, nothing
-   *  is changed. Collective. */
+  /** Changes the nodes of this rank and keeps the order. Returns false on all ranks, and changes nothing,
+   *  if the set of nodes of all ranks has changed. Collective. */
   bool renumber(const std::vector<LatticeIndex> &mine, std::size_t owned);
   void clear();
 
-  /** Nodes of all ranks. */
+  /** Number of nodes of all ranks. */
   std::size_t size() const { return nodes.index.size(); }
-  /** The index of each of them. */
+  /** The index of each node, in the order. */
   const std::vector<LatticeIndex> &indices() const { return nodes.index; }
   /** The place in the order of each node of this rank. */
   const std::vector<int> &places() const { return place; }
-  /** all [size()][width]: what the ranks have of nodes that they own, [owned][width] in the order of those. The same on all ranks, bit by bit.
-   *  Collective. */
+  /** Gathers values of owned nodes, [owned][width] in the order of mine, from all ranks to all
+   *  [size()][width], in the common order. The result is the same on all ranks, bit by bit. Collective. */
   void gather(const std::vector<double> &of_owned, int width, std::vector<double> &all);
 
   double memory_usage() const;
@@ -45,10 +46,10 @@ class SharedNodes {
  private:
   LatticeRanks &ranks;
   LatticeNodes nodes;
-  std::vector<int> place;       // of nodes of this rank
-  std::vector<int> of_ranks;    // of owned nodes, rank by rank
-  std::vector<int> counts;      // of these, [rank]
-  std::vector<int> sizes;       // the same in bytes of a message
+  std::vector<int> place;       // places of nodes of this rank
+  std::vector<int> of_ranks;    // places of owned nodes, rank by rank
+  std::vector<int> counts;      // [rank] number of owned nodes
+  std::vector<int> sizes;       // [rank] bytes of a message
 
   bool find(const std::vector<LatticeIndex> &mine, std::vector<int> &to) const;
   void take(std::vector<int> &found, std::size_t owned);

@@ -66,7 +66,8 @@ template <int DIM> struct PointDomain {
       return hexahedron(x, w, g);
   }
 
-  /** Numbers of a symmetric matrix (xx yy xy, xx yy zz xy xz yz), and the place of its component a, b. */
+  /** Number of components of a symmetric matrix (xx yy xy, xx yy zz xy xz yz), and the index of its
+   *  component a, b. */
   static constexpr int symmetric = DIM * (DIM + 1) / 2;
   static constexpr int component(int a, int b) { return a == b ? a : a + b + DIM - 1; }
 
@@ -136,7 +137,7 @@ template <int DIM> struct PointDomain {
         mode[3 * (c + BIT) + d] = high - low;
       }
   }
-  /** And back, sums of the numbers of modes with the signs of the corners. */
+  /** The inverse: sums of the values of modes with the signs of the corners. */
   template <int BIT, int WIDTH, class T> [[gnu::always_inline]] static void to_corners(T *corner)
   {
     for (int c = 0; c < 8; c++)

@@ -18,9 +18,9 @@ namespace MPM_NS {
 
 enum InstructionSet { BASE, V3, V4, REFERENCE };
 
-/** The set that the name asks for: reference, baseline, avx2, avx512. Without a name, the environment
- *  variable MPM_ISA gives one; without both, it is the best set that runs here. False for an unknown
- *  name, and for a set that was not built or that the CPU lacks. */
+/** Selects the instruction set with this name: reference, baseline, avx2, avx512. Without a name, the
+ *  environment variable MPM_ISA gives it; without both, it is the best set that runs here. Returns false
+ *  for an unknown name, and for a set that was not built or that the CPU lacks. */
 bool select_isa(const char *name, InstructionSet &set);
 
 }    // namespace MPM_NS

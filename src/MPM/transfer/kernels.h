@@ -102,7 +102,7 @@ struct PointRows {
   const double *vol0;     ///< [n] initial volume: V sigma = V0 tau
   const double *mass;     ///< [n]
   double *xnew;           ///< [n][3] where G2P puts the new position (x itself, unless MUSL)
-  double *F = nullptr;    ///< [n][9] not touched: G2P brings it to the cache for the law, if given
+  double *F = nullptr;    ///< [n][9] prefetched by G2P for the law, if given; not changed
   int guarded = 0;        ///< behind the rows before this one there is memory that may be read
   const double *from = nullptr;    ///< [n][3] total frame: the position that G2P adds dt v to
   const double *P = nullptr;       ///< [n][dim*dim] total frame: first Piola-Kirchhoff stress, the
@@ -111,7 +111,7 @@ struct PointRows {
   /** CPDI: [n][dim][dim] half edges; CPDI2: [n][2^dim][dim] corners relative to x, in the order of
    *  transfer/cpdi.h. */
   const double *domain = nullptr;
-  /** CPDI2: where G2P puts them, the point at the center; null: not. */
+  /** CPDI2: where G2P puts the new corners, with the point at the center; null: nowhere. */
   double *corners_new = nullptr;
   double *velocity = nullptr;    ///< [n][3] where g2p_gradient puts the velocity; null: nowhere
 };
@@ -161,7 +161,7 @@ using G2P = int (*)(const PointRows &, const TransferStep &, int first, int last
  *  box: as filled by P2G; the stencil (order nodes upward) is added here. */
 using TileIO = void (*)(double *tile, double *nodes, const int slot[27], const int box[6]);
 
-/** All kernels of one dimension, shape and transfer. A null pointer: not in this combination. */
+/** All kernels of one dimension, shape, and transfer. Null pointers: not available in this combination. */
 struct TransferKernels {
   int nreal;             ///< reals of a tile entry and node record: 4 merged, 8 split
   int margin;            ///< nodes of a tile in front of the block, see P2G

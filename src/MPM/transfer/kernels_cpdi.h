@@ -380,7 +380,7 @@ template <int DIM> struct Stencil {
   }
 };
 
-/** P2G of what PARTS says; AFFINE: uses C; PIOLA: with P in the place of tau. */
+/** P2G of the quantities PARTS. AFFINE: uses C. PIOLA: with P in place of tau. */
 template <int DIM, Shape SHAPE, bool AFFINE, int NREAL, int PARTS, bool PIOLA = false>
 void p2g(const PointRows &rows, const TransferStep &transfer, int first, int last,
          const int base[3], double *tile, int box[6])
@@ -606,7 +606,7 @@ template <class C> TransferKernels domain_kernels()
   return k;
 }
 
-/** What trial motions need: forces by P, and gradients, with domains that stay as they are. */
+/** Kernels for trial motions: forces from P, and gradients, with domains that do not change. */
 template <class C> TransferKernels domain_trial_kernels()
 {
   TransferKernels k = table_with_tiles<C>();

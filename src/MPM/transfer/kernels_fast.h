@@ -103,8 +103,8 @@ template <int DIM, Shape SHAPE, int L> struct Frame {
   /** Position in units of h from tile node 0, less the shift: its whole part is the base node. */
   MPM_INLINE Quads<L> position(Quads<L> x) const { return (x - origin) * inv_h - low; }
 
-  /** The same of a point that is in the tile. Cells of several nodes: one at the low side of its block may be by rounding in the
-   *  cell before, whose first node the tile does not have. */
+  /** The same for a point that is known to be in the tile. With cells of several nodes, rounding may put a
+   *  point at the low side of its block into the previous cell, whose first node is not in the tile. */
   MPM_INLINE Quads<L> position_inside(Quads<L> x) const
   {
     if constexpr (CELL == 1)
@@ -175,9 +175,9 @@ __attribute__((noinline)) void copy_reals(double *to, const double *from, Index 
   for (Index i = 0; i < n; i++) to[i] = from[i];
 }
 
-/** Copies of the last points of a range, with room behind the rows: vectors of four reals read and
- *  write past a row of three or nine. Points up to a whole vector are like the first one, with whatever is
- *  set to zero in them. */
+/** Copies of the last points of a range, with room behind the rows, because vectors of four reals read and
+ *  write past a row of three or nine. Points are added up to a whole vector; they are copies of the first
+ *  one, with some rows set to zero. */
 struct LastPoints {
   static constexpr int ROOM = POINTS + 1;
   double x[3 * ROOM], v[3 * ROOM], f[3 * ROOM], C[9 * ROOM], tau[6 * ROOM], vol0[ROOM], mass[ROOM],
@@ -198,7 +198,7 @@ struct LastPoints {
   }
 };
 
-/** Brings the rows into the cache that P2G of PARTS reads, but for the places of points. */
+/** Prefetches the rows that P2G of PARTS reads, except the positions of points. */
 template <int DIM, int PARTS, bool AFFINE>
 MPM_INLINE void prefetch_momentum_and_force(const PointRows &points, Index ahead, bool total)
 {
@@ -338,8 +338,8 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
   }
 };
 
-/** P2G of what PARTS says; AFFINE: uses C; MLS: stress as an affine term. Of these two, those that make no
- *  difference are false, see PointsToNodesOf. */
+/** P2G of the quantities PARTS. AFFINE: uses C. MLS: stress as an affine term. Each of these two is false
+ *  where it makes no difference, see PointsToNodesOf. */
 template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS> struct PointsToNodes {
   static constexpr int ORDER = FunctionOf<SHAPE>::order;
   static constexpr bool momentum = PARTS & MOMENTUM;
@@ -607,7 +607,7 @@ template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS> str
   }
 };
 
-/** That for what is asked for. */
+/** The kernels of a combination. */
 template <class C, int PARTS, bool MLS = (PARTS & FORCE) && is_mls(C::shape, C::transfer)>
 using PointsToNodesOf =
     PointsToNodes<C::dim, C::shape, is_affine(C::transfer) && ((PARTS & MOMENTUM) || MLS), MLS,
@@ -657,7 +657,7 @@ template <int DIM, int ORDER, int NREAL, int L, bool MLS, bool GRADIENT> struct 
     }
   }
 
-  /** Weights along AXIS and what takes their place in derivatives. */
+  /** Weights along AXIS and the factors that replace them in derivatives. */
   template <int AXIS>
   static MPM_INLINE void along(const Weights &weights, const Weights &gradients, V *w, V *d)
   {

@@ -9,8 +9,8 @@
 #ifndef MPM_TRANSFER_KERNELS_ISA_H
 #define MPM_TRANSFER_KERNELS_ISA_H
 
-// From the choice of a user to a combination of constants, for which kernels are compiled: for all
-// files of kernels, the plain and the fast ones.
+// Selects the combination of constants that kernels are compiled for from the choice of a user, for all
+// files of kernels, plain and fast.
 
 #include "transfer/isa.h"
 #include "transfer/kernels.h"
@@ -31,7 +31,7 @@
 
 namespace MPM_NS {
 
-/** What is asked for, see MPMKernels::transfer. */
+/** The requested kernels, see MPMKernels::transfer. */
 struct KernelChoice {
   int dim;
   Shape shape;
@@ -58,7 +58,7 @@ namespace {    // not shared between instruction sets
 
 using namespace MPM_NS;
 
-/** use(constant) of the one among VALUES that is the given value. */
+/** Calls use(constant) with that one of VALUES that equals the given value. */
 template <class T, T FIRST, T... OTHERS, class Use> auto with(T value, Use use)
 {
   if constexpr (sizeof...(OTHERS) > 0)
@@ -96,10 +96,10 @@ template <int DIM, Shape SHAPE> constexpr int margin()
   return has_domain(SHAPE) ? block_side(DIM) : 1;
 }
 
-/** What P2G transfers. */
+/** Quantities that P2G transfers. */
 enum Parts { MOMENTUM = 1, FORCE = 2, ALL = 3 };
 
-/** The table of a combination, still without functions. */
+/** The table of a combination without its functions. */
 template <class C> TransferKernels table_of()
 {
   TransferKernels k = {};

@@ -15,24 +15,25 @@
 
 namespace MPM_NS {
 
-/** What is meant by the slopes of the weights w of a point. */
+/** Kinds of slopes of the weights w of a point. */
 enum SlopeKind {
   GRADIENT_SLOPES,    ///< grad N, with respect to the place of the point
   DISTANCE_SLOPES,    ///< N (x_i - x_p), the first moment about the point
-  FIT_SLOPES,         ///< D^-1 of it: fits of moving least squares, of shapes with an inv_moment
+  /** D^-1 times DISTANCE_SLOPES: moving least squares, for shapes with an inv_moment */
+  FIT_SLOPES,
   ABSOLUTE_SLOPES,    ///< |dN/dx| along each axis, for bounds; not with domains
   NO_SLOPES           ///< for values alone
 };
 
-/** Rows behind those of a batch that transfers may read and write. */
+/** Number of rows behind those of a batch that transfers may read and write. */
 constexpr int SPARE_ROWS = 8;
 
 /** The nodes that a batch of points reaches, made once for any number of transfers. */
 struct ScalarStencil {
   int n = 0;
   int place[BATCH];    ///< first node in the tile
-  // along the axes: weights, and what takes their place in slopes; of the last axis a row for each point, too. All are
-  // numbers, also behind the last point
+  // Weights along each axis, and the factors that replace them in slopes; for the last axis also a row for
+  // each point. All entries must be numbers, also behind the last point.
 
   alignas(64) double w[3][4][BATCH + SPARE_ROWS] = {};
   alignas(64) double slope[3][4][BATCH + SPARE_ROWS] = {};
@@ -41,15 +42,15 @@ struct ScalarStencil {
 
   SlopeKind kind;
 
-  // of the plain loops, which look at the points again
+  // for the plain loops, which read the points again
 
   PointRows points;
   TransferStep step;
   int base[3];
 };
 
-/** What points give to nodes, where they have it: rows of slopes, one real for each axis, and values, both times a
- *  factor of the point. Widths: reals from one point to the next. */
+/** Rows in memory that points give to nodes: slopes, one real for each axis, and values, both to be
+ *  multiplied by a factor of the point. Widths: reals from one point to the next. */
 struct ScalarSource {
   const double *slopes;
   int slope_width;
@@ -58,11 +59,12 @@ struct ScalarSource {
   const double *factors;
 };
 
-/** Transfers of one number between the points of a batch and the tile of their block, an entry of which is one real.
- *  Tiles are those of the other transfers but for that, see kernels.h. Each entry of a tile must be a number,
- *  whether or not a point reaches it.
+/** Transfers of one number between the points of a batch and the tile of their block. Tiles are those of
+ *  the other transfers, see kernels.h, except that an entry is one real. Each entry of a tile must be a
+ *  number, whether or not a point reaches it.
  *
- *  Points have rows of four reals: one for the slopes along each axis (z is not used in 2d), and one for the weights. */
+ *  Points have rows of four reals: one for the slopes along each axis (z is not used in 2d), and one for
+ *  the weights. */
 struct ScalarKernels {
   /** The stencils of the points [0,n), n <= BATCH. box: as for P2G, or null. */
   void (*prepare)(const PointRows &, const TransferStep &, int n, const int base[3], SlopeKind,
@@ -73,16 +75,18 @@ struct ScalarKernels {
   void (*add_times)(const ScalarStencil &, const ScalarSource &, double *tile);
   /** tile += sum over points of N_ip q[p]. */
   void (*add_values)(const ScalarStencil &, const double *q, double *tile);
-  /** The other way: q[4p+3] = sum over nodes of N_ip tile_i, q[4p ... 4p+2] = that of slope_ip tile_i. There must be memory for
-   *  SPARE_ROWS rows behind the last one, which get anything; so in get_values(). */
+  /** q[4p+3] = sum over nodes of N_ip tile_i, and q[4p ... 4p+2] = sum over nodes of slope_ip tile_i. There
+   *  must be memory for SPARE_ROWS rows behind the last one, which receive arbitrary values; the same holds
+   *  for get_values(). */
   void (*get)(const ScalarStencil &, const double *tile, double *q);
   void (*get_values)(const ScalarStencil &, const double *tile, double *q);
   /** As TileIO, with one real for each node. */
   TileIO flush, load;
-  /** Of n nodes: sums become sums over weights, zero where there is no weight. */
+  /** Divides the sums of n nodes by their weights; zero where the weight is zero. */
   void (*divide)(double *sums, const double *weights, std::size_t n);
 
-  /** Those that go with a table of transfers. Shapes with domains (CPDI) have the plain loops in all of them. */
+  /** The kernels that belong to a table of transfers. Shapes with domains (CPDI) use the plain loops in all
+   *  tables. */
   static ScalarKernels select(const MPMKernels &, int dim, Shape);
 };
 

@@ -21,7 +21,7 @@
 
 namespace {
 
-/** Node of a tile as one point sees it. */
+/** A node of a tile as seen from one point. */
 struct Node {
   int index;         ///< in the tile, in nodes
   double w;          ///< weight
@@ -29,7 +29,7 @@ struct Node {
   double d[3];    ///< position of the node minus that of the point, or of the center of its domain
 };
 
-/** Position from tile node 0 in cells, less the shift: its floor is the cell of a point. */
+/** Position relative to tile node 0 in cells, minus the shift. Its floor is the cell of a point. */
 template <Shape SHAPE>
 double tile_position(double x, const TransferStep &step, const int *base, int axis)
 {
@@ -38,7 +38,7 @@ double tile_position(double x, const TransferStep &step, const int *base, int ax
       (F::shift + (base[axis] - (base[axis] & (F::cell - 1))) / F::cell);
 }
 
-/** The nodes that a point reaches by its function along each axis. */
+/** The nodes that a point reaches with its functions along the axes. */
 template <int DIM, Shape SHAPE> struct PointStencil {
   using F = FunctionOf<SHAPE>;
   static constexpr int N = F::nodes, count = DIM == 3 ? N * N * N : N * N;
@@ -82,7 +82,7 @@ template <int DIM, Shape SHAPE> struct PointStencil {
   }
 };
 
-/** The nodes that the corners of a domain reach by linear functions. */
+/** The nodes that the corners of a domain reach with linear functions. */
 template <int DIM, Shape SHAPE> struct DomainStencil {
   static constexpr int N = 1 << DIM, count = N * N;
   int low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
@@ -140,8 +140,8 @@ using Stencil =
 
 enum TileMove { FLUSH, LOAD, LOAD_MEAN };
 
-/** Adds the nodes of the box to the nodes of the blocks and clears them, or loads them from there, or the mean
- *  of their velocities. */
+/** Adds the nodes of the box to the nodes of the blocks and clears them (FLUSH), loads them from there
+ *  (LOAD), or loads the mean of their velocities (LOAD_MEAN). */
 template <int DIM, Shape SHAPE, int NREAL, TileMove MOVE>
 void move_box(double *tile, double *nodes, const int slot[27], const int box[6])
 {
