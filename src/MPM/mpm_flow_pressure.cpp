@@ -22,8 +22,9 @@ using namespace MPM_NS;
 
 // distance over which points make room for others, in spacings
 static constexpr double SPREAD = 8.0;
-// share of the surroundings of a cell, and mean share of its neighbors, from which on the cell is wet
-static constexpr double HALF = 0.5, SURROUNDED = 0.6;
+// share of the surroundings of a cell, and mean share of its neighbors, from which on the cell is wet. Water that ends in the
+// middle of cells fills one half of them but for round-off, which must not decide: it depends on the number of ranks
+static constexpr double HALF = 0.5 + 1.0e-9, SURROUNDED = 0.6;
 // excess of points in a cell cut by a region that may not be real: points come in steps there, and walls do not
 static constexpr double UNSURE = 0.25;
 // open share of the surroundings of a cell below which its neighbors decide whether it is wet, if it has

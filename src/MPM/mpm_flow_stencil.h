@@ -115,11 +115,13 @@ template <int dim, class T> class MPMFlowNear {
     make(one.of);
     return one.of;
   }
-  /** Calls f(T &) for all objects that are there. */
-  template <class F> void for_all(const F &f)
+  /** Calls leave(T &) for all objects that are there, after which there are none. */
+  template <class F> void leave_all(const F &leave)
   {
-    for (auto &one : entries)
-      if (one.base[0] != INT_MIN) f(one.of);
+    for (auto &one : entries) {
+      if (one.base[0] != INT_MIN) leave(one.of);
+      one.base[0] = INT_MIN;
+    }
   }
 
  private:

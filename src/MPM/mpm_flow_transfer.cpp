@@ -183,8 +183,9 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
           for (int n = 0; n < 3; n++) row[n] += share * filling.share[dim - 1][n];
         }
     }
+    // block by block: sums then do not depend on which ranks have the other blocks
+    near.leave_all(add);
   }
-  near.for_all(add);
 }
 
 template <int dim>
