@@ -192,9 +192,9 @@ void CreatePointsOptions::add_to(Options &o, int dim)
       .standard("2");
   o.add("spacing",
         {one_or_axes(spacing, dim, "D Dx Dy Dz", POSITIVE, "distance",
-                     "distance of neighboring points", "distance along x, y, z")})
+                     "distance between neighboring points", "distance along x, y, z")})
       .standard("");
-  o.add("fix", {text(fix_id, "fix-ID", "ID of the fix mpm whose lattice is meant")})
+  o.add("fix", {text(fix_id, "fix-ID", "ID of the fix mpm whose lattice is used")})
       .standard("the only fix mpm");
   o.add("jitter",
         {number(jitter, "fraction", {0.0, 0.5, true}, "",
@@ -202,7 +202,7 @@ void CreatePointsOptions::add_to(Options &o, int dim)
          integer(seed, "seed", POSITIVE, "random number seed")})
       .standard("none");
   o.add("overlap", {yes_no(allow_overlap)},
-        "allow new points where there are material points already");
+        "allow new points in places that have material points already");
   o.add("outside", {word(ignore_outside, {{"error", false}, {"ignore", true}})},
         "what to do when the region reaches beyond the box");
   o.add("diameter",
@@ -211,20 +211,27 @@ void CreatePointsOptions::add_to(Options &o, int dim)
       .standard("edge of a cube (2d: square) of the volume");
   o.add("share",
         {number(share, "share", {0.0, 1.0, true}, "",
-                "share of the volume of their places that the points have")});
+                "share of its site's volume that each point gets")});
   o.add("cut", {yes_no(cut)},
-        "give points at the surface of the region the part of their cell that is inside");
+        "points at the surface of the region get only the part of their cell that is inside");
   o.add("relax",
         {integer(relax, "N", {0, 10000, true},
-                 "move points N times, to follow the surface of the region with equal volumes")});
+                 "number of iterations that move points to follow the surface of the region with "
+                 "equal volumes")});
   std::vector<OptionValue> words = {
-      text(split, "v_n", "variable of style equal: number of points along each axis of a site"),
+      text(split, "v_n",
+           "equal-style variable with the number of points along each axis of a site"),
       text(split_place[0], "v_x",
-           "variable of style internal that it knows the place of the site by"),
-      text(split_place[1], "v_y", "the same along y")};
-  if (dim == 3) words.push_back(text(split_place[2], "v_z", "the same along z"));
+           "internal-style variable that receives the x coordinate of the site"),
+      text(split_place[1], "v_y",
+           "internal-style variable that receives the y coordinate of the site")};
+  if (dim == 3)
+    words.push_back(text(split_place[2], "v_z",
+                         "internal-style variable that receives the z coordinate of the site"));
   o.add("split", words).standard("one point per site");
-  o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
+  o.add("group",
+        {text(group_id, "group-ID",
+              "group that the points join; it is created if it does not exist")})
       .standard("all");
 }
 
@@ -872,27 +879,32 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
 {
   using namespace option;
   Options o(command);
-  o.add("scale", {number(scale, "factor", POSITIVE, "", "factor on the coordinates of the file")});
+  o.add("scale",
+        {number(scale, "factor", POSITIVE, "",
+                "factor by which the coordinates in the file are multiplied")});
   o.add("move",
-        {axes(move, dim, "x y z", ANY_NUMBER, "distance", "added to the scaled coordinates")});
+        {axes(move, dim, "x y z", ANY_NUMBER, "distance",
+              "displacement that is added to the scaled coordinates")});
   o.add("part", {text(part, "name", "name or tag of a physical group of the mesh")})
       .standard("all elements of the dimension of the simulation");
   o.add("types", {word(by_type, {{"one", false}, {"physical", true}})},
-        "type of all points, or that of the tag or number of the physical group");
+        "types of the points: the same for all, or the tag or number of their physical group");
   o.add("groups", {word(by_group, {{"none", false}, {"physical", true}})},
-        "groups that points join in addition, by the names of physical groups");
+        "additional groups that points join, with the names of their physical groups");
   o.add("data",
-        {text(one.name, "name", "data of the file for nodes (mesh) or elements"),
+        {text(one.name, "name", "name of data in the file, for nodes (mesh) or elements"),
          text(one.quantity, "quantity",
-              "what they are for points, as columns of a table; may be given several times")})
+              "quantity of the points that these data give, named like columns of a table; may be "
+              "given several times")})
       .standard("none")
       .then([this] {
         data.push_back({one.name, one.quantity, 1.0});
       });
   o.add("factor",
-        {text(one.name, "name", "data of the file"),
+        {text(one.name, "name", "name of data in the file"),
          number(one.factor, "a", ANY_NUMBER, "",
-                "factor on their numbers, for other units; may be given for several data")})
+                "factor by which these data are multiplied, for other units; may be given for "
+                "several data")})
       .standard("1")
       .then([this] {
         factors.push_back(one);
@@ -900,12 +912,15 @@ Options CreatePointsMeshOptions::declare(const std::string &command, int dim, bo
   if (nodes) thin.declare(o, dim);
   o.add("halve",
         {integer(halve, "N", {0, 6, true},
-                 "divide elements N times along each edge: 4^N (solids: 8^N) points in each")});
+                 "number of times that edges of elements are halved: 4^N (solids: 8^N) points in "
+                 "each element")});
   o.add("diameter",
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("edge of a cube (2d: square) of the volume");
-  o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
+  o.add("group",
+        {text(group_id, "group-ID",
+              "group that the points join; it is created if it does not exist")})
       .standard("all");
   o.refuse([this, has_radius, nodes] {
     auto rules = thin.rules();

@@ -42,32 +42,36 @@ void CreatePointsImageOptions::add_to(Options &o, int dim)
   using namespace option;
   o.add("pixel",
         {one_or_axes(pixel, dim, "p px py pz", POSITIVE, "distance",
-                     "length of the edges of a pixel", "its length along x, y, z")})
+                     "length of the edges of a pixel", "length of a pixel along x, y, z")})
       .standard("as the file says");
   o.add("origin",
         {option::axes(origin, dim, "x y z", ANY_NUMBER, "distance",
                       "lower corner of the image in the box")});
   std::vector<OptionValue> words = {
-      text(axes[0], "C", "axis of the box that columns go along: x, y, z, -x, -y, or -z"),
-      text(axes[1], "R", "the same of rows, from the first one of the file on")};
-  if (dim == 3) words.push_back(text(axes[2], "S", "the same of slices, in 3d only"));
+      text(axes[0], "C", "axis of the box along which columns are counted: x, y, z, -x, -y, or -z"),
+      text(axes[1], "R", "the same for rows, from the first row in the file on")};
+  if (dim == 3) words.push_back(text(axes[2], "S", "the same for slices, in 3d only"));
   o.add("axes", words).standard("x -y z for pictures and x y z for NRRD and raw");
   o.add("threshold",
-        {number(threshold, "T", ANY_NUMBER, "", "what has at least this gray value is the body")})
+        {number(threshold, "T", ANY_NUMBER, "",
+                "pixels with at least this gray value belong to the body")})
       .standard("half of white");
-  o.add("invert", {yes_no(invert)}, "what has less than the threshold is the body");
-  o.add("from",
-        {number(from_value, "V", ANY_NUMBER, "",
-                "gray value from which on points have another type"),
-         text(from_type, "type",
-              "this one, NULL for no points; may be given several times, in ascending order")})
+  o.add("invert", {yes_no(invert)}, "pixels below the threshold belong to the body");
+  o.add(
+       "from",
+       {number(from_value, "V", ANY_NUMBER, "",
+               "gray value at and above which points have another type"),
+        text(
+            from_type, "type",
+            "this other type, NULL for no points; may be given several times, in ascending order")})
       .then([this] {
         from.emplace_back(from_value, from_type);
       })
       .standard("none");
   o.add("color",
         {numbers(color, 3, "R G B", {0.0, 65535.0, true}, "", "color of pixels"),
-         text(color_type, "type", "their type, NULL for no points; may be given several times")})
+         text(color_type, "type",
+              "type of points in these pixels, NULL for no points; may be given several times")})
       .then([this] {
         colors.push_back({{color[0], color[1], color[2]}, color_type});
       })
@@ -77,25 +81,26 @@ void CreatePointsImageOptions::add_to(Options &o, int dim)
               {{"lattice", false, "points at the sites of ppc or spacing"},
                {"pixels", true, "a point at the center of each pixel"}})});
   o.add("smooth",
-        {number(smooth, "W", {0.0, MAX_SMOOTH, true}, "",
-                "surface between pixels, of values smoothed over W pixels, 0 for not at all")})
+        {number(
+            smooth, "W", {0.0, MAX_SMOOTH, true}, "",
+            "find the surface between pixels from values smoothed over W pixels; 0: no smoothing")})
       .standard("the surface is that of the pixels");
   o.add("field",
         {text(field.name, "name",
-              "d_name of fix property/atom, or a history variable, which gets a times the gray "
-              "value plus b"),
+              "d_name of fix property/atom, or a history variable, which is set to a times the "
+              "gray value plus b"),
          number(field.scale, "a", ANY_NUMBER, "", "factor"),
          number(field.offset, "b", ANY_NUMBER, "",
-                "offset; may be given several times, for others")})
+                "offset; may be given several times, for several names")})
       .then([this] {
         fields.push_back(field);
       })
       .standard("none");
-  o.add("in", {text(region_id, "region-ID", "only what is in this region, too")})
+  o.add("in", {text(region_id, "region-ID", "region to which the points are limited in addition")})
       .standard("all of the image");
   o.add("raw",
         {numbers(raw.n, 3, "NX NY NZ", POSITIVE, "",
-                 "columns, rows, slices of a file that has values only"),
+                 "numbers of columns, rows, and slices of a file without a header"),
          word(raw.kind,
               {{"uint8", static_cast<int>(ImageKind::UINT8)},
                {"int8", static_cast<int>(ImageKind::INT8)},
@@ -104,16 +109,18 @@ void CreatePointsImageOptions::add_to(Options &o, int dim)
                {"uint32", static_cast<int>(ImageKind::UINT32)},
                {"int32", static_cast<int>(ImageKind::INT32)},
                {"float", static_cast<int>(ImageKind::FLOAT)},
-               {"double", static_cast<int>(ImageKind::DOUBLE), "kind of its numbers"}})})
+               {"double", static_cast<int>(ImageKind::DOUBLE),
+                "type of the numbers in this file"}})})
       .standard("the file has a header");
   o.add("endian",
         {word(raw.big_endian,
-              {{"little", false}, {"big", true, "order of the bytes of numbers with raw"}})});
-  o.add("skip", {integer(raw.skip, "N", NOT_NEGATIVE, "bytes in front of the values, with raw")});
+              {{"little", false}, {"big", true, "order of the bytes of a number, with raw"}})});
+  o.add("skip",
+        {integer(raw.skip, "N", NOT_NEGATIVE, "number of bytes in front of the values, with raw")});
   o.add("slices",
         {integer(slices.first, "first", NOT_NEGATIVE,
-                 "number of the first file of a stack, in the place of %d or %04d of the name"),
-         integer(slices.last, "last", NOT_NEGATIVE, "number of the last one")})
+                 "number of the first file of a stack, which replaces %d or %04d in the name"),
+         integer(slices.last, "last", NOT_NEGATIVE, "number of the last file")})
       .standard("one file");
 }
 

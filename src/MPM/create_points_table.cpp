@@ -61,14 +61,19 @@ Options CreatePointsTableOptions::declare(int dim, bool has_radius)
   Options o("create_points table");
   o.add("columns",
         {text(columns, "name,name,...",
-              "their names, separated by commas, for files without names")})
+              "names of the columns, separated by commas, for files without names")})
       .standard("as the file says");
-  o.add("scale", {number(scale, "factor", POSITIVE, "", "factor on lengths: places and volumes")});
-  o.add("move", {axes(move, dim, "x y z", ANY_NUMBER, "distance", "added to the scaled places")});
+  o.add("scale",
+        {number(scale, "factor", POSITIVE, "",
+                "factor by which lengths are multiplied, in positions and volumes")});
+  o.add("move",
+        {axes(move, dim, "x y z", ANY_NUMBER, "distance",
+              "displacement that is added to the scaled positions")});
   o.add("factor",
         {text(factor.column, "name", "column of the file"),
          number(factor.value, "a", ANY_NUMBER, "",
-                "factor on its numbers, for other units; may be given for several columns")})
+                "factor by which this column is multiplied, for other units; may be given for "
+                "several columns")})
       .standard("1")
       .then([this] {
         factors.push_back(factor);
@@ -76,24 +81,27 @@ Options CreatePointsTableOptions::declare(int dim, bool has_radius)
   o.add("data",
         {text(renamed[0], "name", "column of the file"),
          text(renamed[1], "quantity",
-              "what it is, or NULL: it is left out; may be given for several columns")})
-      .standard("what the columns are called")
+              "quantity in this column, or NULL to ignore the column; may be given for several "
+              "columns")})
+      .standard("the names of the columns")
       .then([this] {
         data.push_back(renamed);
       });
   o.add("volume",
         {number(volume, "V", POSITIVE, "volume",
-                "initial volume of each point, for files that have none")})
+                "initial volume of each point, for files without volumes")})
       .standard("a column");
-  o.add("part", {integer(part, "T", POSITIVE, "only rows whose type in the file is this number")})
+  o.add("part", {integer(part, "T", POSITIVE, "type in the file of the rows to use")})
       .standard("all rows");
   o.add("ids", {word(new_ids, {{"file", false}, {"new", true}})},
-        "IDs of the column id, if there is one, or new ones");
+        "IDs of the points: from the column id, if there is one, or new IDs");
   o.add("diameter",
         {number(diameter, "D", POSITIVE, "distance",
                 "diameter of the points in contact with grains")})
       .standard("a column, or the edge of a cube (2d: square) of the volume");
-  o.add("group", {text(group_id, "group-ID", "group that the points join; made if there is none")})
+  o.add("group",
+        {text(group_id, "group-ID",
+              "group that the points join; it is created if it does not exist")})
       .standard("all");
   o.refuse([has_radius] {
     return OptionRules{{!has_radius, "diameter", "needs atom_style hybrid sphere mpm"}};

@@ -36,10 +36,11 @@ Options MPMAbsorbOptions::declare()
 {
   using namespace option;
   Options o("fix mpm/absorb");
-  o.add("region", {text(region_id, "region-ID", "points that are in this region are removed")})
+  o.add("region", {text(region_id, "region-ID", "ID of the region in which points are removed")})
       .once()
       .standard("none, must be given");
-  o.add("every", {integer(look_every, "N", POSITIVE, "look for points every this many steps")});
+  o.add("every",
+        {integer(look_every, "N", POSITIVE, "look for points to remove every this many steps")});
   o.refuse([=] {
     return OptionRules{{region_id.empty(), "", "needs the keyword region"}};
   });

@@ -35,18 +35,18 @@ Options MPMAirbagOptions::declare()
   using namespace option;
   Options o("fix mpm/airbag");
   o.argument(text(elements_id, "elements-ID"));
-  o.add(
-       "pressure",
-       {variables(&pressure, 1, "p", "pressure", "pressure above that outside, can be a variable")})
+  o.add("pressure",
+        {variables(&pressure, 1, "p", "pressure",
+                   "excess over the pressure outside, can be a variable")})
       .then([this] {
         has_pressure = true;
       })
       .once()
-      .standard("that of the gas");
+      .standard("pressure of the gas");
   o.add("gas",
         {number(p, "p", POSITIVE, "pressure", "pressure of the gas when this fix is first used"),
          number(gamma, "gamma", AT_LEAST_ONE, "",
-                "ratio of its specific heats, 1: its temperature is constant")})
+                "ratio of the specific heats of the gas; 1: constant temperature")})
       .then([this] {
         has_gas = true;
       })
@@ -55,13 +55,13 @@ Options MPMAirbagOptions::declare()
   o.add("outside", {number(outside, "p", NOT_NEGATIVE, "pressure", "pressure outside")}).once();
   o.add("temperature",
         {number(temperature, "T", POSITIVE, "temperature",
-                "of the gas when this fix is first used, and outside"),
+                "temperature of the gas when this fix is first used, and of the outside"),
          number(R, "R", POSITIVE, "energy/(mass temperature)", "specific gas constant")})
       .once()
-      .standard("not known: neither inflow nor vent");
+      .standard("unknown: inflow and vent cannot be used");
   o.add("inflow",
         {variables(inflow, 2, "rate T", "mass/time, temperature",
-                   "mass of gas that comes in, and its temperature, can be variables")})
+                   "mass of gas that flows in per time, and its temperature, can be variables")})
       .then([this] {
         has_inflow = true;
       })
@@ -69,12 +69,12 @@ Options MPMAirbagOptions::declare()
       .standard("none");
   o.add("vent",
         {number(vent, "A", POSITIVE, "distance^2", "area of holes to the outside"),
-         number(coefficient, "C", POSITIVE, "", "their discharge coefficient")})
+         number(coefficient, "C", POSITIVE, "", "discharge coefficient of these holes")})
       .once()
       .standard("none");
   o.add("opens",
         {number(opens, "p", NOT_NEGATIVE, "pressure",
-                "vents open for good when the pressure is so much above that outside")})
+                "excess over the pressure outside at which the vents open for good")})
       .once();
   o.refuse([this] {
     return OptionRules{

@@ -104,9 +104,9 @@ Options MPMBoundaryOptions::declare(int dim)
   o.argument(word(kind, {{"stick", STICK}, {"slip", SLIP}, {"separate", SEPARATE}}, "kind"));
   o.add("friction",
         {number(friction, "mu", NOT_NEGATIVE, "1",
-                "Coulomb coefficient, for *slip* and *separate*")});
-  heat.declare(o, "it becomes heat of the material",
-               "share of it that becomes heat of the material");
+                "coefficient of Coulomb friction, for *slip* and *separate*")});
+  heat.declare(o, "the energy lost by friction becomes heat of the material",
+               "share of this energy that becomes heat of the material");
   o.add("velocity",
         {variables(velocity, 3, "vx vy vz", "velocity",
                    "velocity of the wall, can be variables (see below); with *stick*, NULL leaves "
@@ -131,7 +131,8 @@ Options MPMBoundaryOptions::declare(int dim)
                    "angular velocity, can be a variable (see below)")})
       .once()
       .standard("none");
-  o.add("field", {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` to act on")})
+  o.add("field",
+        {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` on which this fix acts")})
       .standard("all");
   o.refuse([=] {
     return OptionRules{

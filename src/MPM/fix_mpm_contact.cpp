@@ -111,7 +111,7 @@ Options MPMContactOptions::declare()
               {{"frictionless", FRICTIONLESS, "bodies slide freely"},
                {"coulomb",
                 COULOMB,
-                "friction",
+                "bodies slide with friction",
                 {number(kinetic_friction, "mu", NOT_NEGATIVE, "1", "coefficient of friction"),
                  optional(number(static_friction, "mu_s", NOT_NEGATIVE, "1",
                                  "coefficient of static friction, not below mu; default: mu"))}},
@@ -124,28 +124,27 @@ Options MPMContactOptions::declare()
                  number(release_work, "work", NOT_NEGATIVE, "pressure*distance",
                         "work to separate the bodies, per area"),
                  optional(number(kinetic_friction, "mu", NOT_NEGATIVE, "1",
-                                 "coefficient of friction, in addition; default: 0"))}}})})
+                                 "coefficient of additional friction; default: 0"))}}})})
       .standard("frictionless");
   o.add(
       "normal",
       {word(normal_by,
             {{"colinear", COLINEAR}, {"volume", VOLUME}, {"mass", MASS}, {"logistic", LOGISTIC}})},
       "how the normal of the interface is computed from the bodies");
-  o.add(
-      "gap",
-      {word(
-          gap,
-          {{"no", false, "bodies are in contact as soon as they have nodes in common"},
-           {"yes",
-            true,
-            "bodies are in contact when they touch",
-            {optional(number(
-                full, "share", {0.5, 1.0, true}, "",
-                "share of the volume of a node that they fill when they touch; default: 1"))}}})});
-  heat.declare(o,
-               "it becomes heat, which two bodies share like their effusivities "
-               ":math:`\\sqrt{k \\rho c}`",
-               "share of it for the body that is named first, the other one has the rest");
+  o.add("gap",
+        {word(gap,
+              {{"no", false, "bodies are in contact as soon as they have nodes in common"},
+               {"yes",
+                true,
+                "bodies are in contact when they touch",
+                {optional(number(full, "share", {0.5, 1.0, true}, "",
+                                 "share of the volume of a node that bodies fill when they touch; "
+                                 "default: 1"))}}})});
+  heat.declare(
+      o,
+      "the energy lost by friction becomes heat, which two bodies share in the ratio of their "
+      "effusivities :math:`\\sqrt{k \\rho c}`",
+      "share of this energy for the body that is named first; the other body gets the rest");
   o.refuse([=] {
     const bool slides = law == ADHESIVE || (law == COULOMB && kinetic_friction > 0.0);
     return OptionRules{

@@ -84,11 +84,13 @@ Options MPMDashpotOptions::declare(int dim)
   o.argument(number(speed_p, "cp", POSITIVE, "velocity", ""));
   o.argument(number(speed_s, "cs", NOT_NEGATIVE, "velocity", ""));
   o.add("density",
-        {number(density, "rho", POSITIVE, "mass/distance^dim", "of the material on the far side")})
-      .standard("that of the points next to the surface");
+        {number(density, "rho", POSITIVE, "mass/distance^dim",
+                "density of the material on the far side")})
+      .standard("density of the points next to the surface");
   o.add("incoming",
-        {variables(incoming, 3, "vx vy vz", "velocity",
-                   "of the material in waves that come from the far side, can be variables")})
+        {variables(
+            incoming, 3, "vx vy vz", "velocity",
+            "velocity of the material in waves that come from the far side, can be variables")})
       .then([this] {
         has_incoming = true;
       })
@@ -97,11 +99,11 @@ Options MPMDashpotOptions::declare(int dim)
   o.add("support", {yes_no(support)}, "hold the stress that the surface has at the start");
   o.add("spring",
         {number(relax, "tau", POSITIVE, "time",
-                "springs besides the dashpots, of stiffness rho c/tau for each area")})
+                "time that gives springs besides the dashpots the stiffness rho c/tau per area")})
       .standard("none");
   o.add("column",
         {text(column, "fix-ID",
-              "of a :doc:`fix mpm/column <fix_mpm_column>`: the far side moves like it")})
+              "ID of a :doc:`fix mpm/column <fix_mpm_column>` with which the far side moves")})
       .standard("none, the far side is at rest");
   MPMFace::declare(o, spacing, area);
   o.refuse([=] {

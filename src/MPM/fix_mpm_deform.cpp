@@ -82,9 +82,10 @@ Options MPMDeformOptions::declare(int dim)
                     shear ? "angle of shear at the end of the step"
                           : "engineering strain L/L0 - 1 at the end of the step",
                     value("e", "")});
-    ways.push_back({"stress", STRESS, "mean true stress that the cell is to have, tension positive",
+    ways.push_back({"stress", STRESS,
+                    "target of the mean true stress in the cell, tension positive",
                     value("s", "pressure")});
-    o.add(PART_NAME[k], {word(drive[k], ways, "way")}).standard("held at what it is").once();
+    o.add(PART_NAME[k], {word(drive[k], ways, "way")}).standard("kept as it is").once();
   }
   return o;
 }

@@ -48,9 +48,9 @@ Options MPMDtOptions::declare()
   Options o("fix mpm/dt");
   o.argument(number(fraction, "fraction of h/(c+|v|)", {0.0, 2.0, false, true}));
   o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many steps")});
-  o.add(
-      "grow",
-      {number(grow, "R", AT_LEAST_ONE, "", "largest factor by which the time step grows at once")});
+  o.add("grow",
+        {number(grow, "R", AT_LEAST_ONE, "",
+                "largest factor by which the time step grows at a time")});
   o.add("min",
         {number(dt_min, "dt", POSITIVE, "time", "smallest time step; a smaller one is an error")})
       .standard("none");
@@ -61,10 +61,10 @@ Options MPMDtOptions::declare()
       .standard("no limit");
   o.add("grains",
         {number(grains, "S", {0.0, 1.0, false, true}, "",
-                "largest share of the duration of a collision of grains in a step")})
+                "largest time step, as a share of the duration of a collision of grains")})
       .standard("no limit");
   o.add("until",
-        {number(until, "T", POSITIVE, "time", "end runs when this time has elapsed, exactly")})
+        {number(until, "T", POSITIVE, "time", "end the run exactly when this time has elapsed")})
       .standard("none");
   o.refuse([=] {
     return OptionRules{{dt_max > 0.0 && dt_min > dt_max, "min", "{min} is above max {max}"}};

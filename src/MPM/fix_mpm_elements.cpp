@@ -97,20 +97,20 @@ Options MPMElementsOptions::declare(int dim)
         {text(part, "name", "name or tag of a physical group of the mesh, as in create_points")})
       .standard("all elements of the dimension of the simulation");
   o.add("locking", {word(fbar, {{"none", false}, {"fbar", true}})},
-        "what is averaged over an element against volumetric locking");
+        "quantity that is averaged over an element to prevent volumetric locking");
   thin.declare(o, dim);
   o.add("compression", {word(compression, {{"yes", true}, {"no", false}})},
-        "do surfaces and lines resist compression, or wrinkle and sag?");
+        "whether surfaces and lines resist compression (no: they wrinkle and sag)");
   o.add("bending", {word(bending, {{"no", NONE}, {"yes", CONSTANT}, {"linear", LINEAR}})},
-        "do surfaces of triangles, and lines, resist bending, as elastic plates and rods? linear: "
-        "with a curvature that changes within triangles");
+        "whether surfaces of triangles, and lines, resist bending like elastic plates and rods; "
+        "linear: with a curvature that changes within triangles");
   o.add("curved", {yes_no(curved)},
-        "do closed surfaces of triangles, or in 2d of lines, stand for the curved surface through "
-        "their nodes?");
+        "whether closed surfaces of triangles (2d: of lines) represent the curved surface through "
+        "their nodes");
   o.add("axes",
         {numbers(axes, 6, "a1x a1y a1z a2x a2y a2z", ANY_NUMBER, "",
-                 "axis 1 of the material, and a vector on the side of axis 2, as they lie on a "
-                 "surface in 3d before it is deformed")})
+                 "axis 1 of the material, and a vector on the side of axis 2, on the undeformed "
+                 "surface in 3d")})
       .then([this] {
         has_axes = true;
       })

@@ -61,41 +61,43 @@ Options MPMEmitOptions::declare(int dim)
 {
   using namespace option;
   Options o("fix mpm/emit");
-  o.add("region", {text(region_id, "region-ID", "the mouth, through which material comes")})
+  o.add("region",
+        {text(region_id, "region-ID", "region of the mouth, through which material flows in")})
       .once()
       .standard("none, must be given");
   o.add("velocity",
         {variables(velocity, 3, "vx vy vz", "velocity",
-                   "velocity of the material that comes, can be variables")})
+                   "velocity of the inflowing material, can be variables")})
       .then([this] {
         has_velocity = true;
       })
       .once()
       .standard("none, must be given");
   o.add("normal",
-        {numbers(normal, 3, "nx ny nz", ANY_NUMBER, "", "direction of the flow, of any length")})
-      .standard("that of the velocity at the start");
+        {numbers(normal, 3, "nx ny nz", ANY_NUMBER, "",
+                 "vector of any length in the direction of the flow")})
+      .standard("direction of the velocity at the start");
   o.add("ppc",
-        {integer(ppc, "N", {1, MOST_PPC, true}, "points along each edge of a cell of fix mpm")});
+        {integer(ppc, "N", {1, MOST_PPC, true},
+                 "number of points along each edge of a cell of fix mpm")});
   o.add("spacing",
-        {number(spacing, "D", POSITIVE, "distance", "distance of points, instead of ppc")})
+        {number(spacing, "D", POSITIVE, "distance", "distance between points, instead of ppc")})
       .standard("by ppc");
   o.add("area",
         {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
-                "area of the section of the mouth, if it is known; around an axis of symmetry that "
-                "of the annulus")})
+                "area of the cross section of the mouth, if it is known; around an axis of "
+                "symmetry, area of the annulus")})
       .standard("found from the region");
-  o.add(
-       "temperature",
-       {number(temperature, "T", ANY_NUMBER, "temperature", "temperature of the points that come")})
+  o.add("temperature",
+        {number(temperature, "T", ANY_NUMBER, "temperature", "temperature of the new points")})
       .then([this] {
         has_temperature = true;
       })
-      .standard("that of the material");
+      .standard("temperature of the material");
   o.add("move",
-        {variables(
-            move, 3, "wx wy wz", "velocity",
-            "velocity of the mouth, can be variables; that of the material is relative to it")})
+        {variables(move, 3, "wx wy wz", "velocity",
+                   "velocity of the mouth, can be variables; the velocity of the material is "
+                   "relative to it")})
       .once()
       .standard("0 0 0");
   o.refuse([=] {

@@ -105,9 +105,10 @@ Options MPMHandshakeOptions::declare()
         number(
             next.one, "one", ANY_NUMBER, "distance",
             "coordinate where the weight of the atoms is 1, and beyond which there are atoms only"),
-        number(next.zero, "zero", ANY_NUMBER, "distance",
-               "coordinate where it is 0, and beyond which there are material points only")},
-       "may be repeated: the weight is the product")
+        number(
+            next.zero, "zero", ANY_NUMBER, "distance",
+            "coordinate where this weight is 0, and beyond which there are material points only")},
+       "may be repeated: the weight is the product of the weights of all zones")
       .then([this] {
         zones.push_back(next);
       })

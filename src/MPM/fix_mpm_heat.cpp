@@ -62,7 +62,11 @@ Options MPMHeatOptions::declare(int dim)
           Condition::TEMPERATURE,
           "",
           {values(1, "T", "temperature", "temperature of the material there")}},
-         {"flux", Condition::FLUX, "", {values(1, "q", "power/area", "heat that comes in there")}},
+         {"flux",
+          Condition::FLUX,
+          "",
+          {values(1, "q", "power/area",
+                  "heat that flows into the material there, per area and time")}},
          {"convection",
           Condition::CONVECTION,
           "",
@@ -73,7 +77,8 @@ Options MPMHeatOptions::declare(int dim)
     o.add(FACE_NAME[face], {words(conditions[face], "this face of the box")}).once();
   o.add("region",
         {text(surface.region, "REG",
-              "ID of a region: heat goes through its surface to what touches it from outside"),
+              "ID of a region, through whose surface heat flows to material that touches it from "
+              "outside"),
          words(surface.condition, "this surface")})
       .standard("none")
       .then([this] {
@@ -89,22 +94,22 @@ Options MPMHeatOptions::declare(int dim)
         surface = {};
       });
   enum { CONDUCTANCE };
-  o.add("contact",
-        {text(pair.field[0], "F1",
-              "IDs of the fix mpm of two bodies that exchange heat where they touch"),
-         text(pair.field[1], "F2"),
-         word(
-             [] {
-               return (int) CONDUCTANCE;
-             },
-             [](int) {
-             },
-             {{"conductance",
-               CONDUCTANCE,
-               "",
-               {variables(&pair.conductance, 1, "H", "power/(area temperature)",
-                          "heat per area, time, and difference of their temperatures, can be a "
-                          "variable")}}})})
+  o.add(
+       "contact",
+       {text(pair.field[0], "F1",
+             "IDs of the fix mpm of two bodies that exchange heat where they touch"),
+        text(pair.field[1], "F2"),
+        word(
+            [] {
+              return (int) CONDUCTANCE;
+            },
+            [](int) {
+            },
+            {{"conductance",
+              CONDUCTANCE,
+              "",
+              {variables(&pair.conductance, 1, "H", "power/(area temperature)",
+                         "heat per area, time, and temperature difference, can be a variable")}}})})
       .standard("none")
       .then([this] {
         pairs.push_back(pair);
@@ -114,27 +119,32 @@ Options MPMHeatOptions::declare(int dim)
       .once();
   o.add(
       "transfer",
-      {word(transfer.kind,
-            {{"relax",
-              MPMHeatTransfer::RELAX,
-              "points get the change of the nodes",
-              {number(transfer.relax, "R", NOT_NEGATIVE, "1",
-                      "rate at which they take the temperature of the nodes, in the rate at which "
-                      "heat crosses a cell")}},
-             {"pic", MPMHeatTransfer::PIC, "points get the temperature of the nodes"},
-             {"affine", MPMHeatTransfer::AFFINE,
-              "points get the temperature of the nodes, and its gradient"},
-             {"xpic",
-              MPMHeatTransfer::XPIC,
-              "points get the change of the nodes, and keep of their temperature what nodes see of "
-              "it",
-              {integer(transfer.order, "order", {1, 100, true},
-                       "terms of the inverse of the matrix of capacities")}}})});
+      {word(
+          transfer.kind,
+          {{"relax",
+            MPMHeatTransfer::RELAX,
+            "points get the temperature change of the nodes",
+            {number(transfer.relax, "R", NOT_NEGATIVE, "1",
+                    "rate at which points approach the temperature of the nodes, relative to the "
+                    "rate at which heat crosses a cell")}},
+           {"pic", MPMHeatTransfer::PIC, "points get the temperature of the nodes"},
+           {"affine", MPMHeatTransfer::AFFINE,
+            "points get the temperature of the nodes, and its gradient"},
+           {"xpic",
+            MPMHeatTransfer::XPIC,
+            "points get the change of the nodes, and keep the part of their own temperature that "
+            "nodes can represent",
+            {integer(
+                transfer.order, "order", {1, 100, true},
+                "number of terms in the series for the inverse of the matrix of capacities")}}})});
   o.add("stages",
-        {integer(most_stages, "N", POSITIVE, "most stages of the conduction in a time step")});
-  o.add("every",
-        {steps_or_auto(every, "conduction in one of this many steps, for the time of all of them",
-                       "as many steps as change little, up to 10")});
+        {integer(most_stages, "N", POSITIVE,
+                 "largest number of stages of the conduction in a time step")});
+  o.add(
+      "every",
+      {steps_or_auto(
+          every, "number of steps after which heat is conducted once, for the time of all of them",
+          "as many steps as possible while the state changes little, up to 10")});
   o.add(
       "time",
       {word(
@@ -143,13 +153,16 @@ Options MPMHeatOptions::declare(int dim)
            {"euler", MPMDiffusionOptions::EULER, "backward Euler: implicit, first order in time"},
            {"sdirk2", MPMDiffusionOptions::SDIRK2,
             "two implicit stages, of second order in time"}})});
-  o.add("tolerance",
-        {number(in_time.tolerance, "R", {0.0, 1.0, false, false}, "",
-                "of implicit steps: heat that is not in balance at nodes, over that of the step")});
+  o.add(
+      "tolerance",
+      {number(
+          in_time.tolerance, "R", {0.0, 1.0, false, false}, "",
+          "for implicit steps: imbalance of heat at the nodes, relative to the heat of the step")});
   o.add("grains", {yes_no(grains)},
-        "points exchange heat with grains, by the temperatures and heat flows of atoms");
+        "exchange heat between points and grains, with the temperatures and heat flows of atoms");
   o.add("penalty", {yes_no(penalty)},
-        "what friction and damping of pair style mpm/penalty take becomes heat of the points");
+        "convert the energy lost by friction and damping of pair style mpm/penalty into heat of "
+        "the points");
   o.refuse([=] {
     const bool is_explicit = in_time.time == MPMDiffusionOptions::EXPLICIT;
     OptionRules rules = {

@@ -89,13 +89,13 @@ Options MPMImmersedOptions::declare(int dim)
                {"schiller", SphereDrag::SCHILLER},
                {"stokes", SphereDrag::STOKES},
                {"none", SphereDrag::NONE}})},
-        "law of the drag");
-  o.add(
-      "gravity",
-      {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time",
-               "acceleration of gravity that fluid and grains have from elsewhere, for buoyancy")});
+        "drag law");
+  o.add("gravity",
+        {numbers(gravity, 3, "gx gy gz", ANY_NUMBER, "velocity/time",
+                 "acceleration of gravity for buoyancy, which fluid and grains must get from other "
+                 "commands")});
   o.add("displace", {yes_no(displace)},
-        "an incompressible flow has neither mass nor weight where grains are");
+        "remove the mass and the weight of an incompressible flow where grains are");
   o.refuse([=] {
     return OptionRules{
         {law != SphereDrag::NONE && viscosity == 0.0, "",

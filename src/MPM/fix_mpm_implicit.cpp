@@ -48,62 +48,68 @@ Options MPMImplicitOptions::declare()
   options.argument(word(
       time,
       {{"static", STATIC, "without inertia: each step ends in equilibrium"},
-       {"euler", EULER, "backward Euler: first order in time, damps what is fast"},
+       {"euler", EULER, "backward Euler: first order in time, damps fast motion"},
        {"newmark", NEWMARK, "Newmark's method: second order and without damping for gamma = 1/2"},
        {"midpoint", MIDPOINT,
         "mid-point rule: second order, without damping, keeps angular momentum"},
-       {"alpha", ALPHA, "generalised alpha method: second order, damps high frequencies only"},
-       {"hht", HHT, "that of Hilber, Hughes, and Taylor: the same with more damping in between"}}));
+       {"alpha", ALPHA, "generalized alpha method: second order, damps high frequencies only"},
+       {"hht", HHT,
+        "method of Hilber, Hughes, and Taylor: as alpha, with more damping of medium "
+        "frequencies"}}));
   options.add("gamma",
               {number(gamma, "G", {0.5, 1.0, true, true}, "",
-                      "of Newmark's method; more than 1/2 damps, in first order")});
-  options.add(
-      "rho",
-      {number(rho, "R", {0.0, 1.0, true, true}, "",
-              "of alpha and hht: the share of the highest frequencies that a step leaves")});
+                      "parameter gamma of Newmark's method; values above 1/2 damp, with "
+                      "first-order accuracy")});
+  options.add("rho",
+              {number(rho, "R", {0.0, 1.0, true, true}, "",
+                      "parameter rho of alpha and hht: the share of the highest frequencies that "
+                      "is left after a step")});
   options.add("tolerance",
               {number(tolerance, "R", {0.0, 1.0, false, false}, "",
-                      "forces are balanced when what is left is this share of all forces")});
+                      "forces are balanced when the residual is below this share of all forces")});
   options
-      .add(
-          "absolute",
-          {number(absolute, "F", NOT_NEGATIVE, "force", "or when the sum of what is left is this")})
-      .standard("0, which is never");
+      .add("absolute",
+           {number(absolute, "F", NOT_NEGATIVE, "force",
+                   "forces are also balanced when the sum of the residual is below this force")})
+      .standard("0 (not used)");
   options.add(
       "iterations",
       {integer(most_iterations, "N", POSITIVE, "largest number of Newton iterations in a step")});
   options.add(
       "parts",
       {integer(most_parts, "N", POSITIVE,
-               "where a step does not converge at once, it is gone in parts, down to 1/N")});
+               "a step that does not converge is divided into parts, down to 1/N of the step")});
   options.add("linear",
               {integer(most_linear, "N", POSITIVE,
-                       "largest number of iterations of the linear solver in one of these")});
+                       "largest number of iterations of the linear solver in a Newton iteration")});
   options.add("accuracy",
               {number(least_accuracy, "R", {0.0, 1.0, false, false}, "",
                       "largest relative residual of the linear solutions")});
   options.add(
       "solver",
-      {word(preconditioner,
-            {{"blocks", BLOCKS, "conjugate gradients with the stiffness of each node by itself"},
-             {"multigrid", MULTIGRID,
-              "with that on lattices of twice the spacing, and so on: for many cells"}})});
+      {word(
+          preconditioner,
+          {{"blocks", BLOCKS,
+            "conjugate gradients, preconditioned with the stiffness of each node by itself"},
+           {"multigrid", MULTIGRID,
+            "the same on a sequence of lattices, each with twice the spacing: for many cells"}})});
   options
       .add("slip",
            {number(slip, "D", POSITIVE, "distance",
-                   "friction of walls is that of Coulomb where surfaces slip by much more than "
-                   "this in a step")})
+                   "walls reach full Coulomb friction where surfaces slip by much more than this "
+                   "in a step")})
       .standard("1e-5 node spacings");
   options
       .add("stabilize",
            {number(stabilize, "C", NOT_NEGATIVE, "",
-                   "stiffness of nodes that points barely reach, in parts of the modulus of "
-                   "these points")})
+                   "stiffness of nodes that points barely reach, relative to the modulus of these "
+                   "points")})
       .then([this] {
         stabilize_is_given = true;
       })
-      .standard("0 until a step finds no balance without, then 1");
-  options.add("report", {yes_no(report)}, "forces before each Newton iteration to screen and log");
+      .standard("0 until a step does not converge, then 1");
+  options.add("report", {yes_no(report)},
+              "print the forces before each Newton iteration to the screen and the log file");
   options.refuse([=] {
     return OptionRules{
         {time != NEWMARK, "gamma", "is of Newmark's method: use newmark, or remove it"},

@@ -96,25 +96,28 @@ Options MPMIncompressibleOptions::declare(int dim)
   o.argument(number(density, "density", POSITIVE, "density"));
   o.add("viscosity", {number(viscosity, "mu", NOT_NEGATIVE, "pressure*time", "dynamic viscosity")});
   o.add("implicit", {yes_no(implicit)},
-        "solve for viscous stresses together with the pressure: they do not bind the time step");
+        "solve for viscous stresses together with the pressure, so that they do not limit the time "
+        "step");
   o.add("tension",
         {number(tension, "sigma", NOT_NEGATIVE, "pressure*distance", "surface tension")});
   o.add("angle",
         {number(angle, "theta", {20.0, 160.0, true, true}, "degrees",
-                "contact angle between surfaces and walls, in the fluid")});
-  o.add(
-       "transfer",
-       {word(transfer,
-             {{"auto", AUTO,
-               "gradients, and 0.98 of what the lattice does not see where the flow is smooth, "
-               "down to nothing where it is not"},
-              {"apic", APIC, "points have gradients of the velocity"},
-              {"flip",
-               FLIP,
-               "points keep this share of what the lattice does not see of their velocity",
-               {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
-              {"aflip", AFLIP, "both", {number(flip, "share", FRACTION, "1", "1: AFLIP, 0: APIC")}},
-              {"pic", PIC, "points have the velocity of the lattice"}})})
+                "contact angle between surfaces and walls, measured in the fluid")});
+  o.add("transfer",
+        {word(transfer,
+              {{"auto", AUTO,
+                "*aflip* with a share of 0.98 while the flow is smooth, down to 0 while it is not"},
+               {"apic", APIC, "points carry the gradient of the velocity"},
+               {"flip",
+                FLIP,
+                "points keep this share of the part of their velocity that the lattice does not "
+                "represent",
+                {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
+               {"aflip",
+                AFLIP,
+                "both *apic* and *flip*",
+                {number(flip, "share", FRACTION, "1", "1: AFLIP, 0: APIC")}},
+               {"pic", PIC, "points take the velocity of the lattice"}})})
       .then([this] {
         transfer_is_given = true;
       })
@@ -122,7 +125,7 @@ Options MPMIncompressibleOptions::declare(int dim)
       .standard("auto (aflip 0.98 with solid, or a region of fix mpm/rigid)");
   o.add("reflect",
         {number(reflect, "R", FRACTION, "1",
-                "share of the change by the pressure that points get once more")});
+                "share of the velocity change by the pressure that points get a second time")});
   std::vector<OptionWord> faces;
   for (int d = 0; d < dim; d++)
     for (int s = 0; s < 2; s++)
@@ -161,41 +164,40 @@ Options MPMIncompressibleOptions::declare(int dim)
       .standard("slip, all faces that are not periodic");
   o.add("region",
         {text(region_id, "region-ID",
-              "its inside is solid, without friction; can be given more than once")})
+              "region whose inside is solid, without friction; can be given more than once")})
       .then([this] {
         region_ids.push_back(region_id);
       })
       .standard("none");
   o.add("stick",
         {text(region_id, "region-ID",
-              "its inside is solid, without slip; can be given more than once")})
+              "region whose inside is solid, without slip; can be given more than once")})
       .then([this] {
         region_ids.push_back(region_id);
         sticks = true;
       })
       .standard("none");
   o.add("liquid",
-        {text(liquid.group, "group-ID", "these points are of a liquid of its own"),
-         number(liquid.density, "rho", POSITIVE, "density", "its density")},
+        {text(liquid.group, "group-ID", "group of the points of a separate liquid"),
+         number(liquid.density, "rho", POSITIVE, "density", "density of this liquid")},
         "can be given more than once")
       .then([this] {
         liquids.push_back(liquid);
       })
       .standard("none");
-  o.add(
-       "solid",
-       {text(solid_group, "group-ID",
-             "these points are elastic solids, with the law and density of their fix mpm/material; "
-             "can be given more than once")})
+  o.add("solid",
+        {text(solid_group, "group-ID",
+              "group of points that are elastic solids, with the law and density of their fix "
+              "mpm/material; can be given more than once")})
       .then([this] {
         solid_groups.push_back(solid_group);
       })
       .standard("none");
   o.add("gas",
         {number(gas_law.p, "p", POSITIVE, "pressure",
-                "pressure of the gas in closed pockets of a flow when it begins, absolute"),
+                "absolute pressure of the gas in closed pockets when the flow begins"),
          number(gas_law.gamma, "gamma", {1.0, 10.0, true, true}, "1",
-                "ratio of specific heats, 1: constant temperature")})
+                "ratio of specific heats; 1: constant temperature")})
       .then([this] {
         has_gas = true;
         if (!outside_is_given) gas_law.outside = gas_law.p;
@@ -204,12 +206,12 @@ Options MPMIncompressibleOptions::declare(int dim)
       .standard("none");
   o.add("outside",
         {number(gas_law.outside, "p", POSITIVE, "pressure",
-                "pressure of open air, absolute, from which pressures of the flow count")})
+                "absolute pressure of open air, to which pressures of the flow are relative")})
       .then([this] {
         outside_is_given = true;
       })
       .once()
-      .standard("that of gas");
+      .standard("pressure of *gas*");
   std::vector<OptionWord> open_faces = faces;
   o.add("open",
         {word(
@@ -220,7 +222,7 @@ Options MPMIncompressibleOptions::declare(int dim)
               open_face = k;
             },
             open_faces)},
-        "air is open there; can be given more than once")
+        "face next to which air is open; can be given more than once")
       .then([this] {
         open[open_face / 2][open_face % 2] = has_open = true;
       })
@@ -229,17 +231,18 @@ Options MPMIncompressibleOptions::declare(int dim)
         "points move with velocities that are not smoothed by their interpolation");
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
-                "share of an excess of points in a cell that goes elsewhere in a step")});
+                "share of the excess of points in a cell that is moved elsewhere in a step")});
   o.add("tolerance",
         {number(tolerance, "tol", {0.0, 1.0e-2, false, true}, "1",
-                "divergence that is left, as a share of the one before")});
+                "remaining divergence, relative to the divergence before the solution")});
   o.add("iterations",
         {integer(most_iterations, "N", POSITIVE,
-                 "largest number of iterations of the pressure, and of implicit viscosity")});
+                 "largest number of iterations of the solvers for the pressure and for implicit "
+                 "viscosity")});
   o.add("parts",
         {integer(most_parts, "N", POSITIVE,
-                 "where implicit viscosity does not converge, a step is gone in parts, down to "
-                 "1/N")})
+                 "a step whose implicit viscosity does not converge is divided into parts, down to "
+                 "1/N of the step")})
       .then([this] {
         parts_are_given = true;
       });

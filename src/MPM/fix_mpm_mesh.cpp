@@ -62,28 +62,29 @@ Options MPMMeshOptions::declare(int dim)
       .standard("all elements of the dimension of the simulation");
   o.add("frame",
         {word(total,
-              {{"updated", false, "nodes are places in space, through which points move"},
-               {"total", true, "nodes are places of the body as it was at first"}})})
+              {{"updated", false, "nodes are fixed in space, and points move through the mesh"},
+               {"total", true, "nodes are fixed in the undeformed body"}})})
       .keep();
   o.add("scheme",
         {word(musl,
-              {{"usl", false, "strain by the velocities after the momentum equation"},
-               {"musl", true, "strain by the new velocities of the points, mapped back"}})})
+              {{"usl", false, "strain from the velocities after the momentum equation"},
+               {"musl", true,
+                "strain from the new velocities of the points, mapped back to the nodes"}})})
       .keep();
-  o.add("transfer",
-        {word(transfer,
-              {{"flip",
-                FLIP,
-                "velocities of points change as those of nodes do",
-                {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
-               {"apic", APIC, "with the velocity gradient of the cell"}})})
+  o.add(
+       "transfer",
+       {word(transfer,
+             {{"flip",
+               FLIP,
+               "velocities of points get the change of the nodes",
+               {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
+              {"apic", APIC, "velocities of points come with the velocity gradient of the cell"}})})
       .keep();
   o.add("locking",
         {word(fbar,
               {{"none", false, "nothing"},
-               {"fbar", true,
-                "changes of volume and mean stress are means over the points around"}})},
-        "what is averaged against volumetric locking")
+               {"fbar", true, "changes of volume and the mean stress, over the points around"}})},
+        "quantity that is averaged to prevent volumetric locking")
       .keep();
   const auto condition = [&](const std::string &keyword, MPMMeshCondition::Kind kind,
                              const std::string &names, const std::string &unit,
@@ -92,7 +93,8 @@ Options MPMMeshOptions::declare(int dim)
     values.push_back(text(next.group, "name", meaning));
     if (n)
       values.push_back(variables(next.value, n, names, unit,
-                                 null ? "can be variables; NULL: free" : "can be a variable",
+                                 null ? "components, can be variables; NULL leaves a component free"
+                                      : "value of the load, can be a variable",
                                  null));
     o.add(keyword, values)
         .then([this, kind] {
@@ -103,15 +105,15 @@ Options MPMMeshOptions::declare(int dim)
         .standard("none");
   };
   condition("velocity", MPMMeshCondition::VELOCITY, dim == 3 ? "vx vy vz" : "vx vy", "velocity",
-            "nodes of a physical group or set have this velocity", dim, true);
+            "name of a physical group or set whose nodes have this velocity", dim, true);
   condition("slip", MPMMeshCondition::SLIP, "", "",
-            "nodes of these sides have no velocity along their normals", 0, false);
+            "name of sides whose nodes have no velocity along the normals", 0, false);
   condition("pressure", MPMMeshCondition::PRESSURE, "p", "pressure",
-            "on sides of the mesh: of frame updated as they are in the file, of frame total as "
-            "they go with the body",
+            "name of sides of the mesh, which are fixed in space (frame updated) or move with the "
+            "body (frame total)",
             1, false);
   condition("traction", MPMMeshCondition::TRACTION, dim == 3 ? "tx ty tz" : "tx ty", "pressure",
-            "on sides of the mesh, as they are in the file", dim, false);
+            "name of sides of the mesh, with their area in the file", dim, false);
   o.refuse([this, dim] {
     OptionRules rules;
     const std::pair<MPMMeshCondition::Kind, const char *> kinds[] = {

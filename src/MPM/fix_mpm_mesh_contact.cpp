@@ -84,7 +84,7 @@ Options MPMMeshContactOptions::declare()
               {{"frictionless", FRICTIONLESS, "bodies slide freely"},
                {"coulomb",
                 COULOMB,
-                "friction",
+                "bodies slide with friction",
                 {number(kinetic_friction, "mu", NOT_NEGATIVE, "1", "coefficient of friction"),
                  optional(number(static_friction, "mu_s", NOT_NEGATIVE, "1",
                                  "coefficient of static friction, not below mu; default: mu"))}},

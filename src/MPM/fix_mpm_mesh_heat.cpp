@@ -65,7 +65,8 @@ Options MPMMeshHeatOptions::declare()
                              const std::string &meaning, int n) {
     o.add(keyword,
           {text(next.group, "name", meaning),
-           variables(next.value, n, names, unit, n > 1 ? "can be variables" : "can be a variable")})
+           variables(next.value, n, names, unit,
+                     n > 1 ? "values, can be variables" : "value, can be a variable")})
         .then([this, kind] {
           next.kind = kind;
           conditions.push_back(next);
@@ -74,13 +75,14 @@ Options MPMMeshHeatOptions::declare()
         .standard("none");
   };
   condition("temperature", MPMMeshHeatCondition::TEMPERATURE, "T", "temperature",
-            "nodes of a physical group or set have this temperature", 1);
+            "name of a physical group or set whose nodes have this temperature", 1);
   condition("flux", MPMMeshHeatCondition::FLUX, "q", "energy/(time area)",
-            "heat that flows into the body through these sides", 1);
-  condition("convection", MPMMeshHeatCondition::CONVECTION, "H T",
-            "energy/(time area temperature), temperature",
-            "heat H times the difference to the temperature T outside flows through these sides",
-            2);
+            "name of sides through which this heat flows into the body", 1);
+  condition(
+      "convection", MPMMeshHeatCondition::CONVECTION, "H T",
+      "energy/(time area temperature), temperature",
+      "name of sides through which heat flows: H times the difference to the temperature T outside",
+      2);
   o.refuse([this] {
     OptionRules rules;
     const std::pair<MPMMeshHeatCondition::Kind, const char *> kinds[] = {

@@ -135,13 +135,17 @@ Options MPMMixtureOptions::declare()
               DARCY_WORD,
               "Darcy's law",
               {number(permeability, "kappa", POSITIVE, "area", "intrinsic permeability"),
-               optional(number(reference_porosity, "n0", {0.0, 1.0, false}, "1",
-                               "porosity at which the soil has it, elsewhere by Kozeny and Carman; "
-                               "default: it does not depend on porosity"))}},
+               optional(
+                   number(reference_porosity, "n0", {0.0, 1.0, false}, "1",
+                          "porosity at which the soil has this permeability; at others it follows "
+                          "Kozeny and Carman; default: it does not depend on porosity"))}},
              {"ergun", DARCY_WORD + 1, "packed spheres", {diameter_of_grains}},
              {"gidaspow", DARCY_WORD + 2, "spheres of any porosity", {diameter_of_grains}},
-             {"difelice", DARCY_WORD + 3, "the same by another law", {diameter_of_grains}}})},
-        "law of the drag");
+             {"difelice",
+              DARCY_WORD + 3,
+              "spheres of any porosity, by another law",
+              {diameter_of_grains}}})},
+        "drag law");
   o.refuse([=] {
     return OptionRules{{drag != NO_DRAG && viscosity == 0.0, "",
                         "needs a positive viscosity for its drag: use drag none without"}};

@@ -74,21 +74,23 @@ Options MPMPMLOptions::declare(int dim)
   Options o("fix mpm/pml");
   for (int face = 0; face < NFACE; face++)
     o.add(FACE[face],
-          {integer(cells[face], "N", POSITIVE, "cells of the layer next to this face of the box")})
+          {integer(cells[face], "N", POSITIVE,
+                   "thickness of the layer next to this face of the box, in cells")})
         .once()
         .standard("none");
   o.add("reflection",
         {number(reflection, "R", {0.0, 1.0, false, false}, "",
-                "amplitude that the thickness of a layer leaves of a wave along its normal, there "
-                "and back")});
+                "ratio of the amplitude after a wave crosses the layer along its normal, there and "
+                "back")});
   o.add("exponent",
         {number(exponent, "n", POSITIVE, "", "damping grows with this power of the depth")});
   o.add("speed",
-        {number(speed, "c", POSITIVE, "velocity", "of the waves for which damping is chosen")})
-      .standard("that of the fastest pressure wave in the layers at the start");
+        {number(speed, "c", POSITIVE, "velocity",
+                "speed of the waves for which the damping is chosen")})
+      .standard("speed of the fastest pressure wave in the layers at the start");
   o.add("mix",
         {number(mix, "p", {0.0, 1.0, true, true}, "",
-                "share of the damping along an axis that motion along the other axes has")});
+                "share of the damping along an axis that also acts along the other axes")});
   o.refuse([=] {
     return OptionRules{{std::all_of(cells, cells + NFACE,
                                     [](int n) {

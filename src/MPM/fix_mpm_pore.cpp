@@ -69,28 +69,29 @@ Options MPMPoreOptions::declare(int dim)
   o.argument(number(water.bulk, "K", POSITIVE, "pressure", "bulk modulus of the water"));
   o.argument(number(water.density, "RHO", POSITIVE, "mass/volume", "density of the water"));
   o.argument(number(water.resistance, "G", POSITIVE, "",
-                    "what permeabilities are divided by: unit weight of the water "
-                    "(pressure/length), or its viscosity (pressure time)"));
+                    "divisor of permeabilities: unit weight of the water (pressure/length), or its "
+                    "viscosity (pressure time)"));
   const auto value = [this](const std::string &meaning) {
     return std::vector<OptionValue>{number(next.permeability, "k", NOT_NEGATIVE, "", meaning)};
   };
   o.add("soil",
-        {text(next.material, "ID", "fix mpm/material of the soil"),
+        {text(next.material, "ID", "ID of the fix mpm/material of the soil"),
          number(next.porosity, "n0", {0.0, 1.0, false}, "1", "initial porosity"),
          word(next.law,
-              {{"constant", MPMPoreSoil::CONSTANT, "permeability k",
+              {{"constant", MPMPoreSoil::CONSTANT, "constant permeability k",
                 value("permeability (velocity, or area with a viscosity)")},
                {"kozeny", MPMPoreSoil::KOZENY,
-                "k times n^3/(1-n)^2 over its initial value (Kozeny, Carman)",
+                "k times the ratio of n^3/(1-n)^2 to its initial value (Kozeny, Carman)",
                 value("initial permeability")},
-               {"squared", MPMPoreSoil::SQUARED, "k times the square of the ratio of volumes",
+               {"squared", MPMPoreSoil::SQUARED,
+                "k times the square of the ratio of present to initial volume",
                 value("initial permeability")},
                {"formula",
                 MPMPoreSoil::FORMULA,
                 "",
                 {text(next.formula, "v_name",
                       "permeability of each point, an atom-style variable")}}})},
-        "pores of a material; once for each soil")
+        "pores of a material; given once for each soil")
       .then([this] {
         soils.push_back(next);
         next = {};
@@ -99,7 +100,7 @@ Options MPMPoreOptions::declare(int dim)
   o.add("biot",
         {number(biot.first, "alpha", {0.0, 1.0, false, true}, "1", "coefficient of Biot"),
          number(biot.second, "Ks", POSITIVE, "pressure", "bulk modulus of the grains")},
-        "grains of the soil before this keyword that are not rigid")
+        "grains that are not rigid, in the soil before this keyword")
       .then([this] {
         biot_alone = soils.empty();
         if (biot_alone) return;
@@ -115,12 +116,13 @@ Options MPMPoreOptions::declare(int dim)
         {word(forchheimer,
               {{"number", NUMBER, "",
                 coefficient("b", "pressure time^2/length^3",
-                            "gradient of the pressure per square of the flow")},
+                            "pressure gradient per square of the flow")},
                {"ergun", ERGUN, "",
                 coefficient(
                     "d", "distance",
-                    "diameter of packed spheres, which have this coefficient by Ergun's law")}})},
-        "drag with the square of the flow, besides Darcy's law, in the soil before this keyword")
+                    "diameter of packed spheres, from which Ergun's law gives the coefficient")}})},
+        "drag with the square of the flow, in addition to Darcy's law, in the soil before this "
+        "keyword")
       .then([this] {
         forchheimer_alone = soils.empty();
         if (forchheimer_alone) return;
@@ -130,10 +132,11 @@ Options MPMPoreOptions::declare(int dim)
       .standard("none");
   o.add("expansion",
         {number(growth.first, "BS", ANY_NUMBER, "1/temperature",
-                "expansion of the grains by heat, of their volume: three times the linear one"),
+                "volumetric thermal expansion coefficient of the grains: three times the linear "
+                "coefficient"),
          number(growth.second, "BW", ANY_NUMBER, "1/temperature",
-                "expansion of the water by heat, of its volume")},
-        "grains and water of the soil before this keyword expand by heat")
+                "volumetric thermal expansion coefficient of the water")},
+        "thermal expansion of grains and water of the soil before this keyword")
       .then([this] {
         growth_alone = soils.empty();
         if (growth_alone) return;
@@ -145,7 +148,9 @@ Options MPMPoreOptions::declare(int dim)
   o.add("formulation",
         {word(formulation,
               {{"u-p", U_P, "the water has no inertia relative to the soil: slow flow"},
-               {"u-v-p", U_V_P, "it has: fast loads, and soils of high permeability"}})});
+               {"u-v-p", U_V_P,
+                "the water has inertia relative to the soil: fast loads, and soils of high "
+                "permeability"}})});
   const auto of_soil = [this](const char *keyword, bool of_retention) {
     if (soils.empty())
       without_soil = keyword;
@@ -167,7 +172,7 @@ Options MPMPoreOptions::declare(int dim)
               "(1 + (alpha s)^n)^(1/n - 1) at the suction s (van Genuchten)",
               {per_pressure(), number(retention.n, "n", {1.0, UNBOUNDED, false}, "1", "exponent")}},
              {"gardner", MPMRetention::GARDNER, "exp(-alpha s) (Gardner)", {per_pressure()}}})},
-        "effective saturation of the soil before this keyword, which can dry")
+        "effective saturation of the soil before this keyword, which can lose its water")
       .then([this, of_soil] {
         if (!of_soil("retention", false)) return;
         auto &r = soils.back().retention;
@@ -188,7 +193,7 @@ Options MPMPoreOptions::declare(int dim)
       .standard("0 1");
   o.add("relative",
         {word(retention.flow,
-              {{"mualem", MPMRetention::MUALEM, "by the model of Mualem for vangenuchten"},
+              {{"mualem", MPMRetention::MUALEM, "model of Mualem, for vangenuchten"},
                {"power",
                 MPMRetention::POWER,
                 "",
@@ -210,7 +215,7 @@ Options MPMPoreOptions::declare(int dim)
               retention.bishop_effective = value;
             },
             {{"saturation", 0, "the saturation"}, {"effective", 1, "the effective saturation"}})},
-        "share of the pressure of water in the effective stress of the soil before this keyword")
+        "share of the water pressure in the effective stress of the soil before this keyword")
       .then([this, of_soil] {
         if (of_soil("bishop", true))
           soils.back().retention.bishop_effective = retention.bishop_effective;
@@ -225,59 +230,64 @@ Options MPMPoreOptions::declare(int dim)
           variables(&c.value, 1, name, unit, meaning + ", can be a variable")};
     };
     o.add(PART_NAME[part],
-          {word(
-              c.kind,
-              {{"closed", MPMPoreCondition::CLOSED,
-                std::string("no water goes through ") +
-                    (free ? "free surfaces of the soil" : "this face of the box")},
-               {"pressure", MPMPoreCondition::PRESSURE, "water outside has a pressure",
-                of("p", "pressure", "pressure of the water outside")},
-               {"head", MPMPoreCondition::HEAD, "water outside stands at rest up to a height",
-                of("z", "distance", "height of the water table outside, against fix gravity")},
-               {"flux", MPMPoreCondition::FLUX, "water comes in",
-                of("q", "velocity", "volume of water that comes in for each area and time")},
-               {"rain", MPMPoreCondition::RAIN, "water falls; what the soil does not take runs off",
-                of("q", "velocity", "volume of water that falls for each area and time")},
-               {"seepage", MPMPoreCondition::SEEPAGE,
-                "water leaves where its pressure is above that of the air, and none comes in"}})})
+          {word(c.kind,
+                {{"closed", MPMPoreCondition::CLOSED,
+                  std::string("no water goes through ") +
+                      (free ? "free surfaces of the soil" : "this face of the box")},
+                 {"pressure", MPMPoreCondition::PRESSURE, "water outside has a pressure",
+                  of("p", "pressure", "pressure of the water outside")},
+                 {"head", MPMPoreCondition::HEAD, "water outside stands at rest up to a height",
+                  of("z", "distance",
+                     "height of the water table outside, measured against the direction of fix "
+                     "gravity")},
+                 {"flux", MPMPoreCondition::FLUX, "water flows in",
+                  of("q", "velocity", "volume of water that flows in per area and time")},
+                 {"rain", MPMPoreCondition::RAIN,
+                  "rain falls; water that the soil does not take runs off",
+                  of("q", "velocity", "volume of water that falls per area and time")},
+                 {"seepage", MPMPoreCondition::SEEPAGE,
+                  "water leaves where its pressure is above the pressure of the air, and no water "
+                  "comes in"}})})
         .once();
   }
   o.add("bodies",
         {word(seals,
-              {{"open", false, "the free surface stays what it is"},
-               {"closed", true, "no water goes through it"}})},
+              {{"open", false, "the conditions of the free surface remain"},
+               {"closed", true, "no water goes through the surface there"}})},
         "free surfaces of the soil that a body of fix mpm/rigid, or a region of fix mpm/boundary, "
         "touches")
       .standard("open");
-  o.add(
-      "initial",
-      {text(initial, "p",
-            "pressure of points at first; v_name: an atom-style variable, for those that there are "
-            "when the fix is defined")});
+  o.add("initial",
+        {text(initial, "p",
+              "initial pressure of the points; v_name: an atom-style variable, for points that "
+              "exist when the fix is defined")});
   o.add("geostatic",
-        {number(K0, "K0", NOT_NEGATIVE, "1", "horizontal over vertical effective stress"),
+        {number(K0, "K0", NOT_NEGATIVE, "1", "ratio of horizontal to vertical effective stress"),
          number(table, "z", ANY_NUMBER, "distance",
-                "height of the water table, against fix gravity")},
-        "level ground and its water are at rest under their weight at first")
+                "height of the water table, measured against the direction of fix gravity")},
+        "level ground and its water are initially at rest under their weight")
       .then([this] {
         geostatic = true;
       })
       .standard("none");
   o.add("suction",
         {number(most_suction, "s", NOT_NEGATIVE, "pressure",
-                "greatest suction of points above the water table of geostatic")})
-      .standard("that of water at rest");
+                "largest suction of points above the water table of geostatic")})
+      .standard("suction of water at rest");
   o.add("relax",
         {number(relax, "R", NOT_NEGATIVE, "1",
-                "rate at which points take the pressure of the nodes, in the rate at which waves "
-                "cross a cell")});
-  o.add("stages", {integer(most_stages, "N", POSITIVE, "most stages of the flow in a time step")});
-  o.add("every",
-        {steps_or_auto(every,
-                       "water flows in one of up to this many steps, for the time of all of them",
-                       "as many steps as waves allow, one stage of the flow reaches, and thin "
-                       "layers of it take")})
-      .standard("auto, where water can wait");
+                "rate at which points approach the pressure of the nodes, relative to the rate at "
+                "which waves cross a cell")});
+  o.add(
+      "stages",
+      {integer(most_stages, "N", POSITIVE, "largest number of stages of the flow in a time step")});
+  o.add(
+       "every",
+       {steps_or_auto(
+           every,
+           "largest number of steps after which water flows once, for the time of all of them",
+           "as many steps as waves, a single stage of the flow, and thin layers of points permit")})
+      .standard("auto where several steps can share one flow, otherwise 1");
   o.refuse([=] {
     const bool dries = std::any_of(soils.begin(), soils.end(), [](const auto &soil) {
       return soil.retention.can_dry();

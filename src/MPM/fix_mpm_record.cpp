@@ -32,10 +32,10 @@ Options MPMRecordOptions::declare()
 {
   using namespace option;
   Options o("fix mpm/record");
-  o.add(
-      "start",
-      {number(start, "T", ANY_NUMBER, "time", "time of the simulation at the time 0 of the file")});
-  o.add("hold", {yes_no(hold)}, "have the first and the last values before and after, or 0");
+  o.add("start",
+        {number(start, "T", ANY_NUMBER, "time", "simulation time at the time 0 of the file")});
+  o.add("hold", {yes_no(hold)},
+        "outside the record, use its first and last values (yes) or 0 (no)");
   return o;
 }
 

@@ -68,7 +68,7 @@ Options MPMRelaxOptions::declare()
   using namespace option;
   Options o("fix mpm/relax");
   o.argument(number(tolerance, "largest ratio of forces", POSITIVE));
-  o.add("every", {integer(look_every, "N", POSITIVE, "look at the forces every this many steps")});
+  o.add("every", {integer(look_every, "N", POSITIVE, "check the forces every this many steps")});
   o.add("stop", {yes_no(stops)}, "end the run when forces are balanced");
   return o;
 }

@@ -66,8 +66,8 @@ Options MPMRigidOptions::declare()
   o.add("friction",
         {number(friction, "mu", NOT_NEGATIVE, "1",
                 "coefficient of friction, for *slip* and *separate*")});
-  heat.declare(o, "it becomes heat of the material, not of the body",
-               "share of it that becomes heat of the material");
+  heat.declare(o, "the energy lost by friction becomes heat of the material, not of the body",
+               "share of this energy that becomes heat of the material");
   o.add("velocity",
         {numbers(v, 3, "vx vy vz", ANY_NUMBER, "velocity", "velocity of the center at the start")})
       .once();

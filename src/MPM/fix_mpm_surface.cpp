@@ -43,21 +43,20 @@ Options MPMSurfaceOptions::declare()
   using namespace option;
   Options o("fix mpm/surface");
   o.add("scale",
-        {number(scale, "S", POSITIVE, "",
-                "diameter of a point over the edge of a cube (2d: square) of its volume")});
+        {number(
+            scale, "S", POSITIVE, "",
+            "ratio of the diameter of a point to the edge of a cube (2d: square) of its volume")});
   o.add("grow",
         {number(grow, "G", AT_LEAST_ONE, "",
-                "largest diameter over the diameter of an undeformed point")});
+                "largest ratio of the diameter of a point to its diameter before deformation")});
   o.add("depth",
         {number(depth, "D", POSITIVE, "",
-                "depth below the surface of points with a radius, in node spacings")});
-  o.add("group",
-        {text(group_id, "group-ID",
-              "points are in this group if they have a radius, and only then")})
+                "points down to this depth below the surface have a radius, in node spacings")});
+  o.add("group", {text(group_id, "group-ID", "group that has exactly the points with a radius")})
       .standard("none");
   o.add("lists",
         {text(grains_id, "group-ID",
-              "group of the grains that the points meet: sets neighbor lists and communication up "
+              "group of the grains that touch the points; sets up neighbor lists and communication "
               "for these and the surface alone")})
       .standard("not set up");
   return o;

@@ -74,7 +74,7 @@ Options MPMTractionOptions::declare(int dim)
                   "surface"));
   o.add("traction",
         {variables(traction, 3, "tx ty tz", "pressure",
-                   "dead force per area before deformation, can be variables")})
+                   "dead load: force per area before deformation, can be variables")})
       .then([this] {
         has_traction = true;
       })
@@ -82,7 +82,7 @@ Options MPMTractionOptions::declare(int dim)
       .standard("none");
   o.add("pressure",
         {variables(&pressure, 1, "p", "pressure",
-                   "pressure against the surface, which follows it, can be a variable")})
+                   "pressure that follows the surface as it deforms, can be a variable")})
       .then([this] {
         has_pressure = true;
       })
@@ -90,8 +90,8 @@ Options MPMTractionOptions::declare(int dim)
       .standard("none");
   o.add("moment",
         {variables(moment, 3, "Mx My Mz", "force*distance",
-                   "moment on the surface as a whole, which turns with it, can be equal-style "
-                   "variables")})
+                   "moment on the surface as a whole, by tractions that turn with it, can be "
+                   "equal-style variables")})
       .then([this] {
         has_moment = true;
       })

@@ -43,11 +43,12 @@ void MPMFace::declare(Options &o, double &spacing, double &area)
   using namespace option;
   o.add("spacing",
         {number(spacing, "s", POSITIVE, "distance",
-                "of the layers of points along the normal of the region")})
+                "spacing of the layers of points along the normal of the region")})
       .standard("cube root of the volume of a point, in 2d square root of its area");
   o.add("area",
         {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
-                "area of the surface of the region, if it is known: shares of points are scaled")})
+                "area of the surface of the region, if it is known; the shares of points are "
+                "scaled to it")})
       .standard("the sum of the shares of points");
 }
 

@@ -22,12 +22,12 @@ Options MPMFieldOptions::declare(int dim)
         {word(shape,
               {{"linear", LINEAR},
                {"quadratic", QUADRATIC},
-               {"cubic", CUBIC, "B-splines of this order connect points and nodes"},
-               {"gimp", GIMP, "mean of the linear function over the fixed size of a point"},
-               {"cpgimp", CPGIMP, "the same with sizes that follow the deformation"},
+               {"cubic", CUBIC, "shape functions are B-splines of this order"},
+               {"gimp", GIMP, "linear functions, averaged over the fixed size of a point"},
+               {"cpgimp", CPGIMP, "as *gimp*, with sizes that follow the deformation"},
                {"cpdi", CPDI,
                 "linear functions at the corners of a domain that follows the deformation"},
-               {"cpdi2", CPDI2, "the same with corners that move freely"},
+               {"cpdi2", CPDI2, "as *cpdi*, with corners that move freely"},
                {"bernstein", BERNSTEIN, "quadratic Bernstein polynomials (with *frame total*)"}})})
       .keep();
   o.add("aspect",
@@ -41,8 +41,8 @@ Options MPMFieldOptions::declare(int dim)
 
   enum { XPIC_WORD = 5, FMPM_WORD, POLYPIC_WORD };    // after those of enum Transfer
   const auto share = number(flip, "share", FRACTION, "", "FLIP share of the velocity update");
-  const auto terms =
-      integer(order, "order", {1, 100, true}, "terms of the inverse of the mass matrix");
+  const auto terms = integer(order, "order", {1, 100, true},
+                             "number of terms in the series for the inverse of the mass matrix");
   o.add("transfer",
         {word(
             [this] {
@@ -64,7 +64,7 @@ Options MPMFieldOptions::declare(int dim)
              {"xpic", XPIC_WORD, "", {terms}},
              {"fmpm", FMPM_WORD, "", {terms}},
              {"polypic", POLYPIC_WORD}})},
-        "how velocities go between points and nodes")
+        "how velocities are transferred between points and nodes")
       .keep();
   o.add("stress",
         {word(
@@ -76,10 +76,10 @@ Options MPMFieldOptions::declare(int dim)
               stress = (Stress) word;
             },
             {{"mls", MLS_STRESS}, {"gradient", GRADIENT_STRESS}})},
-        "what makes forces of stress and velocity gradients of nodal velocities")
-      .standard("mls if *shape* and *transfer* have it; gradient in the updated frame with fix "
-                "mpm/relax, and with fix mpm/implicit static and euler, without fix "
-                "mpm/contact and fix mpm/pore")
+        "form of the internal force and of the velocity gradient")
+      .standard("mls if *shape* and *transfer* allow it; gradient in the updated frame with fix "
+                "mpm/relax, and with fix mpm/implicit static and euler, without fix mpm/contact "
+                "and fix mpm/pore")
       .keep([this] {    // the fixes that it depends on come after the file has been read
         return stress != DEFAULT_STRESS || !strains_by_gradient();
       });
@@ -87,23 +87,24 @@ Options MPMFieldOptions::declare(int dim)
         "when stress is updated in a step")
       .keep();
   o.add("frame", {word(total, {{"updated", false}, {"total", true}})},
-        "configuration that the lattice belongs to")
+        "configuration in which the lattice is defined")
       .keep();
-  o.add("reference",
-        {word(
-            [this] {
-              return most_distorted > 0.0;
-            },
-            [this](int) {
-              most_distorted = 0.0;
-            },
-            {{"fixed", false},
-             {"update",
-              true,
-              "",
-              {number(most_distorted, "S", {1.0, UNBOUNDED, false}, "",
-                      "ratio of stretches of a point above which a new one is made")}}})},
-        "frame total: reference configuration, which can be made anew where points are distorted")
+  o.add(
+       "reference",
+       {word(
+           [this] {
+             return most_distorted > 0.0;
+           },
+           [this](int) {
+             most_distorted = 0.0;
+           },
+           {{"fixed", false},
+            {"update",
+             true,
+             "",
+             {number(most_distorted, "S", {1.0, UNBOUNDED, false}, "",
+                     "ratio of the stretches of a point above which the reference is renewed")}}})},
+       "with frame total: reference configuration, which can be renewed where points are distorted")
       .keep();
   o.add("axisymmetric", {yes_no(axisymmetric)},
         "2d: x is the distance from an axis of symmetry, and points are rings")
@@ -111,42 +112,45 @@ Options MPMFieldOptions::declare(int dim)
   o.add(
        "locking",
        {word(locking, {{"none", NO_CURE}, {"fbar", FBAR}, {"pressure", PRESSURE}, {"both", BOTH}})},
-       "what is averaged over neighboring points against volumetric locking")
+       "quantity that is averaged over neighboring points to prevent volumetric locking")
       .keep();
-  o.add(
-      "smooth",
-      {number(smooth, "share", FRACTION, "",
-              "share of what is rough in the volumes of points of a fluid that is taken away while "
-              "sound crosses a cell")});
-  o.add("heat", {yes_no(heat)}, "kinetic energy that transfers lose becomes heat of the points");
-  o.add(
-      "light",
-      {number(
-          light, "share", FRACTION, "",
-          "share of a full cell below which the velocity of a node does not count for gradients")});
+  o.add("smooth",
+        {number(smooth, "share", FRACTION, "",
+                "share of the roughness in the volumes of points of a fluid that is removed in the "
+                "time in which sound crosses a cell")});
+  o.add("heat", {yes_no(heat)},
+        "convert kinetic energy that is lost in transfers into heat of the points");
+  o.add("light",
+        {number(
+            light, "share", FRACTION, "",
+            "share of a full cell below which a node has a reduced weight in velocity gradients")});
   o.add("origin",
         {axes(origin, dim, "x y z", ANY_NUMBER, "distance", "position of one node of the lattice")})
       .standard("lower corner of the simulation box");
   o.add("bad", {word(bad, {{"error", ERROR}, {"warn", WARN}, {"delete", DELETE}})},
-        "what to do with a point that is inverted, not finite, or has left the box");
-  const auto gained = number(most_gain, "share", POSITIVE, "", "share of the energy in play");
+        "what to do with a point that is inverted, has values that are not finite, or has left the "
+        "box");
+  const auto gained = number(most_gain, "share", POSITIVE, "",
+                             "largest gain of energy, as a share of the energy in play");
   o.add("gain",
         {word(gain,
               {{"error", GAIN_ERROR, "", {gained}},
                {"warn", GAIN_WARN, "", {gained}},
                {"ignore", GAIN_IGNORE}})},
-        "what to do when numerical errors have added more than a share of the energy in play");
+        "what to do when numerical errors have added more than this energy");
   o.add("apart", {word(apart, {{"warn", true}, {"ignore", false}})},
-        "what to do when points of a stretched solid are so far apart that it breaks");
+        "what to do when points of a stretched solid are so far apart that the solid breaks "
+        "numerically");
   o.add("failed", {word(delete_failed, {{"keep", false}, {"delete", true}})},
         "what to do with a point whose damage is 1");
   o.add("edges", {word(modified_edges, {{"plain", false}, {"modified", true}})},
-        "functions next to fixed faces of the box");
+        "shape functions next to fixed faces of the box");
   o.add("every",
-        {integer(every, "K", POSITIVE, "points take one step in every K steps of the run")})
+        {integer(every, "K", POSITIVE, "number of steps of the run for each step of the points")})
       .keep();
-  o.add("dtcheck", {yes_no(dt_check)}, "stop when the time step is above the limit");
-  o.add("plan", {yes_no(plan)}, "print the stages of the step, and at the end what each has cost");
+  o.add("dtcheck", {yes_no(dt_check)}, "stop with an error when the time step is above the limit");
+  o.add("plan", {yes_no(plan)},
+        "print the stages of the step and, at the end of the run, the cost of each stage");
 
   o.add(
       "kernels",

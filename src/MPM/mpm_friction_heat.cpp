@@ -42,7 +42,7 @@ void MPMFrictionHeatOptions::declare(Options &o, const char *yes, const char *fi
   using namespace option;
   o.add("heat",
         {word(kind,
-              {{"no", NO, "what friction takes is lost"},
+              {{"no", NO, "the energy lost by friction is not converted into heat"},
                {"yes", YES, yes},
                {"share", SHARE, "", {number(share, "S", FRACTION, "1", first)}}})},
         "heat of friction for :doc:`fix mpm/heat <fix_mpm_heat>`")

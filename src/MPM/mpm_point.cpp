@@ -104,7 +104,8 @@ Options MPMPointOptions::declare()
   paths[MIXED].values.clear();
   o.argument(word(path, paths, "path"));
   o.add("time", {number(duration, "T", POSITIVE, "time", "duration of the path")}).standard("");
-  o.add("strain", {number(strain, "E", POSITIVE, "1", "size of the strain at which the path ends")})
+  o.add("strain",
+        {number(strain, "E", POSITIVE, "1", "magnitude of the strain at which the path ends")})
       .standard("");
   o.add("cycle",
         {number(amplitude, "A", POSITIVE, "1", "amplitude of the strain"),
@@ -132,17 +133,16 @@ Options MPMPointOptions::declare()
                    "angular velocity of the material, can be variables")});
   o.add("clock",
         {text(clock, "name",
-              "internal-style variable that has the time when variables are evaluated")});
+              "internal-style variable that receives the time whenever variables are evaluated")});
   o.add("rotate",
-        {numbers(axis, 3, "nx ny nz", ANY_NUMBER, "", "axis"),
+        {numbers(axis, 3, "nx ny nz", ANY_NUMBER, "", "axis of rotation"),
          number(turns, "turns", ANY_NUMBER, "",
                 "number of turns that the frame makes during the path")})
       .standard("none");
   o.add("temperature", {number(temperature, "T", ANY_NUMBER, "temperature", "initial temperature")})
-      .standard("that of the material");
+      .standard("temperature of the material");
   o.add("length",
-        {number(length, "h", POSITIVE, "distance",
-                "node spacing that an artificial viscosity shall see")});
+        {number(length, "h", POSITIVE, "distance", "node spacing that artificial viscosity uses")});
   const auto given = [this] {
     return (duration > 0.0) + (strain > 0.0) + (amplitude > 0.0);
   };

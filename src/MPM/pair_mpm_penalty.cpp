@@ -372,7 +372,7 @@ Options MPMPenaltyCoeff::declare()
   o.add("friction",
         {number(friction, "mu", NOT_NEGATIVE, "1", "coefficient of Coulomb friction"),
          number(slip, "slip", POSITIVE, "velocity",
-                "sliding velocity from which on friction is full")})
+                "sliding velocity above which friction is full")})
       .standard("0");
   o.add("damping",
         {number(damping, "zeta", NOT_NEGATIVE, "1",

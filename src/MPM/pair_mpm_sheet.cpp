@@ -390,9 +390,8 @@ Options MPMSheetOptions::declare()
   using namespace option;
   Options o("pair_style mpm/sheet");
   o.argument(number(distance, "D", POSITIVE));
-  o.add(
-      "faces", {yes_no(faces)},
-      "do nodes touch the triangles of surfaces, and in 2d their lines, in place of their nodes?");
+  o.add("faces", {yes_no(faces)},
+        "whether nodes touch the triangles (2d: lines) of surfaces instead of their nodes");
   return o;
 }
 
@@ -429,7 +428,7 @@ Options MPMSheetCoeff::declare()
   o.argument(number(stiffness, "k", NOT_NEGATIVE));
   o.add("damping",
         {number(damping, "c", NOT_NEGATIVE, "force/velocity",
-                "force against the velocity at which two nodes come closer or part")});
+                "damping force per velocity at which two nodes approach or separate")});
   return o;
 }
 

@@ -35,8 +35,8 @@ Options MPMRegionMeshOptions::declare()
   Options o("region mpm/mesh");
   o.add("surface",
         {word(leaky,
-              {{"closed", false, "each edge belongs to two triangles that look to the same side"},
-               {"leaky", true, "fill holes, and what the surface winds around"}})});
+              {{"closed", false, "each edge belongs to two triangles with the same orientation"},
+               {"leaky", true, "fill holes: the inside is what the surface winds around"}})});
   o.add("turn",
         {number(angle, "angle", ANY_NUMBER, "", "rotation of the file about its origin (degrees)"),
          numbers(axis, 3, "Rx Ry Rz", ANY_NUMBER, "", "axis of this rotation")})
