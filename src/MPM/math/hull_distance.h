@@ -23,7 +23,8 @@ class HullDistance {
    *  x . b. In the first call, any points of the two sets. */
   void advance(const double *a, const double *b);
 
-  static constexpr int ROUNDS = 60;    ///< limit of calls; round-off may prevent the end before
+  static constexpr int ROUNDS =
+      60;    ///< calls after which only round-off can have prevented the end
 
  private:
   int n = 0;    // corners of the simplex that contains x

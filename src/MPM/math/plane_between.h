@@ -18,8 +18,8 @@ namespace MPM_NS {
  *  single minimum that Newton's method finds).
  *
  *  For a point at r and c = (r, 1), the probability to belong to body b rather than body a is modeled as
- *  s(z) = 1/(1 + exp(-z)), z = phi . c. The plane is z = 0, and its normal is along n, the first three components of phi,
- *  which minimizes
+ *  s(z) = 1/(1 + exp(-z)), z = phi . c. The plane is z = 0, and its normal is along n, the first three components of phi.
+ *  phi minimizes
  *
  *    sum_p w_p [ln(1 + exp(z_p)) - y_p z_p] + RIDGE/2 |n|^2,   y = 0 in a, 1 in b,
  *
