@@ -9,10 +9,10 @@
 #ifndef MPM_DECLARE_OPTION_H
 #define MPM_DECLARE_OPTION_H
 
-// The options of a style, declared once: keyword, values, unit, range, default, meaning, and what
-// they exclude with the remedy. The parser with its error messages, the refusals, the comparison with
-// a restart file, the echo in the log, and the block of keywords in the manual all come from this
-// declaration. Knows nothing of LAMMPS: mpm_options.h connects the two.
+// The options of a style, declared once: keyword, values, unit, range, default, meaning, and the
+// combinations that are refused, with the remedy. The parser with its error messages, the refusals, the
+// comparison with a restart file, the echo in the log, and the block of keywords in the manual are all
+// made from this declaration. Knows nothing of LAMMPS: mpm_options.h connects the two.
 //
 //   Options MPMDtOptions::declare()
 //   {
@@ -26,7 +26,7 @@
 //     return o;
 //   }
 //
-// A declaration refers to the variables that it reads into, and so must not outlive them.
+// A declaration refers to the variables into which it reads values, and must not outlive them.
 
 #include "declare/range.h"
 
@@ -40,14 +40,14 @@
 
 namespace MPM_NS {
 
-/** A mistake in the input. */
+/** An error in the input. */
 struct OptionError {
-  int iarg;            ///< the argument that is wrong, or -1: it is none in particular
-  std::string text;    ///< what is wrong; when missing: the command that ends too soon
-  bool missing = false;
+  int iarg;                ///< the wrong argument; -1: none in particular
+  std::string text;        ///< the message; if missing: the command that ends too soon
+  bool missing = false;    ///< arguments are missing at the end
 };
 
-/** The words of a command, and how they become values, which in LAMMPS is the same everywhere. */
+/** The words of a command, and the functions of LAMMPS that convert word iarg to a value. */
 struct OptionInput {
   int narg;
   const char *const *arg;
@@ -56,28 +56,29 @@ struct OptionInput {
   std::function<bool(int iarg)> yes;
 };
 
-/** A number, or an equal-style variable that gives it in each step, or NULL. */
+/** A number, an equal-style variable that is evaluated in each step, or NULL. */
 struct NumberOrVariable {
   double value = 0.0;
-  std::string variable;    ///< its name, empty: a number
-  bool given = true;       ///< not NULL
-  int index = -1;          ///< of the variable, for who evaluates it
+  std::string variable;    ///< name of the variable; empty: a number
+  bool given = true;       ///< false: NULL
+  int index = -1;          ///< index of the variable, for the code that evaluates it
 };
 
-/** Where in the input a value is read, and how messages name it. */
+/** The place in the input where a value is read, and its name in messages. */
 struct OptionReader {
   const OptionInput &input;
   int iarg;               ///< the next argument
-  std::string command;    ///< with the keyword
-  std::string what;       ///< the same, with the words that followed
-  bool several;           ///< the option has several values: messages have their names, too
+  std::string command;    ///< command and keyword
+  std::string what;       ///< command, keyword, and the words after it so far
+  bool several;           ///< the option has several values, so that messages name the value, too
 
-  /** Takes an argument. */
+  /** Index of the next argument, which is taken; throws OptionError if there is none. */
   int next();
+  /** Throws OptionError for an argument; name: name of the value, used if there are several. */
   [[noreturn]] void fail(int iarg, const std::string &name, const std::string &text) const;
 };
 
-/** What the manual says of values: their names, separated by blanks, and what they mean. */
+/** Text of the manual about values: their names, separated by blanks, meaning, unit, and range. */
 struct OptionNote {
   std::string names, meaning, unit = "";
   Range range = ANY_NUMBER;
@@ -85,68 +86,71 @@ struct OptionNote {
 
 struct OptionWord;
 
-/** A value after a keyword: made by the functions in namespace option. */
+/** A value after a keyword, made by the functions in namespace option. */
 struct OptionValue {
-  std::string usage;    ///< as it is written in the manual; empty: one of the words
-  int count;            ///< numbers or words of it
+  std::string usage;    ///< as written in the manual; empty: one of the words
+  int count;            ///< how many numbers or words it consists of
   std::function<void(OptionReader &)> read;
-  std::function<std::string()> text;    ///< present value, as in the input
+  std::function<std::string()> text;    ///< present value, as it is written in the input
   std::vector<OptionNote> notes = {};
-  std::shared_ptr<const std::vector<OptionWord>> words = nullptr;    ///< null: any other value
-  bool optional = false;
+  std::shared_ptr<const std::vector<OptionWord>> words = nullptr;    ///< null: other kinds of value
+  bool optional = false;                                             ///< may be left out
 };
 
-/** One of the words that a value can be. */
+/** One of the words that are possible for a value. */
 struct OptionWord {
   std::string word;
   int value;
-  std::string meaning = "";                ///< empty: that of the next word is for both
-  std::vector<OptionValue> values = {};    ///< that follow this word
+  std::string meaning = "";                ///< empty: the meaning of the next word is for both
+  std::vector<OptionValue> values = {};    ///< values that follow this word
 };
 
-/** What options exclude. The message is the command, the keyword, and the text, in which {name} is the
- *  present value of that keyword. */
+/** A rule that options must not break. The message consists of the command, the keyword, and the text, in
+ *  which {name} stands for the present value of that keyword. */
 struct OptionRule {
   bool broken;
-  std::string keyword;    ///< that is to blame, or empty
-  std::string text;       ///< what is wrong, with the remedy
+  std::string keyword;    ///< the keyword that is wrong, or empty
+  std::string text;       ///< what is wrong, and the remedy
 };
 using OptionRules = std::vector<OptionRule>;
 
-/** The kinds of values. Names are those in the manual and in messages; units are kinds of units, such
- *  as velocity, "1" for none that has no unit, "" for what needs no mention. */
+/** The kinds of values. Names are those in the manual and in messages. Units are kinds of units, such as
+ *  velocity; "1" for dimensionless values, "" for values whose unit need not be mentioned. */
 namespace option {
 
   using OptionNumber = std::variant<double *, int *, int64_t *>;
 
-  /** n numbers with one meaning, from the first on; their names are separated by blanks. */
+  /** n numbers with one meaning, read into an array; their names are separated by blanks. */
   OptionValue numbers(OptionNumber, int n, const std::string &names, const Range &,
                       const std::string &unit = "", const std::string &meaning = "");
+  /** One real number. */
   inline OptionValue number(double &to, const std::string &name, const Range &range,
                             const std::string &unit = "", const std::string &meaning = "")
   {
     return numbers(&to, 1, name, range, unit, meaning);
   }
+  /** One integer. */
   template <class Integer>
   OptionValue integer(Integer &to, const std::string &name, const Range &range,
                       const std::string &meaning = "")
   {
     return numbers(&to, 1, name, range, "", meaning);
   }
-  /** One for each axis; names are those in 3d. */
+  /** One number for each axis; names are those in 3d. */
   OptionValue axes(double *, int dim, const std::string &names, const Range &,
                    const std::string &unit = "", const std::string &meaning = "");
-  /** One for each axis or one for all of them, which has the first of the names. */
+  /** One number for all axes, which has the first of the names, or one for each axis. */
   OptionValue one_or_axes(OptionNumber, int dim, const std::string &names, const Range &,
                           const std::string &unit, const std::string &meaning,
                           const std::string &meaning_each);
+  /** The word yes or no. */
   OptionValue yes_no(bool &);
   /** Any word, such as an ID. */
   OptionValue text(std::string &, const std::string &name, const std::string &meaning = "");
-  /** Numbers or equal-style variables; null: words NULL leave values free. */
+  /** n numbers or equal-style variables; null: also NULL, for values that are not given. */
   OptionValue variables(NumberOrVariable *, int n, const std::string &names,
                         const std::string &unit, const std::string &meaning, bool null = false);
-  /** One of several words; name: in messages about a word that is none of them. */
+  /** One of several words; name: name of the value in messages about an unknown word. */
   OptionValue word(std::function<int()> get, std::function<void(int)> set,
                    const std::vector<OptionWord> &, const std::string &name = "");
   template <class Enum>
@@ -161,10 +165,10 @@ namespace option {
         },
         words, name);
   }
-  /** One or more of n words, each of which sets its entry. */
+  /** One or more of the words; each word given sets its entry to true. */
   OptionValue any_of(bool *, const std::vector<std::string> &words,
                      const std::string &meaning = "");
-  /** The value may be left out; it is there when a number follows. */
+  /** Makes a value optional: it is read only if a number or a variable follows. */
   OptionValue optional(OptionValue);
 
 }    // namespace option
@@ -172,19 +176,20 @@ namespace option {
 /** A keyword with its values. */
 class Option {
  public:
-  /** Another value than in the restart file is an error: of several words, another first one. */
+  /** A value that differs from the one in the restart file is an error; of several words only the first is compared. */
   Option &keep() { return set(kept, true); }
-  /** The same, where this holds when the file is written. */
+  /** The same, but only if f() is true when the restart file is written. */
   Option &keep(const std::function<bool()> &f)
   {
     keeps = f;
     return keep();
   }
-  /** Must not be given twice. */
+  /** The keyword must not be given twice. */
   Option &once() { return set(single, true); }
-  /** Called after each time the values have been read: they may be given again, for another one. */
+  /** Sets a function that is called each time the values have been read, as a keyword may be given again for another
+   *  object. */
   Option &then(const std::function<void()> &f) { return set(after, f); }
-  /** What the manual says of the default, instead of the value. */
+  /** Text of the manual for the default, instead of the initial value. */
   Option &standard(const std::string &text) { return set(preset, text); }
 
   std::string keyword, meaning, preset;
@@ -193,7 +198,7 @@ class Option {
  private:
   friend class Options;
   bool kept = false, single = false;
-  int where = -1;    // the argument with the keyword, as given last
+  int where = -1;    // index of the argument with the keyword, given last
   std::function<void()> after;
   std::function<bool()> keeps;
 
@@ -207,38 +212,40 @@ class Option {
 /** All options of a style. */
 class Options {
  public:
-  /** command: in messages, for example fix mpm/dt. */
+  /** command: name of the command in messages, for example fix mpm/dt. */
   explicit Options(std::string command) : command(std::move(command)) {}
 
-  /** A value that must be given: these come first, in the order of their declaration. */
+  /** Adds a required value. Required values come before all keywords, in the order of their declaration. */
   void argument(const OptionValue &value) { arguments.push_back(value); }
-  /** A keyword. meaning: lines for the manual, in addition to those of the values. */
+  /** Adds a keyword. meaning: lines for the manual, in addition to those of the values. */
   Option &add(const std::string &keyword, std::vector<OptionValue>,
               const std::string &meaning = "");
 
-  /** The rules, evaluated when the values are read, that the input must not break; those without the
-   *  keyword of a rule in the input are not looked at. */
+  /** Sets the rules that the input must not break, evaluated after all values have been read. A rule with a
+   *  keyword is ignored if this keyword is not in the input. */
   void refuse(const std::function<OptionRules()> &rules) { refusals = rules; }
-  /** The rules of warnings(). */
+  /** Sets the rules for warnings(). */
   void warn(const std::function<OptionRules()> &rules) { doubts = rules; }
 
-  /** Reads arguments from iarg on, up to the end or the word last, whose index is returned, and
-   *  applies the refusals; throws OptionError. */
+  /** Reads arguments from iarg up to the end or the word last, and applies the refusals. Returns the index
+   *  at which it stopped; throws OptionError. */
   int read(const OptionInput &, int iarg, const std::string &last = "");
 
-  /** Is this word a keyword; the index of its argument, -1 when it was not given. */
+  /** Is this word a keyword? */
   bool has(const std::string &keyword) const { return find(keyword) != nullptr; }
+  /** Index of the argument with this keyword, or -1 if it was not given. */
   int where(const std::string &keyword) const;
+  /** Was this keyword given? */
   bool given(const std::string &keyword) const { return where(keyword) >= 0; }
 
-  /** What can be run but is likely to be a mistake. */
+  /** Messages about valid input that is probably a mistake. */
   std::vector<std::string> warnings() const;
 
   /** All keywords with their present values, in one line. */
   std::string text() const;
-  /** Those that a restart file keeps. */
+  /** The keywords that a restart file keeps with their present values, one per line. */
   std::string kept() const;
-  /** Where these differ from what kept() returned when the file was written; empty: nowhere. */
+  /** Differences from the text that kept() returned when the restart file was written; empty: none. */
   std::string differences(const std::string &kept_then) const;
 
   const std::vector<Option> &all() const { return options; }

@@ -9,17 +9,17 @@
 #ifndef MPM_DECLARE_RANGE_H
 #define MPM_DECLARE_RANGE_H
 
-// Ranges of the numbers that laws and styles declare. Knows nothing of LAMMPS.
+// Ranges of the numbers that laws and styles declare. Nothing here knows about LAMMPS.
 
 #include <limits>
 
 namespace MPM_NS {
 
-/** Values that a number may have: low < value < high, or low <= value <= high when closed. */
+/** Values that a number may have: low < value < high, or low <= value <= high if closed. */
 struct Range {
   double low, high;
   bool closed;
-  bool closed_above = closed;    ///< at high, where it differs from low
+  bool closed_above = closed;    ///< is it closed at high? By default as at low
 
   bool contains(double value) const
   {

@@ -9,8 +9,8 @@
 #ifndef MPM_IMAGE_BODY_H
 #define MPM_IMAGE_BODY_H
 
-// Bodies in an image that has its place in the simulation box: which pixels are of which type, and the share of a
-// box that is in a body. Knows nothing of LAMMPS.
+// Bodies in an image that is placed in the simulation box: the types of pixels, and the fraction of a box that a body
+// fills. Knows nothing of LAMMPS.
 
 #include "image/image.h"
 #include "image/level_set.h"
@@ -20,51 +20,56 @@
 
 namespace MPM_NS {
 
-/** Pixels of this gray value and above have this type, 0: they are in no body. */
+/** Pixels with this gray value or a larger one have this type; 0: no body. */
 struct GrayStep {
   double from;
   int type;
 };
 
-/** Pixels of this color have this type, whatever their gray value is. */
+/** Pixels of this color have this type, regardless of their gray value. */
 struct ColorType {
   int color[3], type;
 };
 
+/** An image, its place in the box, and the bodies in it. */
 struct ImageBody {
   Image image;
 
-  // place; d is an axis of the box, c one of the image: columns, rows, slices
+  // place; d is an axis of the box, c an axis of the image (columns, rows, slices)
 
   int dim = 3;
-  int image_axis[3] = {0, 1, 2};    ///< of d
-  bool against[3] = {};             ///< of d: the image counts from the upper end
-  double lo[3] = {}, pixel[3] = {1.0, 1.0, 1.0};
+  int image_axis[3] = {0, 1, 2};                    ///< [d] the axis c of the image along d
+  bool against[3] = {};                             ///< [d] the image counts from the upper end
+  double lo[3] = {}, pixel[3] = {1.0, 1.0, 1.0};    ///< [d] lower corner and size of a pixel
 
   // bodies
 
-  std::vector<GrayStep> steps;    ///< in ascending order; none: only colors count
+  std::vector<GrayStep> steps;    ///< in ascending order; empty: only colors are used
   std::vector<ColorType> colors;
-  bool below = false;                         ///< a single step: what is darker than it is the body
-  std::unique_ptr<const LevelSet> surface;    ///< null: that of the pixels
+  bool below = false;    ///< with a single step: the darker pixels are the body
+  std::unique_ptr<const LevelSet> surface;    ///< null: the surface follows the faces of pixels
 
+  /** Number of pixels along axis d of the box. */
   int64_t count(int d) const { return image.n[image_axis[d]]; }
+  /** Upper end of the image along axis d of the box. */
   double hi(int d) const { return lo[d] + pixel[d] * count(d); }
 
-  /** The pixel at x[3], -1 outside of the image. What is between two pixels belongs to the upper one. */
+  /** The pixel at x[3], or -1 outside the image. A face between two pixels belongs to the upper one. */
   int64_t pixel_at(const double *x) const;
-  /** The same, outside of the image the nearest one. */
+  /** The pixel at x[3], or the nearest one outside the image. */
   int64_t nearest_pixel(const double *x) const;
+  /** Type of a pixel; 0: in no body. */
   int type_of(int64_t pixel) const;
-  /** Type at x, 0: no body there. */
+  /** Type at x[3]; 0: no body there. */
   int type_at(const double *x) const;
 
-  /** Leaves out columns, rows, and slices at the faces in which nothing is in a body. */
+  /** Removes columns, rows, and slices at the faces of the image that contain no body. */
   void crop();
 
-  /** Makes the surface of a body with a single step, see LevelSet for the arguments; wraps: of d. */
+  /** Makes the surface of a body with a single step. For the arguments see LevelSet; here wraps[d] refers to axes of the
+   *  box. */
   void make_surface(double width, const bool *wraps);
-  /** Share of a box with its center at x that is in the body of the surface, 0 to 1. */
+  /** Fraction, 0 to 1, of a box with center x[3] and these edges that is inside the surface. */
   double share_at(const double *x, const double *edges) const;
 };
 

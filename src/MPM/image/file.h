@@ -9,7 +9,7 @@
 #ifndef MPM_IMAGE_FILE_H
 #define MPM_IMAGE_FILE_H
 
-// What the readers of image files share: bytes of a file, and sizes that fit what is there.
+// Common parts of the readers of image files: access to bytes, and checks of sizes against the length of the file.
 
 #include "image/image.h"
 
@@ -18,7 +18,7 @@
 
 namespace MPM_NS {
 
-/** A file of bytes, whose mistakes are std::runtime_error. */
+/** A binary file; all functions throw std::runtime_error, with the name of the file, on errors. */
 class ImageFile {
  public:
   explicit ImageFile(const std::string &name);
@@ -30,28 +30,29 @@ class ImageFile {
   int64_t size;    ///< bytes
   FILE *fp;
 
+  /** Throws std::runtime_error with the name of the file and this text. */
   [[noreturn]] void fail(const std::string &what) const;
 
-  int64_t here() const;         ///< bytes before the place where one reads
-  void go_to(int64_t place);    ///< counted from the begin, negative: from the end
-  int get() { return getc(fp); }
-  void read(void *to, std::size_t n);
-  /** A line without its end; false: there is no more. */
+  int64_t here() const;                  ///< position in bytes from the start of the file
+  void go_to(int64_t place);             ///< position from the start; negative: from the end
+  int get() { return getc(fp); }         ///< next byte, or EOF
+  void read(void *to, std::size_t n);    ///< n bytes
+  /** Reads a line, without its end; false at the end of the file. */
   bool line(std::string &);
 
-  /** The first bytes, as a string. */
+  /** The first 8 bytes (or fewer, if the file is shorter) as a string; goes back to the start of the file. */
   std::string magic();
 
-  /** Checks columns, rows, and slices of a header: positive, and not more values than can be in the rest of the file
-   *  with so many bits for each at the least. */
+  /** Checks that the numbers of columns, rows, and slices are positive, and that the rest of the file can hold the
+   *  values, with at least least_bits bits for each. */
   void check_size(const ImageLayout &, double least_bits);
-  /** The same, and then makes room for the values. */
+  /** Does check_size(), and then allocates memory for the values. */
   void make_room(Image &, double least_bits);
-  /** Reads all values, as they stand in the file. */
+  /** Does make_room(), and then reads all values in the order of the file, as numbers of this machine. */
   void read_values(Image &, bool big_endian);
 };
 
-// by format; the file is at its begin
+// readers by format; the file must be at its start
 Image read_netpbm(ImageFile &);
 Image read_png(ImageFile &);
 Image read_nrrd(ImageFile &);

@@ -9,7 +9,7 @@
 #ifndef MPM_IMAGE_IMAGE_H
 #define MPM_IMAGE_IMAGE_H
 
-// Pictures and stacks of them: gray values or colors of pixels. Nothing here knows about LAMMPS. (mpm_image.h
+// Pictures and stacks of pictures: gray values or colors of pixels. Nothing here knows about LAMMPS. (mpm_image.h
 // is about periodic images.)
 
 #include <cstddef>
@@ -19,40 +19,41 @@
 
 namespace MPM_NS {
 
-/** Numbers that image files have. */
+/** Types of numbers in image files. */
 enum class ImageKind : int { UINT8, INT8, UINT16, INT16, UINT32, INT32, FLOAT, DOUBLE };
 
-/** Bytes of a number. */
+/** Size of a number in bytes. */
 std::size_t image_bytes(ImageKind);
 
-/** What an image is, without its values; plain data, so that it can be sent as bytes. */
+/** Description of an image without its values; plain data, so that it can be sent as bytes. */
 struct ImageLayout {
   int64_t n[3] = {0, 0, 0};    ///< columns, rows, slices, in the order of the file, columns fastest
   int channels = 1;            ///< 1: gray, 3: red, green, blue
   ImageKind kind = ImageKind::UINT8;
-  double largest = 0.0;    ///< value of white; 0: the format has none
-  double spacing[3] = {0.0, 0.0,
-                       0.0};    ///< of columns, rows, slices as the file has it, 0: it does not
-  bool picture = true;          ///< rows are counted from the top, as in pictures
-  bool turned = false;          ///< the file says that its axes are not x, y, z, which is not used
+  double largest = 0.0;    ///< value of white; 0: not defined by the format
+  /** Spacing of columns, rows, slices as given in the file; 0: not given. */
+  double spacing[3] = {0.0, 0.0, 0.0};
+  bool picture = true;    ///< rows are counted from the top, as in pictures
+  bool turned = false;    ///< the file says that its axes are not x, y, z; this is ignored
 
   int64_t pixels() const { return n[0] * n[1] * n[2]; }
   std::size_t bytes() const { return pixels() * channels * image_bytes(kind); }
 };
 
+/** An image with its values. */
 struct Image : ImageLayout {
-  std::vector<unsigned char> data;    ///< the numbers in the order of bytes of this machine
+  std::vector<unsigned char> data;    ///< the numbers, in the byte order of this machine
 
-  /** A number of a pixel, which is column + n[0]*(row + n[1]*slice). */
+  /** Value of a channel of a pixel; pixel = column + n[0]*(row + n[1]*slice). */
   double number(int64_t pixel, int channel) const;
-  /** Its gray value: the number, or the brightness 0.299 R + 0.587 G + 0.114 B of a color (ITU-R BT.601). */
+  /** Gray value of a pixel: its value, or the brightness 0.299 R + 0.587 G + 0.114 B of a color (ITU-R BT.601). */
   double gray(int64_t pixel) const;
 
   /** Keeps columns, rows, slices first[d] to first[d] + count[d] - 1. */
   void crop(const int64_t *first, const int64_t *count);
 };
 
-/** What the input says of files that do not say it themselves. */
+/** Layout of files without a header, from the input. */
 struct RawLayout {
   int64_t n[3] = {0, 0, 0};    ///< 0: the file has a header
   ImageKind kind = ImageKind::UINT8;
@@ -60,17 +61,17 @@ struct RawLayout {
   int64_t skip = 0;    ///< bytes in front of the values
 };
 
-/** Numbered files, whose name has %d, or %04d for four digits at least, in the place of the number. */
+/** Numbers of a series of files. Their name has %d in place of the number, or %04d for at least four digits. */
 struct SliceRange {
-  int64_t first = 0, last = -1;    ///< last < first: one file
+  int64_t first = 0, last = -1;    ///< last < first: a single file
 };
 
-/** Reads an image or a stack of images: PBM, PGM, PPM (P1 to P6), PNG, NRRD, as the first bytes of a file tell, or
- *  values without a header. Throws std::runtime_error that begins with the name of the file, also for values that
- *  are no finite numbers. */
+/** Reads an image or a stack of images. The format is found from the first bytes of the file: PBM, PGM, PPM (P1 to P6),
+ *  PNG, or NRRD; or the file has values without a header. On errors, also if a value is not finite, throws
+ *  std::runtime_error that begins with the name of the file. */
 Image read_image(const std::string &file, const RawLayout &raw = {}, const SliceRange &slices = {});
 
-/** Was libpng there when this was compiled? */
+/** Was this compiled with libpng? */
 bool png_available();
 
 }    // namespace MPM_NS

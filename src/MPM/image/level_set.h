@@ -9,7 +9,7 @@
 #ifndef MPM_IMAGE_LEVEL_SET_H
 #define MPM_IMAGE_LEVEL_SET_H
 
-// The surface of a body in an image, between pixels: where the smoothed values are those of a threshold.
+// The surface of a body in an image with subpixel resolution: where the smoothed values equal a threshold.
 
 #include <cstdint>
 #include <functional>
@@ -17,25 +17,26 @@
 
 namespace MPM_NS {
 
-/** Share of the unit cube (of dimension dim) centered at zero in which value + gradient . x is positive; exact (R.
+/** Fraction of the unit cube of dimension dim, centered at zero, in which value + gradient . x is positive; exact (R.
  *  Scardovelli, S. Zaleski, J. Comput. Phys. 164 (2000) 228). */
 double share_above(double value, const double *gradient, int dim);
 
-/** Values at the centers of pixels, positive in the body, and linear between these along each axis. All lengths are in
- *  pixels, from the lower corner of the first one. */
+/** Values at the centers of pixels, positive in the body, with linear interpolation along each axis between them.
+ *  All lengths are in pixels, from the lower corner of the first pixel. */
 class LevelSet {
  public:
-  /** width: standard deviation of the Gaussian that values are smoothed with, 0: not at all. wraps: axes along
-   *  which the image goes on from its begin; at other faces it goes on as at its last pixels. value: of a pixel by its
-   *  number, columns first. */
+  /** n[3]: number of columns, rows, slices. wraps[3]: axes along which the image is periodic; at other faces it
+   *  continues with the values of the outermost pixels. width: standard deviation of the Gaussian filter that smooths
+   *  the values; 0: no smoothing. value: value of a pixel by its number, with columns running fastest. */
   LevelSet(const int64_t *n, int dim, const bool *wraps, double width,
            const std::function<double(int64_t)> &value);
 
+  /** Interpolated value at x[dim]. */
   double at(const double *x) const;
 
-  /** Volume of the body in a box of the image, in pixels: the box is cut at the centers of pixels and between them, and
-   *  in each part the surface is a plane, so that the error is of second order in the size of pixels. What is
-   *  outside of the image is empty. */
+  /** Volume of the body in a box of the image, in pixels. The box is cut at the centers and the faces of pixels, and the
+   *  surface is approximated by a plane in each part, so that the error is of second order in the size of pixels. Space
+   *  outside the image is empty. */
   double volume(const double *lo, const double *hi) const;
 
  private:
@@ -46,9 +47,9 @@ class LevelSet {
 
   int64_t index(int d, int64_t i) const;
   void smooth(int d, double width);
-  /** May the surface go through a box? If not: is the box inside? */
+  /** May the surface cross a box? If not, sets inside: is the box in the body? */
   bool crosses(const double *lo, const double *hi, bool &inside) const;
-  /** Volume of the body in a box between pixels. */
+  /** Volume of the body in a box that no center or face of a pixel cuts. */
   double part(const double *lo, const double *hi) const;
 };
 

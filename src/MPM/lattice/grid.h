@@ -21,15 +21,15 @@ namespace MPM_NS {
 
 constexpr int NODES_PER_BLOCK = 64;
 
-/** Geometry of the computing lattice: node i of axis d sits at origin[d] + i h. */
+/** Geometry of the computing lattice: node i along axis d is at origin[d] + i h. */
 struct Lattice {
-  int dim;     ///< 2 or 3
-  double h;    ///< node spacing
-  double origin[3];
+  int dim;             ///< 2 or 3
+  double h;            ///< node spacing
+  double origin[3];    ///< position of node 0
   bool periodic[3];
-  int ncell[3];    ///< cells along a periodic axis; unused on others
+  int ncell[3];    ///< cells along a periodic axis; unused for other axes
 
-  /** Node index modulo the period: the canonical node of a set of periodic images. */
+  /** Node index modulo the period: index of the canonical node of a set of periodic images. */
   int wrap(int axis, int i) const
   {
     if (!periodic[axis]) return i;
@@ -40,16 +40,17 @@ struct Lattice {
   {
     for (int d = 0; d < 3; d++) x[d] = d < dim ? origin[d] + index[d] * h : 0.0;
   }
+  /** Volume of a cell; its area in 2d. */
   double cell_volume() const { return dim == 3 ? h * h * h : h * h; }
 };
 
-/** The blocks of nodes within reach of this rank's points, and their node records.
+/** The blocks of nodes within reach of the points of this rank, and their node records.
  *
  *  A block holds 4x4x4 nodes in 3d and 8x8 in 2d; block b of an axis holds nodes b*side ...
  *  b*side + side - 1. Node in block: (ix*4+iy)*4+iz in 3d, ix*8+iy in 2d.
- *  A node record is nreal reals, layout see transfer/kernels.h. Periodic images are separate nodes
- *  (aliases) whose sums are folded into the canonical node and copied back after the solve,
- *  so that no kernel needs to know about periodicity.
+ *  A node record has nreal reals; for its layout see transfer/kernels.h. Periodic images are separate
+ *  nodes (aliases). Their sums are added to the canonical node and copied back after the solve, so that
+ *  no kernel needs to know about periodicity.
  */
 class Grid {
  public:
@@ -65,8 +66,8 @@ class Grid {
   int side, shift_bits;    ///< nodes along a block side, log2 of it
   std::vector<Block> blocks;
   int nreal = 0;    ///< reals of a node record
-  /** Periodic images outside of this range of nodes along each axis have no part in sums and copies: nobody
-   *  looks at them. clear() makes it all nodes. */
+  /** Range of nodes along each axis that are in use: sums and copies skip periodic images outside it. clear()
+   *  resets it to all nodes. */
   int reach_low[3], reach_high[3];
 
   explicit Grid(const Lattice &lattice) :
@@ -76,9 +77,9 @@ class Grid {
   }
 
   void clear();                    ///< forget all blocks
-  int activate(const int b[3]);    ///< slot of a block, made active when it is not
-  int find(const int b[3]) const { return find(key(b)); }    ///< slot or -1
-  int find(uint64_t key) const;                              ///< the same with its block_key()
+  int activate(const int b[3]);    ///< slot of a block, which is activated if necessary
+  int find(const int b[3]) const { return find(key(b)); }    ///< slot of a block, or -1
+  int find(uint64_t key) const;                              ///< the same, by its block_key()
   void close_periodic();       ///< activate canonical blocks, list the aliases
   void finish();               ///< neighbor tables, owned masks (all canonical)
   void allocate(int nreal);    ///< node records for all blocks, zeroed
@@ -87,15 +88,15 @@ class Grid {
   double *record(int slot, int n) { return record((int64_t) slot * NODES_PER_BLOCK + n); }
   double *record(int64_t which) { return node.get() + which * nreal; }    ///< which: slot*64 + n
   int64_t nnodes() const { return (int64_t) blocks.size() * NODES_PER_BLOCK; }
-  void zero();
+  void zero();    ///< set all node records to zero
 
-  /** Add reals [lane, lane+nlane) of the images to their canonical node. */
+  /** Adds reals [lane, lane+nlane) of periodic images to their canonical node. */
   void fold_aliases(double *nodes, int nreal, int lane, int nlane) const;
-  /** Canonical node to its images, all reals. */
+  /** Copies all reals of canonical nodes to their periodic images. */
   void copy_aliases(double *nodes, int nreal) const;
   void copy_aliases() { copy_aliases(nodes(), nreal); }
 
-  /** Bits of the nodes of a block with indices from low to high. */
+  /** Bits of the nodes of a block whose indices are from low to high, inclusive. */
   uint64_t nodes_between(const Block &, const int low[3], const int high[3]) const;
 
   /** Global node index of node n of a block. */
@@ -126,15 +127,15 @@ class Grid {
   {
     return blocks[which / NODES_PER_BLOCK].owned >> (which % NODES_PER_BLOCK) & 1;
   }
-  /** Number of a node in its block, from its global index. */
+  /** Number of a node within its block, from its global index. */
   int number(const int index[3]) const
   {
     const int i = index[0] & (side - 1), j = index[1] & (side - 1), k = index[2] & (side - 1);
     return lattice.dim == 3 ? (4 * i + j) * 4 + k : 8 * i + j;
   }
-  /** Slot*64 + node of a global node index, -1 when its block is not active. */
+  /** slot*64 + n of a global node index, or -1 if its block is not active. */
   int64_t locate(const int index[3]) const;
-  /** The same without a search, for nodes in this block and its neighbors. */
+  /** As locate(), but without a search, for nodes in this block and its neighbors. */
   int64_t locate_near(const Block &block, const int index[3]) const
   {
     int neighbor = 0;
@@ -146,7 +147,7 @@ class Grid {
     return slot < 0 ? -1 : (int64_t) slot * NODES_PER_BLOCK + number(index);
   }
 
-  /** [node] the node that it is a periodic image of, or itself. */
+  /** For each node slot*64 + n, its canonical node, which is the node itself if it is no periodic image. */
   std::vector<int64_t> canonical() const;
 
   int64_t memory_usage() const;

@@ -14,7 +14,7 @@
 
 namespace MPM_NS {
 
-/** Largest integer that is not above t, which must be one that an int can be. */
+/** Largest integer not above t; t must be within the range of int. */
 inline int cell_below(double t)
 {
   const int cell = (int) t;
@@ -23,23 +23,24 @@ inline int cell_below(double t)
 
 /** Velocities and pressures on a staggered (marker-and-cell) lattice, as functions of the place.
  *
- *  Cell i of an axis reaches from node i to node i + 1. Component c of the velocity has its coefficients at the faces normal
- *  to c, of which cell i has the lower one, and the pressure in the middle of cells. The function of a face is the quadratic
- *  B-spline along c and the hat along the other axes: the slope of the former is the difference of two hats, so that the
- *  divergence of the interpolated velocity is the sum over cells of the product of hats times the balance of the cell's
- *  faces. Where cells around a place have none, the velocity is free of divergence at that very place
- *  (J.A. Evans, T.J.R. Hughes, J. Comput. Phys. 241 (2013) 141; C. Schroeder, R.R. Chowdhury, T. Shinar, J. Comput. Phys. 468
- *  (2022) 111500).
+ *  Cell i along an axis reaches from node i to node i + 1. Component c of the velocity has its coefficients at the faces
+ *  normal to c, where face i is the lower face of cell i; the pressure has its coefficients in the middle of cells. The
+ *  basis function of a face is the quadratic B-spline along c times the hat functions along the other axes. The slope of
+ *  this spline is the difference of two hats, so that the divergence of the interpolated velocity is the sum over cells
+ *  of the product of hats times the net flow through the faces of the cell. If this net flow vanishes for the cells
+ *  around a place, the velocity is free of divergence exactly at that place (J.A. Evans, T.J.R. Hughes, J. Comput. Phys.
+ *  241 (2013) 141; C. Schroeder, R.R. Chowdhury, T. Shinar, J. Comput. Phys. 468 (2022) 111500).
  *
- *  All functions that reach a place have indices base, base + 1, base + 2 along each axis. */
+ *  The functions that are nonzero at a place have indices base, base + 1, base + 2 along each axis. */
 struct StaggeredWeights {
   int base[3];
-  double hat[3]
-            [3];    ///< [axis][k] of faces normal to another axis, and of cells; the last one is 0
-  double spline[3][3];    ///< [axis][k] of faces normal to this axis
-  double f[3];    ///< coordinate of the place from the middle of cell base, 0 to 1 [spacings]
+  double
+      hat[3]
+         [3];    ///< [axis][k] for faces normal to another axis, and for cells; the last one is 0
+  double spline[3][3];    ///< [axis][k] for faces normal to this axis
+  double f[3];            ///< distance of the place from the middle of cell base, 0 to 1 [spacings]
 
-  /** t: coordinates in node spacings from node 0. */
+  /** Computes the weights at t, in node spacings from node 0. */
   template <int dim> void find(const double *t)
   {
     for (int d = 0; d < dim; d++) {
@@ -54,11 +55,11 @@ struct StaggeredWeights {
     }
   }
 
-  /** From the place to face (or middle of the cell) base + k along an axis, in spacings. */
+  /** Distance along axis d from the place to face, or to the middle of cell, base + k, in spacings. */
   double to_face(int d, int k) const { return k - 0.5 - f[d]; }
   double to_middle(int d, int k) const { return k - f[d]; }
 
-  /** Weight of face base + k normal to c. */
+  /** Weight of face base + k normal to axis c. */
   template <int dim> double face(int c, const int k[3]) const
   {
     double w = spline[c][k[c]];
@@ -66,6 +67,7 @@ struct StaggeredWeights {
       if (d != c) w *= hat[d][k[d]];
     return w;
   }
+  /** Weight of cell base + k. */
   template <int dim> double cell(const int k[3]) const
   {
     double w = 1.0;
@@ -74,13 +76,14 @@ struct StaggeredWeights {
   }
 };
 
-/** Shares of a point in the hats in the middle of cells, if it is as wide as its volume is: those of points side by side add
- *  up to what they fill, wherever they are. They reach cells first, first + 1, and first + 2 along each axis. */
+/** Weights of the hats in the middle of cells for a point of finite width, averaged over its width. For points side by
+ *  side, wherever they are, the weights times their volumes add up to the integral of each hat over the space that they
+ *  fill. The weights reach cells first, first + 1, and first + 2 along each axis. */
 struct FillingWeights {
   int first[3];
   double share[3][3];
 
-  /** t: as above; width: of the point, in spacings, at most 1. */
+  /** Computes the weights at t, in node spacings from node 0. width: width of the point in spacings, at most 1. */
   template <int dim> void find(const double *t, double width)
   {
     const double inverse = 1.0 / width;
@@ -92,7 +95,7 @@ struct FillingWeights {
       }
     }
   }
-  /** Share of a hat that is below a place. */
+  /** Integral of the hat centered at 0 up to x. */
   static double below(double x)
   {
     x = std::max(-1.0, std::min(x, 1.0));

@@ -15,24 +15,24 @@
 
 namespace MPM_NS {
 
-/** Thermal expansion of the points of a batch: the stretch theta = exp[ALPHA (T - T0)]. */
+/** Thermal expansion of the points of a batch, given by the stretch theta = exp[ALPHA (T - T0)]. */
 struct ThermalStretch {
   double before[BATCH], now[BATCH];    ///< 1/theta at the start and the end of a step
-  double change[BATCH];                ///< of ln theta in the step
+  double change[BATCH];                ///< change of ln theta in the step
 
-  /** theta^3 now. */
+  /** theta^3 at the end of the step. */
   double volume(int i) const { return 1.0 / (now[i] * now[i] * now[i]); }
 };
 
-/** Takes the thermal stretch out of the motion of a batch: what laws see is F_e = F/theta,
- *  J_e = J/theta^3, the increment A_e of the same step, I + A_e = (I + A) theta_old/theta, and the volume that
- *  a point has when it is free of stress, V_0 theta^3, as its initial volume (V.A. Lubarda, Appl. Mech. Rev. 57 (2004)
- *  95: F = F_e F_theta, with a stress that is a function of F_e). Energies of laws are then per volume of the
- *  expanded material.
+/** Removes the thermal stretch from the motion of a batch while this object exists. The laws then see
+ *  F_e = F/theta, J_e = J/theta^3, the increment A_e of the same step with I + A_e = (I + A) theta_old/theta,
+ *  and, as initial volume, the stress-free volume V_0 theta^3 of a point (V.A. Lubarda, Appl. Mech. Rev. 57
+ *  (2004) 95: F = F_e F_theta, with a stress that is a function of F_e). Their energies are then per volume
+ *  of the expanded material.
  */
 class ElasticMotion {
  public:
-  /** with_F: a law looks at F. */
+  /** with_F: a law uses F, so that F is changed, too. */
   ElasticMotion(Batch &batch, const ThermalStretch &s, bool with_F) : b(batch), with_F(with_F)
   {
     memcpy(A, b.A, sizeof(A));
@@ -55,7 +55,7 @@ class ElasticMotion {
     }
   }
 
-  /** Gives the batch its motion back, to the last bit. */
+  /** Restores the motion of the batch bit for bit. */
   ~ElasticMotion()
   {
     memcpy(b.A, A, sizeof(A));

@@ -13,8 +13,9 @@
 
 namespace MPM_NS {
 
-/** Heat per mass that takes a point of a material that conducts from the temperature which it has at first to that of
- *  this history, with the heat of fusion of what has melted [energy/mass]; negative where it has cooled. */
+/** Heat per mass that a point of a conducting material has gained since the start, from its initial temperature to
+ *  the temperature in this history, including the heat of fusion of the molten part [energy/mass]; negative if the
+ *  point has cooled. */
 double heat_since_start(const Material &, const double *history);
 
 }    // namespace MPM_NS

@@ -9,13 +9,13 @@
 #ifndef MPM_MATERIAL_MATERIAL_POINT_H
 #define MPM_MATERIAL_MATERIAL_POINT_H
 
-// Drives a material along a prescribed motion, without a grid: for tests and for plots of a law.
+// Drives a material along a prescribed motion without a grid, for tests and for plots of a law.
 
 #include "material/material.h"
 
 namespace MPM_NS {
 
-/** Motion of a step of which some components are found from the stress.
+/** Motion of a step in which some components are determined by a given stress.
  *
  *  L is the velocity gradient, constant during the step: F_new = exp(dt L) F. For each component k
  *  of the symmetric part (order of the stress) with stress_given[k], a rate of deformation is added
@@ -35,15 +35,15 @@ class MaterialPoint {
   MaterialPoint(const MaterialPoint &);
   MaterialPoint &operator=(const MaterialPoint &) = delete;
 
-  /** One step with the velocity gradient L[9] (row-major) of the middle of the step. */
+  /** One step with the velocity gradient L[9] (row-major) at the middle of the step. */
   void step(const double *L, double dt);
 
   /** One step of the motion F_new = (I + A) F. */
   void move(const double *A, double dt);
 
-  /** One step of a motion that is known in part; throws std::runtime_error when no motion gives the
-   *  stress. rotation: of the frame in which control, strain(), and stress are meant, at the end of
-   *  the step (row-major; null: as before, at first none). Returns the number of iterations. */
+  /** One step of a partly known motion; throws std::runtime_error if no motion gives the stress.
+   *  rotation: rotation at the end of the step of the frame to which the control refers (row-major;
+   *  null: as before, initially none). Returns the number of iterations. */
   int step(const MixedControl &, double dt, const double *rotation = nullptr);
 
   /** One step with strain rate along x and free lateral surfaces (sigma_yy = sigma_zz = 0). */
@@ -54,14 +54,14 @@ class MaterialPoint {
   std::vector<double> storage;    ///< history of the batch
   double time = 0.0;
   double power = 0.0;         ///< stress power so far, integral of P:dF by the trapezoidal rule
-  double work[NWORK] = {};    ///< so far, per reference volume
-  /** Of the frame in which motion is controlled, see step(). */
+  double work[NWORK] = {};    ///< work of each kind so far, per reference volume
+  /** Rotation of the frame in which the motion is controlled, see step(). */
   double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-  /** Deformation gradient and Cauchy stress in the frame in which motion is controlled. */
+  /** Deformation gradient F[9] and Cauchy stress[6] in the frame in which the motion is controlled. */
   void frame_state(double *F, double *stress) const;
 
-  /** State of the first point. */
+  // state of the first point
   double stress(int k) const { return batch.stress[k][0]; }
   double history(int k) const { return batch.history[k][0]; }
   double density() const;    ///< reference density

@@ -13,10 +13,10 @@
 
 namespace MPM_NS {
 
-/** Does a conductivity of this material depend on the temperature? */
+/** Does any conductivity of this material depend on temperature? */
 bool conductivity_varies_with_temperature(const Material &);
 
-/** As Material::conduction(), but with the means of the conductivities over these temperatures. */
+/** As Material::conduction(), but with the conductivities averaged over the temperatures from low to high. */
 Conduction mean_conduction(const Material &, const double *history, double low, double high);
 
 }    // namespace MPM_NS

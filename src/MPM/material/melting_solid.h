@@ -16,19 +16,20 @@
 
 namespace MPM_NS {
 
-/** The solid part of points that melt and solidify. It has the share s of their volume, and bears the deviator
- *  S = s S_s of their stress, with the deviator S_s in the solid. What melts takes its elastic shear with it, S_s
- *  stays; what solidifies is free of shear, S stays. All history of the solid that is not solid any more is
- *  forgotten; what solidifies is new, and the history of the solid is its mean.
+/** The solid part of points that melt and solidify. It fills the fraction s of their volume and bears the whole
+ *  deviator S = s S_s of their stress, where S_s is the deviator in the solid. Melting removes the elastic shear of
+ *  the molten part and leaves S_s unchanged. Newly formed solid is free of shear, which leaves S unchanged. The
+ *  history of solid that melts is lost; newly formed solid has a new history, and the point keeps the mean over its
+ *  solid.
  */
 class MeltingSolid {
  public:
-  double share[BATCH];     ///< of the solid, now
-  bool changes = false;    ///< does it change in this step?
-  bool complete = true;    ///< are all points solid, now and before?
-  double before[BATCH];    ///< share at the start of the step
+  double share[BATCH];     ///< volume fraction of the solid now
+  bool changes = false;    ///< does the fraction of any point change in this step?
+  bool complete = true;    ///< are all points completely solid, before and now?
+  double before[BATCH];    ///< volume fraction of the solid at the start of the step
 
-  /** was: row with the share to which the stress belongs; molten: row of the molten fraction. */
+  /** was: row with the solid fraction to which the stress belongs; molten: row with the molten fraction. */
   MeltingSolid(const Batch &b, const double *was, const double *molten)
   {
     for (int i = 0; i < b.n; i++) {
@@ -39,20 +40,20 @@ class MeltingSolid {
     }
   }
 
-  /** From the stress of the points before to that of their solid now, of which they have nothing that is left of
-   *  a complete melt. */
+  /** Factor from the stress deviator of the point at the start of the step to that of its solid now; 0 if the point
+   *  is completely molten. */
   double to_solid(int i) const
   {
     return share[i] > 0.0 ? 1.0 / std::max(share[i], before[i]) : 0.0;
   }
-  /** What the solid keeps of its history. */
+  /** Fraction of its history that the solid keeps. */
   double kept(int i) const
   {
     return share[i] > before[i] ? before[i] / share[i] : share[i] > 0.0 ? 1.0 : 0.0;
   }
 };
 
-/** Lets the laws count their work for a share of the volume of each point, for as long as it lives. */
+/** While this object exists, the laws count their work only for a fraction of the volume of each point. */
 class ShareOfVolume {
  public:
   ShareOfVolume(Batch &batch, const double *share) : b(batch)

@@ -9,7 +9,7 @@
 #ifndef MPM_MATERIAL_PARTS_H
 #define MPM_MATERIAL_PARTS_H
 
-// The definition of a material as the parser hands it over to the composition.
+// The definition of a material, as the parser passes it to compose().
 
 #include "law/law.h"
 #include "material/temperature_factor.h"
@@ -24,27 +24,27 @@ constexpr const char *part_name[NPARTS] = {"", "eos", "strength", "viscosity", "
 
 /** A random parameter in a definition. */
 struct UsedRandom {
-  int word;    ///< of the name in the definition
+  int word;    ///< index of its name in the definition
   std::string name;
   bool lognormal;
   double variation;    ///< standard deviation over mean
-  double length;
+  double length;       ///< correlation length
   long seed;
 };
 
-/** A parameter that depends on the temperature, in a definition. */
+/** A parameter in a definition that depends on temperature. */
 struct UsedVary {
-  int word;    ///< of the name in the definition
+  int word;    ///< index of its name in the definition
   std::string name, text;
   TemperatureFactor factor;
 };
 
-/** A parameter among those of its law. */
+/** Location of a parameter among those of its law. */
 struct ParameterPlace {
-  int term;         ///< of the option that is given several times, -1: not of a term
-  int parameter;    ///< in the declaration of its law
+  int term;         ///< index of the repeated option to which it belongs; -1: none
+  int parameter;    ///< index in the declaration of its law
 
-  /** Its value, constant or not. */
+  /** Its value in p, constant or not. */
   template <class Parameters> auto &of(Parameters &p) const
   {
     return term < 0 ? p.value[parameter] : p.term[term][parameter];
@@ -59,54 +59,54 @@ struct ParameterPlace {
   }
 };
 
-/** A parameter that differs from point to point: its value is the mean times a factor, which is a
- *  history variable. */
+/** A parameter that differs between points: its value is the mean times a factor, which is stored as
+ *  a history variable. */
 struct RandomParameter : UsedRandom, ParameterPlace {
-  int row;    ///< of the factor in the history of the material
+  int row;    ///< row of the factor in the history of the material
   std::shared_ptr<const RandomField> field;
 };
 
-/** A parameter that depends on the temperature: its value is the given one times a factor. */
+/** A parameter that depends on temperature: its value is the given value times a factor. */
 struct WarmParameter : ParameterPlace {
   TemperatureFactor factor;
 };
 
-/** The same of a thermal conductivity. */
+/** A thermal conductivity that depends on temperature: the given value times a factor. */
 struct WarmConductivity {
-  int axis;    ///< 0, and in orthotropic materials also 1 and 2
+  int axis;    ///< 0; in orthotropic materials also 1 and 2
   TemperatureFactor factor;
 
   double &of(Conduction &c) const { return axis == 0 ? c.conductivity : c.across[axis - 1]; }
 };
 
-/** A law with its parameters in a material. */
+/** A law of a material, with its parameters. */
 struct UsedLaw {
   Part part;
   const LawInfo *info;
-  int index;    ///< in its list
-  int word;     ///< of its name in the definition
+  int index;    ///< in the list of laws of its part
+  int word;     ///< index of its name in the definition
   LawParameters parameters;
 
-  // set by the composition
+  // set by compose()
 
   int history = 0;                        ///< first row of its history
   const LawKernels *kernels = nullptr;    ///< for the instruction set that runs
-  std::vector<RandomParameter> random;    ///< its own parameters that differ from point to point
-  std::vector<WarmParameter> warm;        ///< those that depend on the temperature
-  bool varies = false;                    ///< do its LawParameters differ from point to point?
-  bool liquid = false;                    ///< is it a viscosity of the molten part only?
-  /** Is it a strength whose plastic work is all turned into heat by the damage? */
+  std::vector<RandomParameter> random;    ///< its parameters that differ between points
+  std::vector<WarmParameter> warm;        ///< its parameters that depend on temperature
+  bool varies = false;                    ///< do its LawParameters differ between points?
+  bool liquid = false;                    ///< is it a viscosity of the molten part alone?
+  /** Is it a strength whose plastic work the damage converts into heat completely? */
   bool heats_alone = false;
 };
 
 /** A range of validity in a definition. */
 struct UsedRange : ValidRange {
-  int word;    ///< of its quantity in the definition
-  /** How the quantity is found, if not in a row of history. */
+  int word;    ///< index of its quantity in the definition
+  /** How the quantity is found if it is not a row of the history. */
   enum { PRESSURE_OF_STRESS = -3, STRAIN_RATE = -2, DENSITY_OF_J = -1 };
 };
 
-/** All of it; the parser has checked that the parts go together. */
+/** The whole definition; the parser has checked that the parts can be combined. */
 struct MaterialDefinition {
   double density = 0.0;
   std::vector<UsedLaw> laws[NPARTS];
@@ -114,7 +114,7 @@ struct MaterialDefinition {
   std::vector<UsedRandom> random;
   std::vector<UsedVary> vary;
 
-  /** Does a viscosity add to that share of the stress on which a law builds in the next step? */
+  /** Does a viscosity add to the same part of the stress that a law updates incrementally from step to step? */
   bool shares_stress() const
   {
     for (const Part part : {CLOSED, STRENGTH})
@@ -125,10 +125,11 @@ struct MaterialDefinition {
   }
 };
 
-/** The material of a definition; throws MaterialError when a range or random parameter is not one of
- *  the material. */
+/** Makes the material of a definition; throws MaterialError if a range, a random parameter, or a
+ *  parameter that depends on temperature does not fit the material. */
 std::unique_ptr<Material> compose(const MaterialDefinition &, const LawTable *);
 
+/** x with up to 15 significant digits. */
 inline std::string number(double x)
 {
   char text[32];
@@ -136,7 +137,7 @@ inline std::string number(double x)
   return text;
 }
 
-/** Name of a law with that of its part in front. */
+/** Name of a law, preceded by the name of its part. */
 inline std::string title(const UsedLaw &law)
 {
   return std::string(part_name[law.part]) + (law.part == CLOSED ? "" : " ") + law.info->name;

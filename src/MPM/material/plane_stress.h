@@ -16,45 +16,50 @@
 
 namespace MPM_NS {
 
-/** Surfaces in space (membranes) and lines in the plane or in space (strips, cables): what they do is that of a material, in a
- *  state in which no stress acts across them. Only the motion along them is known; the stretch across is found by
- *  iteration on the update of the material, for surfaces one, for lines in space the same along both axes.
+/** Plane stress for surfaces in space (membranes), and its equivalent for lines in the plane or in space (strips,
+ *  cables): a material in a state in which no stress acts across the body. Only the motion along the body is known.
+ *  The stretch across it is found by iteration on the update of the material. A surface has one such stretch; a line
+ *  in space has the same stretch along both axes across it.
  *
- *  Without compression, this is tension-field theory: a surface under tension along one axis only wrinkles across it, and is in the
- *  state of uniaxial tension whose width is not less than that of the surface (A.C. Pipkin, IMA J. Appl. Math. 36 (1986)
- *  85); what is shortened along all axes is slack, and free of stress.
+ *  Without resistance to compression, this is tension-field theory: a surface under tension along one axis only
+ *  wrinkles across that axis, and is in the state of uniaxial tension, whose width is not less than that of the
+ *  surface (A.C. Pipkin, IMA J. Appl. Math. 36 (1986) 85). A body that is shortened along all axes is slack and free
+ *  of stress.
  *
- *  The material must be isotropic; without compression also elastic, without history variables, and free of stress when
- *  undeformed. Surfaces that resist compression can also be of a material with axes: of its own axes x y z, the first two are then those
- *  of Point::frame along the surface, whose plane must be one of its planes of symmetry. */
+ *  The material must be isotropic. Without resistance to compression it must also be elastic, have no history
+ *  variables, and be free of stress when undeformed. Surfaces in 3d that resist compression can also use an
+ *  anisotropic material with axes x y z: x and y are then the two axes of Point::frame along the surface, and the
+ *  plane of the surface must be a plane of symmetry of the material. */
 class PlaneStress {
  public:
   struct Point {
-    double frame
-        [3]
-        [3];    ///< orthonormal, in the reference configuration: axes along, then those across; in 2d z is last
-    double along
-        [9];    ///< deformation gradient of the motion along: F frame[i] of axes along, no others
-    const double
-        *old;    ///< [9] deformation gradient at the start of the step, as this class has found it
+    /** Orthonormal axes in the reference configuration: first those along the body, then those across it; in 2d, z
+     *  is last. */
+    double frame[3][3];
+    /** Deformation gradient of the motion along the body: F frame[i] for the axes along it, zero for the others. */
+    double along[9];
+    /** [9] deformation gradient at the start of the step, as found by this class. */
+    const double *old;
   };
 
-  /** dim: of space; along: of the body; axes: has the material the axes of the frame? Throws std::runtime_error when the
-   *  material is none of those above. */
+  /** dim: dimension of space; along: dimension of the body; compression: does the body resist compression? axes: does
+   *  the material have the axes of the frame? Throws std::runtime_error if the material is not as described above. */
   PlaneStress(const Material &, int dim, int along, bool compression, bool axes = false);
 
-  /** The step of a batch, with n, dt, h, time, vol0, and history and stress of the start of the step, and A, F, and J that
-   *  are zero where the law does not use them. Sets A, F, J, Jold, and leaves the rest to last, which is called once, in the
-   *  state that was found. Returns the index of a point for which none was found, or -1. */
+  /** One step of a batch. On input it has n, dt, h, time, vol0, the history and stress at the start of the step, and
+   *  A, F, and J that are zero in unused places. Sets A, F, J, and Jold to the state found, and then calls last once to
+   *  do the update. Returns -1, or the index of a point for which no state was found. */
   int update(Batch &, const Point *, const std::function<void(Batch &)> &last);
 
-  /** Young's modulus and Poisson's ratio at rest. Throws std::runtime_error when the material is not elastic, see above. */
+  /** Young's modulus and Poisson's ratio at rest. Throws std::runtime_error if the material is not isotropic and
+   *  elastic. */
   std::array<double, 2> elastic_constants() const;
 
-  /** F [9], row-major, of a motion from the axes of the frame, as a material with axes sees it; others leave it as it is. */
+  /** Turns F[9] (row-major) from the reference configuration to the axes of the frame, as seen by a material with axes.
+   *  Does nothing for other materials. */
   void turn_to_material(const Point &, double *F) const;
 
-  /** Orthonormal axes for Point::frame from gradients along the body: directions a and, for surfaces, b. */
+  /** Makes orthonormal axes for Point::frame from the directions a and, for surfaces, b along the body. */
   void make_frame(const double *a, const double *b, double (*frame)[3]) const;
 
  private:
@@ -65,14 +70,15 @@ class PlaneStress {
   /** F = fixed + stretch * across. */
   struct State {
     double fixed[9], across[9], stretch;
-    double lambda[2], n[3][3], N[3][3];    // principal stretches along, axes as in Point::frame
-    int first;                             // of the axes that have the stretch
+    double lambda[2], n[3][3],
+        N[3][3];    // principal stretches along the body; axes now and at first
+    int first;      // first of the axes with the unknown stretch
     bool done;
   };
   State state[BATCH];
   double start[6][BATCH];
   std::vector<double> history;
-  double stiffness = 0.0;    // of the material in small compression
+  double stiffness = 0.0;    // stiffness of the material in small compression
 
   int last_axis() const { return dim == 2 ? 2 : 3; }
   void find_axes(const Point &, State &) const;

@@ -13,8 +13,8 @@
 
 namespace MPM_NS {
 
-/** Factor of a parameter as a function of the temperature T: a table with straight lines between its
- *  entries, or a formula that is one at a temperature R, between two limits. Outside of its table or limits
+/** Factor of a parameter as a function of the temperature T: a table with linear interpolation, or a
+ *  formula, equal to one at a reference temperature R, between two limits. Outside the table or the limits
  *  it is constant. It is monotonic between knots().
  */
 class TemperatureFactor {
@@ -26,29 +26,29 @@ class TemperatureFactor {
     ARRHENIUS       ///< exp[C (1/T - 1/R)]
   };
 
-  /** A table: temperatures, which increase, and the factors there, as many. */
+  /** A table: increasing temperatures, and as many factors at these. */
   TemperatureFactor(std::vector<double> temperatures, std::vector<double> factors) :
       T(std::move(temperatures)), factor(std::move(factors))
   {
   }
 
-  /** A formula with the coefficient C and the reference R between the limits low and high. */
+  /** A formula with the coefficient C and the reference R between the temperatures low and high. */
   TemperatureFactor(Formula formula, double c, double reference, double low, double high);
 
   double at(double temperature) const;
-  /** Its mean over these temperatures, low <= high; of a formula by Simpson's rule. */
+  /** Mean over the temperatures from low to high, low <= high; for a formula by Simpson's rule. */
   double mean(double low, double high) const;
   bool is_table() const { return !factor.empty(); }
 
-  /** Temperatures between the limits of a formula, n with them, from one to the next of which the factor changes by the
-   *  same share; of LINEAR the limits alone. */
+  /** n temperatures from one limit of a formula to the other, including both, such that the factor changes by the same
+   *  ratio from each to the next; for LINEAR only the limits. */
   std::vector<double> spread(int n) const;
 
-  /** Temperatures between which it has no extremes. */
+  /** Temperatures between which the factor is monotonic. */
   const std::vector<double> &knots() const { return T; }
 
  private:
-  std::vector<double> T, factor;    ///< of a formula: T has the limits, factor is empty
+  std::vector<double> T, factor;    ///< for a formula, T has the limits and factor is empty
   Formula formula = LINEAR;
   double c = 0.0, reference = 0.0;
 };

@@ -14,12 +14,12 @@
 
 namespace MPM_NS {
 
-/** Helps iterations x -> f(x) that converge slowly. What is left then is nearly the same vector in each of them but
- *  for a factor s, which two changes in a row tell: c' = s c. The rest of the series, c' (s + s^2 + ...), is added
- *  at once (Aitken's method for vectors). It does not change what the iterations come to. */
+/** Accelerates iterations x -> f(x) that converge slowly. The changes of x are then nearly a geometric series,
+ *  c' = s c, whose factor s follows from two changes in a row. The rest of the series, c' (s + s^2 + ...), is added
+ *  at once (Aitken's method for vectors). The limit of the iterations does not change. */
 class Aitken {
  public:
-  /** Before the first iteration. */
+  /** To be called before the first iteration. */
   void begin(const std::vector<double> &x)
   {
     last = x;
@@ -28,12 +28,12 @@ class Aitken {
     failed = 0;
   }
 
-  /** After an iteration. error: what is to become small; smooth: f is as it was in the iteration before. True: x is
-   *  another one now. */
+  /** To be called after each iteration. error: the error that the iterations reduce; smooth: f is the same function as
+   *  in the iteration before. Returns true if x was changed. */
   bool advance(std::vector<double> &x, double error, bool smooth)
   {
     constexpr double SLOW = 0.2, NO_END = 1.0 - 1.0e-9;
-    constexpr int MOST = 3;    // times that it may make the error larger
+    constexpr int MOST = 3;    // steps that may increase the error before it gives up
     if (jumped && error > error_before) failed++;
     jumped = false;
     if (failed == MOST) return false;

@@ -13,28 +13,30 @@
 
 namespace MPM_NS {
 
-/** An ideal gas with constant specific heat in a bag, as one state, in consistent units: energy is pressure times volume. Between
- *  calls of expand() its volume is constant. */
+/** An ideal gas with constant specific heat in a bag, in one uniform state and consistent units (energy is pressure
+ *  times volume). Its volume is constant between calls of expand(). */
 class BagGas {
  public:
-  double gamma = 1.4;          ///< ratio of specific heats; 1: the temperature is kept
+  double gamma = 1.4;          ///< ratio of specific heats; 1: isothermal
   double R = 1.0;              ///< specific gas constant [energy/(mass temperature)]
-  double mass = 0.0;           ///< in the bag
-  double volume = 0.0;         ///< of the bag
-  double temperature = 1.0;    ///< of the gas
+  double mass = 0.0;           ///< mass of gas in the bag
+  double volume = 0.0;         ///< volume of the bag
+  double temperature = 1.0;    ///< temperature of the gas
 
   double pressure() const { return mass * R * temperature / volume; }
-  /** Internal energy; with gamma 1, of which the gas has no end, the free energy against a volume 1 is not counted: 0. */
+  /** Internal energy. With gamma = 1 it would be infinite, and 0 is returned; the free energy relative to a volume of 1
+   *  is not counted. */
   double energy() const { return gamma > 1.0 ? pressure() * volume / (gamma - 1.0) : 0.0; }
 
-  /** To another volume, without heat, or, with gamma 1, at the same temperature. */
+  /** Changes the volume, adiabatically or, with gamma = 1, at constant temperature. */
   void expand(double to)
   {
     if (gamma > 1.0) temperature *= std::pow(volume / to, gamma - 1.0);
     volume = to;
   }
 
-  /** Gas of a temperature comes in, with its enthalpy; a negative mass goes out, which should have that of the bag. */
+  /** Adds a mass of gas of the given temperature, with its enthalpy. A negative mass leaves the bag, and should have the
+   *  temperature of the bag. */
   void add(double more, double its_temperature)
   {
     const double all = mass + more;
@@ -42,8 +44,9 @@ class BagGas {
     mass = all;
   }
 
-  /** Mass per area and time through a hole from where the pressure is p to where it is q < p, isentropic, at the speed of sound at
-   *  most (A.H. Shapiro, Compressible Fluid Flow I (1953), chapter 4). Consistent units: (p/(R T)) sqrt(R T). */
+  /** Mass per area and time of the isentropic flow through a hole from pressure p to pressure q < p, choked at the speed
+   *  of sound (A.H. Shapiro, Compressible Fluid Flow I (1953), chapter 4); 0 if q is not below p. RT: R times the
+   *  temperature at pressure p. The unit is that of (p/(R T)) sqrt(R T). */
   static double flow(double p, double q, double RT, double gamma);
 };
 

@@ -11,22 +11,23 @@
 
 namespace MPM_NS {
 
-/** The shortest vector from the convex hull of some points to that of others, the point of least norm in the hull of all
- *  differences b - a (P. Wolfe, Math. Program. 11 (1976) 128). It needs the points only through those that are farthest ahead
- *  along a direction, so that these may be spread over ranks. */
+/** The shortest vector from the convex hull of points a to the convex hull of points b: the point of least norm in the
+ *  hull of all differences b - a (P. Wolfe, Math. Program. 11 (1976) 128). Each step needs only the extreme points along
+ *  the direction x, so that the points may be distributed over ranks. */
 class HullDistance {
  public:
   double x[3] = {0.0, 0.0, 0.0};    ///< from a to b
-  bool done = false;                ///< then x is it, zero if the hulls overlap
+  bool done = false;                ///< x is final; it is zero if the hulls overlap
 
-  /** a, b: of the points of a that with the greatest x . a, of those of b that with the least x . b. For the first call any of
-   *  them. */
+  /** One step. a: the point of the first set with the largest x . a; b: the point of the second set with the smallest
+   *  x . b. In the first call, any points of the two sets. */
   void advance(const double *a, const double *b);
 
-  static constexpr int ROUNDS = 60;    ///< calls after which rounding keeps it from the end
+  static constexpr int ROUNDS =
+      60;    ///< calls after which only round-off can have prevented the end
 
  private:
-  int n = 0;    // corners of the simplex that has x in it
+  int n = 0;    // corners of the simplex that contains x
   double corner[4][3], share[4];
 
   void nearest(double *s) const;

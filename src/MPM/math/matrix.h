@@ -9,12 +9,13 @@
 #ifndef MPM_MATH_MATRIX_H
 #define MPM_MATH_MATRIX_H
 
-// Vectors of three and matrices of 3x3 reals, row by row in plain arrays. Functions take numbers or
-// vectors of points T. They must be inlined: files that are compiled for different instruction sets
-// share this header, and an out-of-line copy made for one CPU must not serve another.
+// Vectors of three and matrices of 3x3 reals, row by row in plain arrays. T is a number or a SIMD
+// vector with one entry per point. The functions must be inlined: files that are compiled for different
+// instruction sets share this header, and an out-of-line copy made for one CPU must not run on another.
 
 namespace MPM_NS {
 
+/** c = a x b; c must be another array than a and b. */
 template <class T> [[gnu::always_inline]] inline void cross(const T *a, const T *b, T *c)
 {
   c[0] = a[1] * b[2] - a[2] * b[1];
@@ -33,8 +34,8 @@ template <class T> [[gnu::always_inline]] inline T determinant(const T *m)
       m[2] * (m[3] * m[7] - m[4] * m[6]);
 }
 
-/** The initializer {...} of the cofactors c of m: m c^T = det m. No function: in a loop with omp simd,
- *  the address of an array must not be taken, or the loop stays scalar. */
+/** Initializer {...} of the cofactors c of m: m c^T = (det m) I. This is no function, because a loop with
+ *  omp simd stays scalar if it takes the address of an array. */
 #define MPM_COFACTORS(m)                                                                 \
   {                                                                                      \
     m[4] * m[8] - m[5] * m[7], m[5] * m[6] - m[3] * m[8], m[3] * m[7] - m[4] * m[6],     \
@@ -42,7 +43,7 @@ template <class T> [[gnu::always_inline]] inline T determinant(const T *m)
         m[1] * m[5] - m[2] * m[4], m[2] * m[3] - m[0] * m[5], m[0] * m[4] - m[1] * m[3]  \
   }
 
-/** Row i of a times column j of b. */
+/** Entry (i, j) of the matrix product a b: row i of a times column j of b. */
 template <class T> [[gnu::always_inline]] inline T product(const T *a, const T *b, int i, int j)
 {
   return a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];

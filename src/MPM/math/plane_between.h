@@ -13,25 +13,27 @@
 
 namespace MPM_NS {
 
-/** The plane that tells points of two bodies apart best, by logistic regression (J.A. Nairn, C.C. Hammerquist, G.D. Smith,
- *  Comput. Methods Appl. Mech. Eng. 362 (2020) 112859; here with the likelihood as measure, whose only minimum Newton's
- *  method finds).
+/** The plane that best separates points of two bodies, by logistic regression (J.A. Nairn, C.C. Hammerquist, G.D. Smith,
+ *  Comput. Methods Appl. Mech. Eng. 362 (2020) 112859; here the measure is the likelihood, whose negative logarithm has a
+ *  single minimum that Newton's method finds).
  *
- *  With the place r of a point and c = (r, 1), the points of body b, next to those of body a, shall have the probability
- *  s(z) = 1/(1 + exp(-z)), z = phi . c. The plane is z = 0, its normal the direction of the first components of phi,
- *  which minimize
+ *  For a point at r and c = (r, 1), the probability to belong to body b rather than body a is modeled as
+ *  s(z) = 1/(1 + exp(-z)), z = phi . c. The plane is z = 0, and its normal is along n, the first three components of phi.
+ *  phi minimizes
  *
  *    sum_p w_p [ln(1 + exp(z_p)) - y_p z_p] + RIDGE/2 |n|^2,   y = 0 in a, 1 in b,
  *
- *  with weights w_p. The last term keeps n finite where a plane separates all points; the smaller it is, the closer
- *  is the plane to the one in the middle of the gap. Lengths are in units in which points are of order 1 apart. */
+ *  with weights w_p. The last term keeps n finite if a plane separates all points; the smaller it is, the closer the
+ *  plane is to the one in the middle of the gap. Lengths are in units in which the distance of points is of order 1. */
 struct PlaneBetween {
-  static constexpr int ROUNDS = 6;    ///< of Newton's method: converged to 1e-4
-  static constexpr int NREAL = 14;    ///< sums of a round: 4 of the gradient, 10 second derivatives
+  static constexpr int ROUNDS = 6;    ///< Newton iterations: converged to 1e-4
+  static constexpr int NREAL =
+      14;    ///< sums of a round: 4 of the gradient, 10 of the second derivatives
 
   double phi[4] = {0.0, 0.0, 0.0, 0.0};
 
-  /** What a point adds to the sums of a round, of which all must have been added, from all ranks, before advance(). */
+  /** Adds a point at r[3] to sums[NREAL] of a round. The sums must include all points of all ranks before advance().
+   *  of_b: the point belongs to body b. */
   void add(double weight, const double *r, bool of_b, double *sums) const
   {
     const double c[4] = {r[0], r[1], r[2], 1.0};
@@ -44,7 +46,7 @@ struct PlaneBetween {
     }
   }
 
-  /** A step of Newton's method in dim dimensions. */
+  /** One step of Newton's method in dim dimensions. */
   void advance(const double *sums, int dim);
 };
 

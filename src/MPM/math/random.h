@@ -9,14 +9,14 @@
 #ifndef MPM_MATH_RANDOM_H
 #define MPM_MATH_RANDOM_H
 
-// Random numbers that depend on what they belong to and on nothing else, such as the number of
+// Random numbers that depend only on the object for which they are drawn, not on the number of
 // processes or the order of points.
 
 #include <cstdint>
 
 namespace MPM_NS {
 
-/** Step from one state to the next; a good start, too. */
+/** Increment from one state to the next; also a good first state. */
 constexpr uint64_t RANDOM_STEP = 0x9e3779b97f4a7c15;
 
 /** Finalizer of splitmix64 (G.L. Steele, D. Lea, C.H. Flood, OOPSLA 2014; D. Stafford's variant 13 of

@@ -15,19 +15,20 @@
 
 namespace MPM_NS {
 
-/** Which of the things 0 ... n - 1 belong together (union and find, with paths that get shorter as they are walked). */
+/** Disjoint sets of the items 0 ... n - 1 (union-find with path halving). */
 class Sets {
  public:
   explicit Sets(std::size_t n = 0) { begin(n); }
 
-  /** Each thing on its own. */
+  /** Starts with each item in a set of its own. */
   void begin(std::size_t n)
   {
     parent.resize(n);
     std::iota(parent.begin(), parent.end(), 0);
   }
+  /** Merges the sets of i and j. */
   void join(int i, int j) { parent[root(i)] = root(j); }
-  /** One thing of the set of i, the same for all of them until the next join(). */
+  /** Representative item of the set of i, the same for all items of the set until the next join(). */
   int root(int i)
   {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];

@@ -17,44 +17,48 @@
 
 namespace MPM_NS {
 
-/** An XML file of VTK with one piece. Its arrays are text, base64, or an appended section of bytes or base64, compressed by zlib or not.
- *  All errors are std::runtime_error that begin with the name of the file. */
+/** An XML file of VTK with one piece. Its arrays are text, base64, or in an appended section of raw bytes or base64,
+ *  with or without zlib compression. All errors are std::runtime_error that begin with the name of the file. */
 class VtkXml {
  public:
-  /** Of the whole file, which must live as long. */
+  /** text: the whole file; name: its name. Both must outlive this object. */
   VtkXml(const std::string &text, const std::string &name);
 
-  /** PolyData, UnstructuredGrid, ... */
+  /** Type of the file: PolyData, UnstructuredGrid, ... */
   const std::string &type() const { return kind_of_file; }
 
-  /** Of the text of a tag, <...>. */
+  /** Position of a tag, <...>, in the text. */
   struct Tag {
     std::size_t begin, end;
     bool is_there() const { return begin != std::string::npos; }
   };
-  /** The next tag that begins like this; there may be none. */
+  /** The next tag between from and until that begins with head, if there is one; see Tag::is_there(). */
   Tag find_tag(const std::string &head, std::size_t from, std::size_t until) const;
-  /** In what is XML; it must be there. */
+  /** The next tag after from in the XML part that begins with head; it is an error if there is none. */
   Tag element(const std::string &head, std::size_t from) const;
-  /** Empty: there is none. */
+  /** Value of an attribute of a tag; empty if there is none. */
   std::string attribute(const Tag &, const std::string &key) const;
-  /** End of what is XML. */
+  /** End of the XML part. */
   std::size_t end() const;
 
-  /** Before arrays are read: order of bytes, compression, where bytes begin. Returns the only piece. */
+  /** To be called before arrays are read: checks byte order and compression, and finds the start of appended data.
+   *  Returns the only piece. */
   Tag open();
-  /** A number of points or cells of the piece. */
+  /** Number of points, cells, ... of the piece: the value of its attribute key. */
   uint64_t count(const Tag &piece, const std::string &key) const;
 
+  /** An array of tuples. */
   struct Array {
     std::string name;
-    int width;    ///< components
+    int width;    ///< components of a tuple
     std::vector<double> values;
   };
   static constexpr uint64_t ANY = UINT64_MAX;
-  /** The arrays of a section of the piece, of so many tuples each; ANY: however many there are. None if there is no such section. */
+  /** Reads the arrays of a section of the piece, each with the given number of tuples (ANY: as many as there are).
+   *  Returns none if there is no such section. */
   std::vector<Array> section(const std::string &name, uint64_t tuples) const;
 
+  /** Throws std::runtime_error with the name of the file and this text. */
   [[noreturn]] void fail(const std::string &what) const;
 
  private:
