@@ -40,9 +40,10 @@ static double depth(double share)
 
 double MPMFlowPressure::distance(int64_t wet_cell, int64_t dry) const
 {
+  if (!(share_of[wet_cell] > HALF))
+    return 0.5;    // surrounded: the place of the surface is unknown
   const double in = depth(share_of[wet_cell]), out = depth(share_of[dry]);
-  return in > 0.0 ? std::max(nearest, in / (in - out))
-                  : 0.5;    // surrounded: the place of the surface is unknown
+  return std::max(nearest, in / (in - out));
 }
 
 /** Factor of the difference of psi, or of psi itself where the other cell is dry: 1/h^2 over the distance in
