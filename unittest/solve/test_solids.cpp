@@ -333,7 +333,7 @@ TEST(EnvelopeFactors, SolveLikeDenseOnes)
 }
 
 /** A matrix on a lattice of n by m points in pieces of so many columns, a shift apart from singular. */
-Eigen::SparseMatrix<double> springs(int n, int m, int piece)
+Eigen::SparseMatrix<double> springs(int n, int m, int piece, double shift = 0.01)
 {
   std::vector<Eigen::Triplet<double>> entries;
   const auto join = [&](int a, int b, double k) {
@@ -343,7 +343,7 @@ Eigen::SparseMatrix<double> springs(int n, int m, int piece)
   };
   for (int i = 0; i < n; i++)
     for (int j = 0; j < m; j++) {
-      entries.emplace_back(i * m + j, i * m + j, 0.01);
+      entries.emplace_back(i * m + j, i * m + j, shift);
       if (j + 1 < m) join(i * m + j, i * m + j + 1, 1.0 + 0.5 * std::sin(i + 2.0 * j));
       if (i + 1 < n && (i + 1) % piece) join(i * m + j, (i + 1) * m + (j + 1) % m, 1.0);
     }
@@ -399,6 +399,41 @@ TEST(EnvelopeFactors, HalvesOnRanks)
       }
     }
   }
+}
+
+// Factors in single precision are those of a matrix that is near along every direction, soft ones, too, in half of the memory: with halves or
+// without, and with all instruction sets.
+TEST(EnvelopeFactors, RoundedOnes)
+{
+  constexpr int N = 60, M = 9;
+  for (const char *isa : {"baseline", "avx2", "avx512"})
+    for (const int64_t split : {(int64_t) 0, EnvelopeFactors::ENOUGH})
+      for (const double shift : {1.0, 1e-10}) {
+        setenv("MPM_ISA", isa, 1);
+        EnvelopeFactors whole(nullptr, split), rounded(nullptr, split, EnvelopeFactors::ROUNDED);
+        unsetenv("MPM_ISA");
+        const auto A = springs(N, M, 1000, shift);
+        ASSERT_TRUE(whole.compute(A));
+        ASSERT_TRUE(rounded.compute(A));
+        EXPECT_LT(rounded.memory_usage(), 0.6 * whole.memory_usage());
+        for (const double waves : {0.0, 1.0, 17.3}) {
+          Eigen::VectorXd b(N * M), x(N * M), other(N * M);
+          for (int k = 0; k < N * M; k++) b[k] = std::cos(waves * k);
+          whole.solve(b.data(), x.data());
+          rounded.solve(b.data(), other.data());
+          // b^T A^-1 b
+          EXPECT_LT(std::abs(b.dot(other) / b.dot(x) - 1.0), 0.01) << isa << ' ' << shift;
+          if (shift == 1.0) {
+            EXPECT_LT((A * other - b).norm(), 1e-6 * b.norm()) << isa << ' ' << waves;
+            EXPECT_GT((A * other - b).norm(), 1e-11 * b.norm()) << isa << ' ' << waves;
+          }
+        }
+        // again from doubles
+        ASSERT_TRUE(rounded.compute_again(A));
+        Eigen::VectorXd b = Eigen::VectorXd::Ones(N * M), x = b;
+        rounded.solve(x.data(), x.data());
+        EXPECT_LT(std::abs(b.dot(x) * shift / (N * M) - 1.0), 0.01) << isa << ' ' << shift;
+      }
 }
 
 // Nodes come to other ranks, which also know some of others, and keep their places; not if one is missing, new, or another one.

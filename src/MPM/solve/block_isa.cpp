@@ -29,13 +29,14 @@ void subtract(double *S, const double *a, const double *b, int64_t n)
         S[FACTOR_BLOCK * c + r] -= a[FACTOR_BLOCK * k + r] * b[FACTOR_BLOCK * k + c];
 }
 
-void subtract_from_rows(double *y, const double *a, const double *x, int64_t n)
+template <class Real> void subtract_from_rows(double *y, const Real *a, const double *x, int64_t n)
 {
   for (int64_t k = 0; k < n; k++)
     for (int r = 0; r < FACTOR_BLOCK; r++) y[r] -= a[FACTOR_BLOCK * k + r] * x[k];
 }
 
-void subtract_from_columns(double *y, const double *a, const double *x, int64_t n)
+template <class Real>
+void subtract_from_columns(double *y, const Real *a, const double *x, int64_t n)
 {
   for (int64_t k = 0; k < n; k++)
     for (int r = 0; r < FACTOR_BLOCK; r++) y[k] -= a[FACTOR_BLOCK * k + r] * x[r];
@@ -81,7 +82,7 @@ void subtract(double *S, const double *a, const double *b, int64_t n)
     }
 }
 
-void subtract_from_rows(double *y, const double *a, const double *x, int64_t n)
+template <class Real> void subtract_from_rows(double *y, const Real *a, const double *x, int64_t n)
 {
   // two sums of each row, as one waits for the last addition
   constexpr int PARTS = B / REGISTER;
@@ -98,7 +99,8 @@ void subtract_from_rows(double *y, const double *a, const double *x, int64_t n)
     (V::load(y + REGISTER * i) - (sum[0][i] + sum[1][i])).store(y + REGISTER * i);
 }
 
-void subtract_from_columns(double *y, const double *a, const double *x, int64_t n)
+template <class Real>
+void subtract_from_columns(double *y, const Real *a, const double *x, int64_t n)
 {
   using Four = Vec<4>;
   Four from[B / 4];
@@ -125,5 +127,7 @@ void subtract_from_columns(double *y, const double *a, const double *x, int64_t 
 
 MPM_NS::BlockKernels MPM_NS::MPM_OF_ISA(mpm_kernels_blocks)()
 {
-  return {subtract, subtract_from_rows, subtract_from_columns};
+  return {subtract,
+          {subtract_from_rows<double>, subtract_from_columns<double>},
+          {subtract_from_rows<float>, subtract_from_columns<float>}};
 }

@@ -22,10 +22,15 @@ constexpr int FACTOR_BLOCK = 16;
 struct BlockKernels {
   /** S -= a b^T, with FACTOR_BLOCK columns in S. */
   void (*subtract)(double *S, const double *a, const double *b, int64_t n);
-  /** y -= a x, x: [n], y: [FACTOR_BLOCK] */
-  void (*subtract_from_rows)(double *y, const double *a, const double *x, int64_t n);
-  /** y -= a^T x, x: [FACTOR_BLOCK], y: [n] */
-  void (*subtract_from_columns)(double *y, const double *a, const double *x, int64_t n);
+  /** Products with a vector; sums are in double precision for a in single precision, too. */
+  template <class Real> struct WithVector {
+    /** y -= a x, x: [n], y: [FACTOR_BLOCK] */
+    void (*subtract_from_rows)(double *y, const Real *a, const double *x, int64_t n);
+    /** y -= a^T x, x: [FACTOR_BLOCK], y: [n] */
+    void (*subtract_from_columns)(double *y, const Real *a, const double *x, int64_t n);
+  };
+  WithVector<double> of_doubles;
+  WithVector<float> of_floats;
 
   /** The kernels of the best instruction set of this CPU, or of the set in the environment variable
    *  MPM_ISA. */

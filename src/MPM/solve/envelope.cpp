@@ -54,6 +54,7 @@ void Envelope::clear()
   begin[0] = 0;
   for (int i = 0; i < rows(); i++) begin[i + 1] = begin[i] + reals_of(i);
   values.assign(size(), 0.0);
+  rounded.clear();
 }
 
 double &Envelope::at(int row, int column)
@@ -62,9 +63,10 @@ double &Envelope::at(int row, int column)
   return values[begin[i] + (int64_t) B * (column - B * first[i]) + row % B];
 }
 
-const double *Envelope::diagonal(int row) const
+/** The start of the block at the diagonal in values. */
+int64_t Envelope::diagonal(int row) const
 {
-  return values.data() + begin[row + 1] - BB;
+  return begin[row + 1] - BB;
 }
 
 /** The inverse of the factor L of A = L L^T, in place of A, columns; false: it has none. */
@@ -109,7 +111,7 @@ bool Envelope::factorize()
         // times the transposed inverse of the block at the diagonal
         for (int k = 0; k < BB; k++) S[k] = -block[k];
         std::fill_n(block, BB, 0.0);
-        kernels.subtract(block, S, diagonal(j), B);
+        kernels.subtract(block, S, values.data() + diagonal(j), B);
       }
     }
   }
@@ -129,21 +131,29 @@ void Envelope::add(const double *blocks)
   for (int64_t k = 0; k < size(); k++) values[k] += blocks[k];
 }
 
-void Envelope::solve_forward(double *y) const
+void Envelope::round()
+{
+  rounded.assign(values.begin(), values.end());
+  std::vector<double>().swap(values);
+}
+
+template <class Real>
+void Envelope::forward(const Products<Real> &products, const Real *of, double *y) const
 {
   double rest[B];
   for (int i = 0; i < rows(); i++) {
     double *const mine = y + B * i;
-    kernels.subtract_from_rows(mine, values.data() + begin[i], y + B * first[i],
-                               (int64_t) B * (std::min(i, inner) - first[i]));
+    products.subtract_from_rows(mine, of + begin[i], y + B * first[i],
+                                (int64_t) B * (std::min(i, inner) - first[i]));
     if (i >= inner) continue;
     for (int k = 0; k < B; k++) rest[k] = -mine[k];
     std::fill_n(mine, B, 0.0);
-    kernels.subtract_from_rows(mine, diagonal(i), rest, B);
+    products.subtract_from_rows(mine, of + diagonal(i), rest, B);
   }
 }
 
-void Envelope::solve_backward(double *y) const
+template <class Real>
+void Envelope::backward(const Products<Real> &products, const Real *of, double *y) const
 {
   double rest[B];
   for (int i = rows() - 1; i >= 0; i--) {
@@ -151,15 +161,31 @@ void Envelope::solve_backward(double *y) const
     if (i < inner) {
       for (int k = 0; k < B; k++) rest[k] = -mine[k];
       std::fill_n(mine, B, 0.0);
-      kernels.subtract_from_columns(mine, diagonal(i), rest, B);
+      products.subtract_from_columns(mine, of + diagonal(i), rest, B);
     }
-    kernels.subtract_from_columns(y + B * first[i], values.data() + begin[i], mine,
-                                  (int64_t) B * (std::min(i, inner) - first[i]));
+    products.subtract_from_columns(y + B * first[i], of + begin[i], mine,
+                                   (int64_t) B * (std::min(i, inner) - first[i]));
   }
+}
+
+void Envelope::solve_forward(double *y) const
+{
+  if (rounded.empty())
+    forward(kernels.of_doubles, values.data(), y);
+  else
+    forward(kernels.of_floats, rounded.data(), y);
+}
+
+void Envelope::solve_backward(double *y) const
+{
+  if (rounded.empty())
+    backward(kernels.of_doubles, values.data(), y);
+  else
+    backward(kernels.of_floats, rounded.data(), y);
 }
 
 double Envelope::memory_usage() const
 {
-  return values.capacity() * sizeof(double) + begin.capacity() * sizeof(int64_t) +
-      first.capacity() * sizeof(int);
+  return values.capacity() * sizeof(double) + rounded.capacity() * sizeof(float) +
+      begin.capacity() * sizeof(int64_t) + first.capacity() * sizeof(int);
 }

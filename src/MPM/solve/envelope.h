@@ -40,6 +40,10 @@ class Envelope {
   double &at(int row, int column);
   /** Replaces the matrix by its factors. Returns false if it is not positive definite or not finite. */
   bool factorize();
+  /** Rounds the factors to single precision, in half of the memory. The rounded factors represent a positive
+   *  definite matrix as well. From now on only solve_forward() and solve_backward() may be called, or
+   *  clear(). */
+  void round();
 
   /** Copies the blocks of the rows without factors, [row][column up to the row], one after the other. */
   void give_rest(std::vector<double> &blocks) const;
@@ -59,10 +63,14 @@ class Envelope {
   std::vector<int64_t> begin;    // [row of blocks] start of that block in values
   // columns of FACTOR_BLOCK reals; a diagonal block holds the inverse of that block of L
   std::vector<double> values;
+  std::vector<float> rounded;    // the same after round(); values is empty then
 
   int rows() const { return (int) first.size(); }
   int64_t reals_of(int row) const;
-  const double *diagonal(int row) const;
+  int64_t diagonal(int row) const;
+  template <class Real> using Products = BlockKernels::WithVector<Real>;
+  template <class Real> void forward(const Products<Real> &, const Real *of, double *y) const;
+  template <class Real> void backward(const Products<Real> &, const Real *of, double *y) const;
   static bool factorize_block(double *A);
 };
 

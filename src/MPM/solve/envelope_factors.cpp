@@ -176,7 +176,10 @@ bool EnvelopeFactors::compute(const Sparse &A)
 bool EnvelopeFactors::compute_again(const Sparse &A)
 {
   fill(A);
-  return factorize();
+  const bool good = factorize();
+  if (precision == ROUNDED)
+    for (auto *part : {&half[0], &half[1], &middle}) part->round();
+  return good;
 }
 
 /** What all ranks have sent, in their order. */

@@ -30,11 +30,20 @@ namespace MPM_NS {
  *  does not depend on the number of ranks, and neither does the result. */
 class EnvelopeFactors {
  public:
+  /** How factors are kept. Rounded ones take half of the memory and of the time of a solution, which reads
+   *  all of them. They are those of another matrix, which is positive definite as well: along a vector v its
+   *  v^T A v differs by a part of some 1e-7 times the root of the condition of A, at most. This is for
+   *  preconditioners. Factors are made and used in double precision. */
+  enum Precision { DOUBLE, ROUNDED };
+  static constexpr int64_t ENOUGH = 500000;    ///< reals in an envelope that is worth halves
+
   /** ranks: the first two of them have one half each. All ranks must call each function with the same
    *  matrix and the same vectors, and get the same results. Null: this rank has both halves. split: number
    *  of reals in the envelope from which on there are halves. */
-  explicit EnvelopeFactors(LatticeRanks *ranks = nullptr, int64_t split = 500000) :
-      ranks(ranks), split(split)
+  explicit EnvelopeFactors(LatticeRanks *ranks = nullptr, int64_t split = ENOUGH,
+                           Precision precision = DOUBLE) :
+      ranks(ranks),
+      split(split), precision(precision)
   {
   }
 
@@ -54,6 +63,7 @@ class EnvelopeFactors {
   using Sparse = Eigen::SparseMatrix<double>;
   LatticeRanks *const ranks;
   const int64_t split;
+  const Precision precision;
   int unknowns = 0;
   std::vector<int> number;          // [unknown] its place in the order
   std::vector<int> queue, layer;    // unknowns in the order of layers, and the layer of each one

@@ -35,8 +35,8 @@ void QuasiNewton::look(const double *f, const double *z)
   std::fill_n(y_z, MOST, 0.0);
   const int used = (pairs() + B - 1) / B;
   for (int b = 0; b < used; b++) {
-    kernels.subtract_from_rows(s_f + B * b, S[b].data(), of_f.data(), (int64_t) padded);
-    kernels.subtract_from_rows(y_z + B * b, Y[b].data(), of_z.data(), (int64_t) padded);
+    kernels.of_doubles.subtract_from_rows(s_f + B * b, S[b].data(), of_f.data(), (int64_t) padded);
+    kernels.of_doubles.subtract_from_rows(y_z + B * b, Y[b].data(), of_z.data(), (int64_t) padded);
   }
   for (int k = 0; k < MOST; k++) {
     s_f[k] = -s_f[k];
@@ -109,8 +109,10 @@ void QuasiNewton::correct(const double *f, const double *z, double *d)
   }
   sum = of_z;
   for (int b = 0; B * b < m; b++) {
-    kernels.subtract_from_columns(sum.data(), S[b].data(), of_S + B * b, (int64_t) padded);
-    kernels.subtract_from_columns(sum.data(), Z[b].data(), of_Z + B * b, (int64_t) padded);
+    kernels.of_doubles.subtract_from_columns(sum.data(), S[b].data(), of_S + B * b,
+                                             (int64_t) padded);
+    kernels.of_doubles.subtract_from_columns(sum.data(), Z[b].data(), of_Z + B * b,
+                                             (int64_t) padded);
   }
   std::copy_n(sum.begin(), n, d);
   last_f.swap(of_f);

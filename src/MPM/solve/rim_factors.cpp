@@ -215,7 +215,7 @@ bool RimFactors::factorize()
     const int n = (int) chunk->nodes.size() * width;
     Eigen::SparseMatrix<double> A(n, n);
     A.setFromTriplets(chunk->entries.begin(), chunk->entries.end());
-    chunk->entries = {};
+    std::vector<Eigen::Triplet<double>>().swap(chunk->entries);
     good = MPM_NS::factorize(std::move(A), chunk->factors) && good;
   }
   if (number_of_ranks() == 1) return good;

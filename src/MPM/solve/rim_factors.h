@@ -78,7 +78,10 @@ class RimFactors {
     std::vector<int> nodes;
     std::vector<Eigen::Triplet<double>> entries;
     EnvelopeFactors factors;
-    explicit Chunk(LatticeRanks *ranks) : factors(ranks) {}
+    explicit Chunk(LatticeRanks *ranks) :
+        factors(ranks, EnvelopeFactors::ENOUGH, EnvelopeFactors::ROUNDED)
+    {
+    }
   };
   std::vector<std::unique_ptr<Chunk>> chunks;    // null: the chunk of another rank
   std::vector<double> solutions;

@@ -364,7 +364,8 @@ struct SplineMultigrid::Levels {
 
   Levels(const Grid &grid, LatticeRanks &ranks, int width, int order, int few, int all) :
       grid(grid), ranks(ranks), width(width), order(order), dim(grid.lattice.dim), few(few),
-      all(all), rim_factors(&ranks), factors(&ranks)
+      all(all), rim_factors(&ranks),
+      factors(&ranks, EnvelopeFactors::ENOUGH, EnvelopeFactors::ROUNDED)
   {
   }
 
@@ -1068,7 +1069,7 @@ void SplineMultigrid::Levels::coarsen(LatticeNodes level, std::vector<int> rows)
   while (true) {
     auto &now = coarse.back();
     now.A.assemble(ranks, width, rows, sent);
-    sent = {};
+    std::vector<Block>().swap(sent);
     const int nodes = now.A.rows();
     now.x.resize((std::size_t) nodes * width);
     now.b.resize((std::size_t) nodes * width);

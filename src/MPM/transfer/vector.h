@@ -39,6 +39,7 @@ template <int N> constexpr bool fits = N <= REGISTER;
 template <int N> struct Raw {
   typedef double Reals __attribute__((vector_size(8 * N)));
   typedef int Ints __attribute__((vector_size(4 * N)));
+  typedef float Floats __attribute__((vector_size(4 * N)));
 };
 
 template <int N, bool FITS = fits<N>> struct Vec;
@@ -53,6 +54,12 @@ template <int N> struct Vec<N, true> {
     Vec a;
     __builtin_memcpy(&a.r, p, sizeof(Reals));
     return a;
+  }
+  static MPM_INLINE Vec load(const float *p)
+  {
+    typename Raw<N>::Floats a;
+    __builtin_memcpy(&a, p, sizeof(a));
+    return {__builtin_convertvector(a, Reals)};
   }
   MPM_INLINE void store(double *p) const { __builtin_memcpy(p, &r, sizeof(Reals)); }
   static MPM_INLINE Vec all(double s)
@@ -72,6 +79,10 @@ template <int N> struct Vec<N, false> {
   Vec<N / 2> lo, hi;
 
   static MPM_INLINE Vec load(const double *p)
+  {
+    return {Vec<N / 2>::load(p), Vec<N / 2>::load(p + N / 2)};
+  }
+  static MPM_INLINE Vec load(const float *p)
   {
     return {Vec<N / 2>::load(p), Vec<N / 2>::load(p + N / 2)};
   }
