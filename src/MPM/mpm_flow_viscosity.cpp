@@ -8,6 +8,8 @@
 
 #include "mpm_flow_viscosity.h"
 
+#include "mpm_flow_viscosities.h"
+
 #include <algorithm>
 
 using namespace LAMMPS_NS;
@@ -20,7 +22,37 @@ static constexpr double NEAREST = 0.25;
 static constexpr int LEAST_AT_EDGE = 3;
 // least height of what shear acts on, in spacings: half a cell, as where a surface is in the middle of a cell
 static constexpr double LEAST_HEIGHT = 0.5;
+// viscosity around a face, over its density, that is allowed, over the largest of a liquid: the time step is one half of the stable one
+static constexpr double MARGIN = 1.25;
 
+void MPMFlowViscosity::add(double factor, const std::vector<double> &u, std::vector<double> &sum)
+{
+  if (viscosities) find_excess();
+  viscosities ? add<true>(factor, u, sum) : add<false>(factor, u, sum);
+}
+
+/** Finds by how much the stresses on a face are too large for its density. */
+void MPMFlowViscosity::find_excess()
+{
+  const int dim = cells.lattice.dim;
+  excess.assign(cells.size() * dim, 0.0);
+  for (const auto &cell : cells.cells)
+    for (int c = 0; c < dim; c++) {
+      if (cell.walls >> 2 * c & 1) continue;
+      const int64_t face = (int64_t) cell.number * dim + c;
+      double sum = viscosities->in_cell(cell.number) + viscosities->in_cell(cell.near[2 * c]);
+      for (int d = 0; d < dim; d++) {
+        if (d == c) continue;
+        sum += viscosities->at_edge(cell.number, c + d - 1);
+        sum += viscosities->at_edge(cell.near[2 * d + 1], c + d - 1);
+      }
+      const double allowed = 2 * dim * MARGIN * most / (*water.lightness)[face];
+      if (sum > allowed) excess[face] = 1.0 - allowed / sum;
+    }
+  cells.publish(excess.data(), dim);
+}
+
+template <bool several>
 void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
                            std::vector<double> &sum) const
 {
@@ -41,13 +73,30 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
     const auto reach = [&](int offset, int to) {
       return wet(offset) && !wet(to) ? std::max(0.0, water.distance(at[offset], at[to])) : 0.5;
     };
+    // viscosities over the largest one, in the middle of a cell and at an edge
+    const auto over = [&](int c, int offset) {
+      return excess[(int64_t) at[offset] * dim + c];
+    };
+    const auto in_cell = [&](int offset) {
+      if constexpr (!several) return 1.0;
+      double most_over = 0.0;
+      for (int c = 0; c < dim; c++)
+        most_over = std::max({most_over, over(c, offset), over(c, offset + stride[c])});
+      return viscosities->in_cell(at[offset]) * (1.0 - most_over);
+    };
+    const auto at_edge = [&](int c, int d, int offset) {
+      if constexpr (!several) return 1.0;
+      const double most_over = std::max({over(c, offset), over(c, offset - stride[d]),
+                                         over(d, offset), over(d, offset - stride[c])});
+      return viscosities->at_edge(at[offset], c + d - 1) * (1.0 - most_over);
+    };
     for (int c = 0; c < dim; c++) {
       if (cell.walls >> 2 * c & 1) continue;
       const int e = stride[c];
       if (!wet(0) && !wet(-e)) continue;
       double normal = 0.0, length = 1.0;
-      if (wet(0)) normal += v(c, e) - v(c, 0);
-      if (wet(-e)) normal -= v(c, 0) - v(c, -e);
+      if (wet(0)) normal += in_cell(0) * (v(c, e) - v(c, 0));
+      if (wet(-e)) normal -= in_cell(-e) * (v(c, 0) - v(c, -e));
       if (!wet(0)) length = std::max(NEAREST, reach(-e, 0));
       if (!wet(-e)) length = std::max(NEAREST, reach(0, -e));
       double force = 2.0 * normal / length;
@@ -58,8 +107,8 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
           return wet(0) + wet(-e) + wet(side) + wet(side - e) >= LEAST_AT_EDGE;
         };
         double shear = 0.0, height = 0.0;
-        if (in_fluid(n)) shear += v(c, n) - v(c, 0) + v(d, n) - v(d, n - e);
-        if (in_fluid(-n)) shear -= v(c, 0) - v(c, -n) + v(d, 0) - v(d, -e);
+        if (in_fluid(n)) shear += at_edge(c, d, n) * (v(c, n) - v(c, 0) + v(d, n) - v(d, n - e));
+        if (in_fluid(-n)) shear -= at_edge(c, d, 0) * (v(c, 0) - v(c, -n) + v(d, 0) - v(d, -e));
         if (shear == 0.0) continue;
         for (const int from : {0, -e})
           if (wet(from)) height += reach(from, from + n) + reach(from, from - n);
