@@ -22,34 +22,11 @@ static constexpr double NEAREST = 0.25;
 static constexpr int LEAST_AT_EDGE = 3;
 // least height of what shear acts on, in spacings: half a cell, as where a surface is in the middle of a cell
 static constexpr double LEAST_HEIGHT = 0.5;
-// viscosity around a face, over its density, that is allowed, over the largest of a liquid: the time step is one half of the stable one
-static constexpr double MARGIN = 1.25;
 
-void MPMFlowViscosity::add(double factor, const std::vector<double> &u, std::vector<double> &sum)
+void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
+                           std::vector<double> &sum) const
 {
-  if (viscosities) find_excess();
   viscosities ? add<true>(factor, u, sum) : add<false>(factor, u, sum);
-}
-
-/** Finds by how much the stresses on a face are too large for its density. */
-void MPMFlowViscosity::find_excess()
-{
-  const int dim = cells.lattice.dim;
-  excess.assign(cells.size() * dim, 0.0);
-  for (const auto &cell : cells.cells)
-    for (int c = 0; c < dim; c++) {
-      if (cell.walls >> 2 * c & 1) continue;
-      const int64_t face = (int64_t) cell.number * dim + c;
-      double sum = viscosities->in_cell(cell.number) + viscosities->in_cell(cell.near[2 * c]);
-      for (int d = 0; d < dim; d++) {
-        if (d == c) continue;
-        sum += viscosities->at_edge(cell.number, c + d - 1);
-        sum += viscosities->at_edge(cell.near[2 * d + 1], c + d - 1);
-      }
-      const double allowed = 2 * dim * MARGIN * most / (*water.lightness)[face];
-      if (sum > allowed) excess[face] = 1.0 - allowed / sum;
-    }
-  cells.publish(excess.data(), dim);
 }
 
 template <bool several>
@@ -74,21 +51,11 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
       return wet(offset) && !wet(to) ? std::max(0.0, water.distance(at[offset], at[to])) : 0.5;
     };
     // viscosities over the largest one, in the middle of a cell and at an edge
-    const auto over = [&](int c, int offset) {
-      return excess[(int64_t) at[offset] * dim + c];
-    };
     const auto in_cell = [&](int offset) {
-      if constexpr (!several) return 1.0;
-      double most_over = 0.0;
-      for (int c = 0; c < dim; c++)
-        most_over = std::max({most_over, over(c, offset), over(c, offset + stride[c])});
-      return viscosities->in_cell(at[offset]) * (1.0 - most_over);
+      return several ? viscosities->in_cell(at[offset]) : 1.0;
     };
     const auto at_edge = [&](int c, int d, int offset) {
-      if constexpr (!several) return 1.0;
-      const double most_over = std::max({over(c, offset), over(c, offset - stride[d]),
-                                         over(d, offset), over(d, offset - stride[c])});
-      return viscosities->at_edge(at[offset], c + d - 1) * (1.0 - most_over);
+      return several ? viscosities->at_edge(at[offset], c + d - 1) : 1.0;
     };
     for (int c = 0; c < dim; c++) {
       if (cell.walls >> 2 * c & 1) continue;

@@ -19,11 +19,7 @@ class MPMFlowViscosities;
 /** Stress of a viscous fluid on a staggered lattice, 2 mu times the rate of strain. Normal stresses are at the
  *  middle of cells, shear stresses at edges. The stress is zero in dry cells, and at edges that touch two or
  *  more of them, because a free surface has no traction. The volume that the stress acts on reaches up to the
- *  surface, as for the pressure.
- *
- *  Where a drop of a heavy liquid is in a light one, the viscosity of a cell can belong to the former, and the density of a face next
- *  to it to the latter. Stresses on such faces are reduced, so that the stable step is that of the largest kinematic viscosity. At flat
- *  interfaces they are not. */
+ *  surface, as for the pressure. */
 class MPMFlowViscosity {
  public:
   MPMFlowViscosity(const MPMFlowLattice &cells, const MPMFlowPressure &water) :
@@ -36,19 +32,15 @@ class MPMFlowViscosity {
 
   /** Viscosities of several liquids; null: there is one. */
   const MPMFlowViscosities *viscosities = nullptr;
-  /** The largest kinematic viscosity of a liquid, over the factor nu of add(). */
-  double most = 1.0;
 
   /** sum += factor div(2 D) in owned cells. factor: time step times kinematic viscosity, of several
    *  liquids the largest viscosity over the density in psi. velocity: [cell][dim], complete. */
-  void add(double factor, const std::vector<double> &velocity, std::vector<double> &sum);
+  void add(double factor, const std::vector<double> &velocity, std::vector<double> &sum) const;
 
  private:
   const MPMFlowLattice &cells;
   const MPMFlowPressure &water;
-  std::vector<double> excess;    // [cell][dim] share by which stresses on a face are reduced
 
-  void find_excess();
   template <bool several>
   void add(double factor, const std::vector<double> &velocity, std::vector<double> &sum) const;
 };
