@@ -591,7 +591,8 @@ void FixMPMEmit::make_point(const double *where, const double *v, double volume,
   atom->vfrac[i] = volume * (field ? field->frame->circle(x[0]) : 1.0);
   modify->create_attribute(i);
   if (has_temperature) give_temperature(i);
-  atom->rmass[i] = (fluid ? fluid->density_of_fluid() : material->density(i)) * atom->vfrac[i];
+  atom->rmass[i] =
+      (fluid ? fluid->density_of_groups(atom->mask[i]) : material->density(i)) * atom->vfrac[i];
   if (atom->radius_flag)
     atom->radius[i] = 0.5 * (domain->dimension == 3 ? std::cbrt(volume) : std::sqrt(volume));
 }
@@ -672,7 +673,8 @@ double FixMPMEmit::compute_vector(int k)
   if (k == 6) return total.stored;
   if (k == 7) return speed;
   if (k == 8)
-    return speed * section * (fluid ? fluid->density_of_fluid() : material->material->density());
+    return speed * section *
+        (fluid ? fluid->density_of_groups(1 | groupbit) : material->material->density());
   const double mine = k == 12 ? past.work
       : dt_last > 0.0         ? impulse[k - 9] / (dt_last * force->ftm2v)
                               : 0.0;

@@ -20,6 +20,7 @@
 #include "mpm_flow_stress.h"
 #include "mpm_flow_tension.h"
 #include "mpm_flow_transfer.h"
+#include "mpm_flow_viscosities.h"
 #include "mpm_flow_viscosity.h"
 #include "mpm_integrators.h"
 #include "mpm_options.h"
@@ -63,6 +64,9 @@ static constexpr double SAME_DENSITY = 1.0e-9;
 static constexpr double LARGEST_POINT = 1.01;
 // with surface tension, see MPMFlowPressure::nearest
 static constexpr double NEAREST_SURFACE = 1.0e-4;
+// longest explicit step with several viscosities, over that of fraction 1: drops of a few points in a fluid that is a
+// thousand times lighter were stable at 1.8 and unstable at 1.9, where one liquid is stable up to 2
+static constexpr double MOST_OF_SEVERAL = 1.5;
 // tolerance of the spreading of points, which shows only with other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
 // share of the inflow that may have no room, because of the tolerance of the pressure
@@ -179,10 +183,13 @@ Options MPMIncompressibleOptions::declare(int dim)
       .standard("none");
   o.add("liquid",
         {text(liquid.group, "group-ID", "group of the points of a separate liquid"),
-         number(liquid.density, "rho", POSITIVE, "density", "density of this liquid")},
+         number(liquid.density, "rho", POSITIVE, "density", "density of this liquid"),
+         optional(number(liquid.viscosity, "mu", NOT_NEGATIVE, "pressure*time",
+                         "dynamic viscosity of this liquid; that of *viscosity* if left out"))},
         "can be given more than once")
       .then([this] {
         liquids.push_back(liquid);
+        liquid.viscosity = -1.0;    // for the next one
       })
       .standard("none");
   o.add("solid",
@@ -247,16 +254,17 @@ Options MPMIncompressibleOptions::declare(int dim)
         parts_are_given = true;
       });
   o.refuse([this] {
+    const bool is_viscous = largest_viscosity() > 0.0;
     return OptionRules{
         {wall_is_twice, "wall", "has the same face twice: give each face once"},
-        {viscosity > 0.0, "region",
+        {is_viscous, "region",
          "has no friction, and cannot be used with viscosity: use the keyword stick instead, or "
          "leave "
          "viscosity out"},
         {!implicit && parts_are_given, "parts",
          "is about implicit viscosity, as the other equations are those of any time step: add the "
          "keywords viscosity and implicit yes, or remove it"},
-        {!implicit || viscosity == 0.0, "stick",
+        {!implicit || !is_viscous, "stick",
          "is about viscosity, in an implicit step, as an explicit one would be bound by the least "
          "distance of "
          "a face to a wall: add the keywords viscosity and implicit yes, or use the keyword region "
@@ -265,13 +273,13 @@ Options MPMIncompressibleOptions::declare(int dim)
          "cannot be used with tension, as a fluid that slips along it without friction never comes "
          "to rest: use the keyword stick "
          "with implicit viscosity instead, or walls of the box, or leave tension out"},
-        {!liquids.empty() && viscosity > 0.0, "viscosity",
-         "is that of one liquid, and cannot be used with liquid: leave one of them out"},
         {!liquids.empty() && tension > 0.0, "tension",
          "is that of one liquid, and cannot be used with liquid: leave one of them out"},
         {!solid_groups.empty() && tension > 0.0, "tension",
          "would act on the surfaces of solids, too, and cannot be used with solid: leave one of "
          "them out"},
+        {!solid_groups.empty() && has_several_viscosities(), "solid",
+         "is in fluids of one viscosity: leave out the viscosity of keyword liquid"},
         {!solid_groups.empty() && implicit, "solid",
          "cannot be used with implicit yes: use explicit viscosity, or leave solid out"},
         {!solid_groups.empty() && reflect > 0.0, "reflect",
@@ -291,6 +299,20 @@ Options MPMIncompressibleOptions::declare(int dim)
          "cannot be used with solid: leave one of them out"}};
   });
   return o;
+}
+
+double MPMIncompressibleOptions::largest_viscosity() const
+{
+  double most = viscosity;
+  for (const auto &one : liquids) most = std::max(most, viscosity_of(one));
+  return most;
+}
+
+bool MPMIncompressibleOptions::has_several_viscosities() const
+{
+  return std::any_of(liquids.begin(), liquids.end(), [this](const Liquid &one) {
+    return viscosity_of(one) != viscosity;
+  });
 }
 
 static MPM_NS::Lattice lattice_of(LAMMPS *lmp, int narg, char **arg)
@@ -343,17 +365,21 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
 
   pressure = std::make_unique<MPMFlowPressure>(lmp, cells);
   air = std::make_unique<MPMFlowAir>(cells);
-  if (implicit && viscosity == 0.0)
+  thickest = largest_viscosity();
+  if (implicit && thickest == 0.0)
     error->all(FLERR,
                "Fix mpm/incompressible implicit yes is about the viscosity: add the keyword "
                "viscosity");
   if (implicit) {
     stress = std::make_unique<MPMFlowStress>(lmp, cells, *pressure);
+    stress->lightness = liquids.empty() ? nullptr : &lightness;
     cells.wants_around = true;
-  } else if (viscosity > 0.0) {
+  } else if (thickest > 0.0) {
     viscous = std::make_unique<MPMFlowViscosity>(cells, *pressure);
     cells.wants_around = true;
   }
+  if (has_several_viscosities())
+    viscosities = std::make_unique<MPMFlowViscosities>(cells, viscosity);
   for (auto it = region_ids.begin(); it != region_ids.end(); ++it)
     if (std::count(region_ids.begin(), it, *it))
       error->all(FLERR, "Fix mpm/incompressible has region {} twice: give it once", *it);
@@ -379,6 +405,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
     if (igroup_of < 0)
       error->all(FLERR, "Fix mpm/incompressible liquid: group {} does not exist", one.group);
     liquid_bits.push_back(group->bitmask[igroup_of]);
+    if (viscosities) viscosities->add(liquid_bits.back(), viscosity_of(one));
   }
   if (!solid_groups.empty()) {
     int bits = 0;
@@ -415,6 +442,9 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   extscalar = extvector = 0;
   several = !liquids.empty();
   least_density = density;
+  for (const auto &one : liquids) least_density = std::min(least_density, one.density);
+  if (viscosities && stress) stress->viscosities = viscosities.get();
+  if (viscosities && viscous) viscous->viscosities = viscosities.get();
   restart_global = 1;
   keep_arrays();
 }
@@ -451,11 +481,11 @@ void FixMPMIncompressible::init()
       flip = bodies ? FLIP_OF_BODIES : 0.0;
     }
     pressure->bodies = bodies.get();
-    if (bodies && (!liquids.empty() || solids))
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix {} {}: bodies of fix mpm/rigid need a flow of one density: remove the keyword {}",
-          style, id, solids ? "solid" : "liquid");
+    if (bodies && solids)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix {} {}: bodies of fix mpm/rigid need a flow without solids: remove the "
+                 "keyword solid",
+                 style, id);
     if (bodies && stick)
       error->all(
           FLERR, Error::NOLASTLINE,
@@ -484,7 +514,7 @@ void FixMPMIncompressible::init()
                id);
   if (inflow) inflow->clamps = implicit;
   if (stress) stress->mobility = inflow ? &mobility : nullptr;
-  if ((grains || inflow) && (!liquids.empty() || solids))
+  if ((grains && !liquids.empty()) || ((grains || inflow) && solids))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: {} need a flow of one density: remove the keyword {}", style, id,
                grains ? "grains of fix mpm/immersed" : "points of fix mpm/emit",
@@ -573,6 +603,9 @@ void FixMPMIncompressible::check_liquids()
   for (std::size_t k = 0; k < liquids.size(); k++)
     for (int i = 0; i < atom->nlocal; i++)
       if (cells.is_point(i) && atom->mask[i] & liquid_bits[k]) mine[k] = 1;
+  for (const auto *inlet : modify->get_fix_by_style("^mpm/emit$"))    // its points are yet to come
+    for (std::size_t k = 0; k < liquids.size(); k++)
+      if (inlet->groupbit & liquid_bits[k]) mine[k] = 1;
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_MAX, world);
   for (std::size_t k = 0; k < liquids.size(); k++)
     if (!all[k] && comm->me == 0 && !told_of_liquids)
@@ -601,10 +634,14 @@ void FixMPMIncompressible::check_solids()
 
 double FixMPMIncompressible::density_of(int i) const
 {
-  if (solids && solids->holds(i)) return solids->density_of(i);
+  return solids && solids->holds(i) ? solids->density_of(i) : density_of_groups(atom->mask[i]);
+}
+
+double FixMPMIncompressible::density_of_groups(int mask) const
+{
   double of = density;
   for (std::size_t k = 0; k < liquids.size(); k++)
-    if (atom->mask[i] & liquid_bits[k]) of = liquids[k].density;
+    if (mask & liquid_bits[k]) of = liquids[k].density;
   return of;
 }
 
@@ -781,6 +818,15 @@ double FixMPMIncompressible::acceleration_of_stress() const
   return force->ftm2v / (force->nktv2p * density);
 }
 
+/** The largest kinematic viscosity, which limits explicit steps. */
+double FixMPMIncompressible::largest_nu() const
+{
+  if (!viscosities) return thickest * acceleration_of_stress() * density / least_density;
+  double most = viscosity / density;
+  for (const auto &one : liquids) most = std::max(most, viscosity_of(one) / one.density);
+  return most * density * acceleration_of_stress();
+}
+
 /** dt p/density of free surfaces by their tension and by gas; null: they have none. */
 const std::vector<double> *FixMPMIncompressible::surface_psi() const
 {
@@ -840,6 +886,7 @@ void FixMPMIncompressible::initial_integrate(int)
   const bool keeps = flip > 0.0 || transfer == AUTO;
   if (keeps || reflect > 0.0 || differ) old = star;
   if (several) find_lightness(points);
+  if (viscosities) viscosities->find(atom->x, atom->vfrac, atom->mask);
   if (solids) {
     if (!stiffness_known) check_stiffness();
     solids->give_forces(elastic);
@@ -879,7 +926,8 @@ void FixMPMIncompressible::initial_integrate(int)
                                        transfer == AUTO ? unseen : nullptr,
                                        of_shift,
                                        sharp ? paths.data() : nullptr,
-                                       viscosity};
+                                       thickest,
+                                       viscosities.get()};
   if (solids) solids->deform(velocity.data(), dt, viscosity);
   cells.valid = get_from_cells(cells, points, velocity.data(), update_points, pressures.data(),
                                MPMPoints::get(atom)->tau);
@@ -1022,7 +1070,7 @@ void FixMPMIncompressible::find_tension(double duration)
 SolveReport FixMPMIncompressible::find_stress(double dt, double rounding)
 {
   potentials = pressure->psi;
-  const auto report = stress->step(dt * viscosity * acceleration_of_stress() / (h * h), velocity,
+  const auto report = stress->step(dt * thickest * acceleration_of_stress() / (h * h), velocity,
                                    potentials, {tolerance, rounding, most_iterations});
   if (!report.converged()) return report;
   last.of_stress = report.iterations;
@@ -1093,8 +1141,9 @@ void FixMPMIncompressible::check_stiffness()
 void FixMPMIncompressible::add_viscosity(double dt)
 {
   const int dim = cells.lattice.dim;
-  const double nu = viscosity * acceleration_of_stress(),
-               most = 2.0 * MPMFlowViscosity::stable_dt(nu * density / least_density, h, dim);
+  const double nu = thickest * acceleration_of_stress(),
+               most = (viscosities ? MOST_OF_SEVERAL : 2.0) *
+      MPMFlowViscosity::stable_dt(largest_nu(), h, dim);
   if (update->dt > most * (1.0 + 1.0e-9))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: the time step {:.6g} is too large for the viscosity, which allows "
@@ -1141,6 +1190,7 @@ void FixMPMIncompressible::find_pressures(double pressure_to_psi)
             }
             push[c] = mass > 0.0 ? duration * force->ftm2v * force_of_points / mass : 0.0;
           }
+          return pressure->density_in(cell);
         },
         1.0 / (1.0 + reflect), last.regions.data());
     if (gas && regions->n() == 1) gas_rows->add_to_region(last.regions.data());
@@ -1308,10 +1358,9 @@ double FixMPMIncompressible::spacing_around(const std::string &region) const
 double FixMPMIncompressible::stable_dt(tagint &tag) const
 {
   double dt = std::numeric_limits<double>::max();
-  const double nu = viscosity * acceleration_of_stress();
   tag = 0;
-  if (nu > 0.0 && !implicit)
-    dt = MPMFlowViscosity::stable_dt(nu * density / least_density, h, cells.lattice.dim);
+  if (thickest > 0.0 && !implicit)
+    dt = MPMFlowViscosity::stable_dt(largest_nu(), h, cells.lattice.dim);
   if (solids) {
     tagint stiffest = 0;
     const double shear = solids->stable_dt(stiffest);
@@ -1352,7 +1401,7 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
   double moving = regions ? regions->largest_speed() : 0.0;    // points next to it move with it
   for (const auto &axis_walls : walls)
     for (const auto &face : axis_walls)
-      if (face.sticks && viscosity > 0.0) moving = std::max(moving, MathExtra::len3(face.v));
+      if (face.sticks && thickest > 0.0) moving = std::max(moving, MathExtra::len3(face.v));
   if (moving * dt > h) {
     dt = h / moving;
     tag = 0;
@@ -1464,10 +1513,28 @@ double FixMPMIncompressible::memory_usage()
   if (curved) bytes += curved->memory_usage();
   if (gas) bytes += gas->memory_usage() + gas_rows->memory_usage();
   if (stress) bytes += stress->memory_usage();
-  for (const auto *list :
-       {&paths, &elastic, &at_surface, &potentials, &viscous_velocity, &before_forces, &mobility,
-        &sums, &share, &old, &star, &more, &velocity, &known, &pressures, &shift, &without_hold,
-        &start_of_part, &psi_of_parts})
+  if (viscosities) bytes += viscosities->memory_usage();
+  for (const auto *list : {&lightness,
+                           &face_volumes,
+                           &paths,
+                           &elastic,
+                           &at_surface,
+                           &potentials,
+                           &viscous_velocity,
+                           &before_forces,
+                           &mobility,
+                           &sums,
+                           &share,
+                           &old,
+                           &star,
+                           &more,
+                           &velocity,
+                           &known,
+                           &pressures,
+                           &shift,
+                           &without_hold,
+                           &start_of_part,
+                           &psi_of_parts})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -38,6 +38,7 @@ class MPMFlowSolids;
 class MPMFlowStick;
 class MPMFlowStress;
 class MPMFlowTension;
+class MPMFlowViscosities;
 class MPMFlowViscosity;
 struct MPMFlowPoints;
 
@@ -66,8 +67,9 @@ struct MPMIncompressibleOptions {
   struct Liquid {
     std::string group;
     double density;
+    double viscosity = -1.0;    ///< negative: that of all
   };
-  std::vector<Liquid> liquids;    ///< groups of points with other densities
+  std::vector<Liquid> liquids;    ///< groups of points with other densities and viscosities
   std::vector<std::string> solid_groups;
   bool has_gas = false;
   MPMFlowGasLaw gas_law;
@@ -76,6 +78,12 @@ struct MPMIncompressibleOptions {
   bool has_open = false;
 
   MPM_NS::Options declare(int dim);
+  double viscosity_of(const Liquid &one) const
+  {
+    return one.viscosity < 0.0 ? viscosity : one.viscosity;
+  }
+  double largest_viscosity() const;
+  bool has_several_viscosities() const;
 
  private:
   int axis = 0, side = 0;    // of the wall that is being read
@@ -120,7 +128,8 @@ class FixMPMIncompressible :
   /** Node spacing. */
   double spacing() const { return h; }
   MPMFlowSolids *solids_of() const { return solids.get(); }    ///< null: none
-  double density_of_fluid() const { return density; }
+  /** Density of points in groups with these bits, that are no solids. */
+  double density_of_groups(int mask) const;
   /** Stops with an error if the density of the fluid given by another fix differs. who: the start of the message. */
   void check_density(double of_fluid, const std::string &who) const;
 
@@ -128,16 +137,17 @@ class FixMPMIncompressible :
   MPMFlowLattice cells;
   std::unique_ptr<MPMFlowPressure> pressure;
   std::unique_ptr<MPMFlowAir> air;
-  std::unique_ptr<MPMFlowViscosity> viscous;    // explicit; null: none
-  std::unique_ptr<MPMFlowStress> stress;        // implicit viscosity; null: none
-  std::unique_ptr<MPMFlowTension> curved;       // with surface tension; null: none
-  std::unique_ptr<MPMFlowRegions> regions;      // null: none
-  std::unique_ptr<MPMFlowStick> stick;          // regions without slip; null: none
-  std::unique_ptr<MPMFlowBodies> bodies;        // rigid bodies of regions; null: none
-  std::unique_ptr<MPMFlowGrains> grains;        // of fix mpm/immersed; null: none
-  std::unique_ptr<MPMFlowInflow> inflow;        // of fix mpm/emit; null: none
-  std::unique_ptr<MPMFlowSolids> solids;        // null: none
-  std::unique_ptr<MPMFlowGas> gas;              // in pockets; null: none
+  std::unique_ptr<MPMFlowViscosity> viscous;          // explicit; null: none
+  std::unique_ptr<MPMFlowStress> stress;              // implicit viscosity; null: none
+  std::unique_ptr<MPMFlowViscosities> viscosities;    // of several liquids; null: there is one
+  std::unique_ptr<MPMFlowTension> curved;             // with surface tension; null: none
+  std::unique_ptr<MPMFlowRegions> regions;            // null: none
+  std::unique_ptr<MPMFlowStick> stick;                // regions without slip; null: none
+  std::unique_ptr<MPMFlowBodies> bodies;              // rigid bodies of regions; null: none
+  std::unique_ptr<MPMFlowGrains> grains;              // of fix mpm/immersed; null: none
+  std::unique_ptr<MPMFlowInflow> inflow;              // of fix mpm/emit; null: none
+  std::unique_ptr<MPMFlowSolids> solids;              // null: none
+  std::unique_ptr<MPMFlowGas> gas;                    // in pockets; null: none
   std::unique_ptr<MPMFlowGasRows> gas_rows;
   MPMRows gradient;    // [n][flow_slopes(dim)] of velocities of points, with apic
   std::vector<int> liquid_bits;
@@ -146,6 +156,7 @@ class FixMPMIncompressible :
   std::vector<double> elastic;    // forces of solids at faces
   bool several = false;           // are there several densities?
   double least_density = 0.0;
+  double thickest = 0.0;           // largest viscosity
   bool stiffness_known = false;    // was check_stiffness() done in this run?
   std::vector<double> sums, share, old, star, more, velocity, known, pressures, shift, at_surface,
       potentials, viscous_velocity, before_forces, mobility, without_hold, start_of_part,
@@ -176,6 +187,7 @@ class FixMPMIncompressible :
   const std::vector<double> *surface_psi() const;
   MPMFlowPoints points_now(double dt) const;
   double density_of(int i) const;
+  double largest_nu() const;
   void find_lightness(const MPMFlowPoints &);
   void check_points();
   void check_liquids();

@@ -36,7 +36,7 @@ void MPMFlowBodies::find_rows(Body &body, const MPMFlowPressure &pressure) const
   body.rows.clear();
   for (const auto &cell : cells.cells) {
     if (!pressure.is_wet(cell.number)) continue;
-    Row row = {cell.number, {}, {}};
+    Row row = {cell.number, {}, 1.0, {}};
     bool any = false;
     for (int d = 0; d < dim; d++)
       for (int s = 0; s < 2; s++) {
@@ -55,6 +55,7 @@ void MPMFlowBodies::find_rows(Body &body, const MPMFlowPressure &pressure) const
       }
     if (!any) continue;
     regions.find_wall(body.wall, cell, row.to_wall);
+    row.heavy = pressure.density_in(cell);
     body.rows.push_back(row);
   }
 }
@@ -66,7 +67,7 @@ void MPMFlowBodies::begin(double duration, const double *gravity, const MPMFlowP
     body.fix->predict(duration, body.u, body.inverse);
     body.impulse = {};
     push(body, sum(body, [&](const Row &row) {
-           return duration * MathExtra::dot3(gravity, row.to_wall);
+           return row.heavy * (duration * MathExtra::dot3(gravity, row.to_wall));
          }));
   }
 }

@@ -30,7 +30,8 @@ class MPMFlowRegions;
  *
  *  The pressure in the middle of a cell differs from the pressure at the wall; for a flat wall the error is the same in all of
  *  its cells, at most the weight of half a spacing of water. The part of the error by the acceleration g of the water is
- *  known, dt g.r with r from the middle of the cell to the wall, and is included in the loads. */
+ *  known, dt g.r with r from the middle of the cell to the wall, and is included in the loads. With several liquids, it is that of
+ *  the density of the cell. */
 class MPMFlowBodies {
  public:
   MPMFlowBodies(class LAMMPS *lmp, const MPMFlowLattice &cells, MPMFlowRegions &regions,
@@ -60,6 +61,7 @@ class MPMFlowBodies {
   struct Row {
     int cell;
     double to_wall[3];    // from the middle of the cell
+    double heavy;         // density of the cell over that in psi
     Six w;                // outflow of the cell for unit velocities of the body
   };
   struct Body {

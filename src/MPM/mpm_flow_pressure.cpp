@@ -66,6 +66,19 @@ double MPMFlowPressure::open_side(const MPMFlowLattice::Cell &cell, int side) co
   return of < 0 ? 1.0 : open(of, side / 2);
 }
 
+double MPMFlowPressure::density_in(const MPMFlowLattice::Cell &cell) const
+{
+  if (!lightness) return 1.0;
+  double sum = 0.0, sides = 0.0;
+  for (int s = 0; s < 2 * cells.lattice.dim; s++) {
+    const double side = open_side(cell, s);
+    if (side == 0.0) continue;
+    sum += side / light(s % 2 ? cell.near[s] : cell.number, s / 2);
+    sides += side;
+  }
+  return sides > 0.0 ? sum / sides : 1.0;
+}
+
 double MPMFlowPressure::flux_of_side(const double *velocity, const MPMFlowLattice::Cell &cell,
                                      int side) const
 {

@@ -54,6 +54,9 @@ class MPMFlowPressure : protected Pointers {
   /** [cell][dim] density in psi over the density at faces, of all cells; null: there is one density. */
   const std::vector<double> *lightness = nullptr;
 
+  /** Density of a cell over that in psi: the mean of its open faces. */
+  double density_in(const MPMFlowLattice::Cell &) const;
+
   /** Finds the wet cells. share: [cell] share of its surroundings that is filled, also of periodic images and images beyond
    *  walls. Must stay valid while this object is used. */
   void find_wet(const std::vector<double> &share);

@@ -87,7 +87,8 @@ class MPMFlowRegions : protected Pointers {
 
   /** Adds the force of potentials psi of owned cells for which wet(number) is true to force[3 n()]. Along a wall, psi differs
    *  from psi in the middle of a cell by its known slope: push(cell, slope) gives the velocity that forces give to the water
-   *  around a cell, and the pressure balances it, less share times the change of the velocity of the wall. */
+   *  around a cell, and returns the density of the cell over that in psi. The pressure balances it, less share times the change of
+   *  the velocity of the wall. */
   template <class Wet, class Push>
   void add_forces(const double *psi, const Wet &wet, const Push &push, double share,
                   double *force) const
@@ -96,8 +97,8 @@ class MPMFlowRegions : protected Pointers {
       const auto &cell = cells.cells[cut.cell];
       if (!wet(cell.number)) continue;
       double slope[3];
-      push(cell, slope);
-      for (int d = 0; d < dim; d++) slope[d] -= share * cut.change[d];
+      const double heavy = push(cell, slope);
+      for (int d = 0; d < dim; d++) slope[d] = heavy * (slope[d] - share * cut.change[d]);
       for (int d = 0; d < dim; d++) {
         double sum = psi[cell.number] * cut.area[d];
         for (int e = 0; e < dim; e++) sum += slope[e] * cut.moment[d][e];

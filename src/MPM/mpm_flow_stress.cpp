@@ -10,6 +10,7 @@
 
 #include "mpm_flow_regions.h"
 #include "mpm_flow_stick.h"
+#include "mpm_flow_viscosities.h"
 #include "mpm_node_system.h"
 
 #include <algorithm>
@@ -46,6 +47,17 @@ double MPMFlowStress::open_side(const MPMFlowLattice::Cell &cell, int side) cons
 bool MPMFlowStress::is_wall(int64_t face) const
 {
   return stick && stick->is_wall(face);
+}
+
+/** Viscosities over the largest one. */
+double MPMFlowStress::in_cell(int64_t cell) const
+{
+  return viscosities ? viscosities->in_cell(cell) : 1.0;
+}
+
+double MPMFlowStress::at_edge(int64_t cell, int pair) const
+{
+  return viscosities ? viscosities->at_edge(cell, pair) : 1.0;
 }
 
 /** Lengths of wet cells along each axis: up to the middle between two of them, to a wall, or to the surface. */
@@ -109,10 +121,12 @@ void MPMFlowStress::find_faces()
             }
           }
           if (!sticks) continue;
-          const double drag = number * mass / (distance * across[d]);
+          const double thick = at_edge(s ? cell.near[2 * d + 1] : here, pair_of(c, d)),
+                       drag = number * thick * mass / (distance * across[d]);
           of_walls += drag;
           face.wall += drag * v;
         }
+      if (lightness) mass /= (*lightness)[face.at];
       face.inverse = inverse_mass[face.at] = 1.0 / (mass + of_walls);
       face.share = mass * face.inverse;
       face.wall *= face.inverse;
@@ -156,6 +170,7 @@ void MPMFlowStress::find_stresses()
       for (int d = 0; stick && d < dim; d++)
         carried[one.at + d] =
             one.volume * (wall(one.upper[d], 2 * d + 1) - wall(one.lower[d], 2 * d));
+      one.compliance = one.volume * one.room * (0.5 / (number * in_cell(here)));
       normals.push_back(one);
     }
     for (int c = 0; c < dim; c++)
@@ -180,6 +195,7 @@ void MPMFlowStress::find_stresses()
         edge.face[2] = here * dim + d;
         edge.face[3] = left * dim + d;
         find_edge(edge, dim == 3 ? third / wet : 1.0);
+        edge.compliance = 2.0 * (0.5 / (number * at_edge(here, pair_of(c, d)))) * edge.volume;
         edges.push_back(edge);
       }
   }
@@ -251,17 +267,26 @@ void MPMFlowStress::find_diagonal()
   const auto square = [](double x) {
     return x * x;
   };
-  for (const auto &one : normals)
-    for (int d = 0; d < dim; d++)
-      inverse_diagonal[one.row + d] = 1.0 /
-          (square(one.volume) *
-               (square(open(one.lower[d])) * inverse_mass[one.lower[d]] +
-                square(open(one.upper[d])) * inverse_mass[one.upper[d]]) +
-           one.volume * one.room * (1.0 - 1.0 / dim) / (2.0 * number));
+  for (auto &one : normals) {
+    double shares = 0.0;
+    for (int d = 0; d < dim; d++) {
+      const double of_faces = square(one.volume) *
+          (square(open(one.lower[d])) * inverse_mass[one.lower[d]] +
+           square(open(one.upper[d])) * inverse_mass[one.upper[d]]);
+      if (several()) {
+        inverse_diagonal[one.row + d] = 1.0 / (of_faces + one.compliance);
+        shares += of_faces * inverse_diagonal[one.row + d];
+      } else
+        inverse_diagonal[one.row + d] =
+            1.0 / (of_faces + one.volume * one.room * (1.0 - 1.0 / dim) / (2.0 * number));
+    }
+    // the inverse of diag(a + c) - c/dim, without the difference of numbers that are almost the same
+    one.coupling = shares > 0.0 ? one.compliance / shares : 0.0;
+  }
   for (const auto &edge : edges) {
     double sum = 0.0;
     for (int k = 0; k < 4; k++) sum += square(edge.area[k / 2]) * inverse_mass[edge.face[k]];
-    inverse_diagonal[edge.row] = 1.0 / (sum + edge.volume / number);
+    inverse_diagonal[edge.row] = 1.0 / (sum + (several() ? edge.compliance : edge.volume / number));
   }
 }
 
@@ -314,20 +339,25 @@ void MPMFlowStress::apply(const double *x, double *y)
     speed[face.at] = face.inverse * force;
   }
   cells.renew(speed.data(), dim);
-  const double half = 0.5 / number;
   for (const auto &one : normals) {
     double mean = 0.0;
     for (int d = 0; d < dim; d++) mean += x[one.row + d] / dim;
-    for (int d = 0; d < dim; d++)
-      y[one.row + d] = one.volume * one.room * half * (x[one.row + d] - mean);
+    for (int d = 0; d < dim; d++) y[one.row + d] = one.compliance * (x[one.row + d] - mean);
   }
-  for (const auto &edge : edges) y[edge.row] = 2.0 * half * edge.volume * x[edge.row];
+  for (const auto &edge : edges) y[edge.row] = edge.compliance * x[edge.row];
   strain(speed.data(), y, -1.0);
 }
 
 void MPMFlowStress::precondition(const double *r, double *z)
 {
   for (int64_t k = 0; k < size(); k++) z[k] = inverse_diagonal[k] * r[k];
+  for (const auto &one : normals) {
+    if (!several()) break;
+    double sum = 0.0;
+    for (int d = 0; d < dim; d++) sum += z[one.row + d];
+    for (int d = 0; d < dim; d++)
+      z[one.row + d] += one.coupling * inverse_diagonal[one.row + d] * sum;
+  }
 }
 
 SolveReport MPMFlowStress::step(double new_number, std::vector<double> &velocity,

@@ -16,6 +16,7 @@
 
 namespace LAMMPS_NS {
 class MPMFlowStick;
+class MPMFlowViscosities;
 
 /** Viscosity of an incompressible fluid in an implicit step, together with the pressure (E. Larionov, C. Batty, R. Bridson, ACM
  *  Trans. Graph. 36 (2017) 101). Velocities u and stresses sigma at the end of a step dt satisfy
@@ -39,17 +40,26 @@ class MPMFlowStick;
  *  a region that sticks have its velocity, and an inverse mass of zero. Next to such regions, stresses at edges act over the
  *  distance from a face to the wall instead of a spacing, and stresses in cells on the open part of the cell and its faces,
  *  as for the pressure. Fluid that enters a cell (MPMFlowPressure::sources) does so equally from all directions: it is no
- *  strain, and a third of it (in 2d one half) is subtracted from each normal component of E u_1. */
+ *  strain, and a third of it (in 2d one half) is subtracted from each normal component of E u_1.
+ *
+ *  With several liquids, S has the density of psi, masses are those of the densities of faces, and the compliance is that of the
+ *  viscosity in a cell or at an edge. Where this is small, the normal components of a cell are bound to each other much more than
+ *  to their neighbors. The preconditioner then has the equations of these components as a whole, without their neighbors: with the
+ *  diagonal alone, the pressure in thin liquids would converge by the ratio of viscosities. */
 class MPMFlowStress : public MPM_NS::LinearSystem {
  public:
   MPMFlowStress(class LAMMPS *lmp, const MPMFlowLattice &cells, const MPMFlowPressure &water);
 
   /** Regions without slip; null: none. */
   const MPMFlowStick *stick = nullptr;
+  /** Viscosities of several liquids; null: there is one. */
+  const MPMFlowViscosities *viscosities = nullptr;
+  /** See MPMFlowPressure; null: there is one density. */
+  const std::vector<double> *lightness = nullptr;
   /** [cell][dim] of all cells: zero for faces that keep their velocity, which no stress changes; null: there are none. */
   const std::vector<double> *mobility = nullptr;
 
-  /** A step. number: dt nu/h^2. velocity: [cell][dim] of owned cells, afterwards of all cells; that of faces next to water is
+  /** A step. number: dt nu/h^2, of several liquids with the largest viscosity and the density in psi. velocity: [cell][dim] of owned cells, afterwards of all cells; that of faces next to water is
    *  used and changed. psi: [cell], dt/density times the mean pressure is added to it. Collective. */
   MPM_NS::SolveReport step(double number, std::vector<double> &velocity, std::vector<double> &psi,
                            const MPM_NS::SolveGoal &);
@@ -74,13 +84,15 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
     int row;                       // place of it in vectors
     int64_t lower[3], upper[3];    // faces
     double volume, room;           // volume up to the surface; open share of it
+    double compliance;             // of deviators
+    double coupling;               // of the components, in the inverse of their equations
   };
   struct Edge {
     int64_t at;
     int row;
     int64_t face[4];    // with the signs + - + -
     double area[2];     // of the stress on the first two, and on the others
-    double volume;
+    double volume, compliance;
   };
 
   class LAMMPS *const lmp;
@@ -111,6 +123,9 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   double open(int64_t face) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
   bool is_wall(int64_t face) const;
+  double in_cell(int64_t cell) const;
+  double at_edge(int64_t cell, int pair) const;
+  bool several() const { return viscosities || lightness; }
   bool is_held(int64_t face) const { return mobility && (*mobility)[face] == 0.0; }
   void strain(const double *u, double *out, double sign) const;
   void spread(const double *x);

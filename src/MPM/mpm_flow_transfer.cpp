@@ -12,6 +12,7 @@
 #include "mpm_flow_regions.h"
 #include "mpm_flow_solids.h"
 #include "mpm_flow_stencil.h"
+#include "mpm_flow_viscosities.h"
 
 #include <algorithm>
 #include <cmath>
@@ -322,18 +323,50 @@ template <int dim> void move_in_field(const double *shift, double *v, double *G)
   }
 }
 
+/** Viscosities of cells and edges, over the largest one, near places with the same base. */
+template <int dim> struct Thickness {
+  double in_cell[MPMFlowStencil<dim>::CELLS];
+  double at_edge[dim == 2 ? 1 : 3][2];    // [pair][along the edge]
+
+  void find(const MPMFlowStencil<dim> &stencil, const MPMFlowViscosities &of)
+  {
+    for (int n = 0; n < stencil.CELLS; n++) in_cell[n] = of.in_cell(stencil.cell(n));
+    for (int pair = 0; pair < (dim == 2 ? 1 : 3); pair++)
+      for (int k = 0; k < dim - 1; k++) {
+        int to[3] = {1, 1, 1};
+        if (dim == 3) to[2 - pair] = k;
+        at_edge[pair][k] = of.at_edge(stencil.number(to), pair);
+      }
+  }
+  /** Those at a place: of normal stresses, and of the shear stresses 01, 02, 12. */
+  void at(const StaggeredWeights &w, double *of) const
+  {
+    of[0] = 0.0;
+    for (int n = 0; n < MPMFlowStencil<dim>::CELLS; n++) {
+      const int k[3] = {n >> (dim - 1) & 1, n >> (dim - 2) & 1, dim == 3 ? n & 1 : 0};
+      of[0] += w.cell<dim>(k) * in_cell[n];
+    }
+    for (int pair = 0; pair < (dim == 2 ? 1 : 3); pair++) {
+      const double *const edge = at_edge[pair];
+      of[1 + pair] = dim == 2 ? edge[0] : edge[0] + w.f[2 - pair] * (edge[1] - edge[0]);
+    }
+  }
+};
+
 /** Adds the viscous stress of an incompressible fluid, without its pressure. G: gradients of the velocity, in
- *  units of the lattice. */
-template <int dim> void add_viscous(double viscosity, double h, const double *G, double *stress)
+ *  units of the lattice. thick: factors of the viscosity for normal and shear stresses. */
+template <int dim>
+void add_viscous(double viscosity, const double *thick, double h, const double *G, double *stress)
 {
   static constexpr int PAIRS[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   const double mu = viscosity / unit_of<dim>(0, h);
   double third = 0.0;
   for (int c = 0; c < dim; c++) third += G[dim * c + c] / 3.0;
-  for (int c = 0; c < 3; c++) stress[c] += 2.0 * mu * ((c < dim ? G[dim * c + c] : 0.0) - third);
+  for (int c = 0; c < 3; c++)
+    stress[c] += 2.0 * (thick[0] * mu) * ((c < dim ? G[dim * c + c] : 0.0) - third);
   for (int k = 0; k < (dim == 2 ? 1 : 3); k++) {
     const auto &[c, d] = PAIRS[k];
-    stress[3 + k] += mu * (G[dim * c + d] + G[dim * d + c]);
+    stress[3 + k] += thick[1 + k] * mu * (G[dim * c + d] + G[dim * d + c]);
   }
 }
 
@@ -354,7 +387,9 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
   struct Around {
     Faces<dim> fields[4];
     double pressure[MPMFlowStencil<dim>::CELLS];
+    Thickness<dim> thickness;
   };
+  double thick[4] = {1.0, 1.0, 1.0, 1.0};    // of one liquid
   MPMFlowNear<dim, Around> near;
   FacesNear<dim> at_starts(cells.grid, update.paths),
       at_middles(cells.grid, update.paths ? update.paths : velocity);
@@ -372,6 +407,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
             for (int field = 0; field < nall; field++)
               one.fields[field].find(stencil, fields[field]);
             for (int n = 0; n < stencil.CELLS; n++) one.pressure[n] = pressure[stencil.cell(n)];
+            if (update.viscosities) one.thickness.find(stencil, *update.viscosities);
           });
       constexpr int NSLOPE = flow_slopes(dim);
       const bool solid = update.solids && update.solids->holds(i);
@@ -390,8 +426,10 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.solids->set_pressure(stress[i], p);
       else
         for (int c = 0; c < 6; c++) stress[i][c] = c < 3 ? -p : 0.0;
-      if (!solid && update.viscosity > 0.0)
-        add_viscous<dim>(update.viscosity, cells.lattice.h, G, stress[i]);
+      if (!solid && update.viscosity > 0.0) {
+        if (update.viscosities) around.thickness.at(w, thick);
+        add_viscous<dim>(update.viscosity, thick, cells.lattice.h, G, stress[i]);
+      }
 
       if (update.inflow && update.inflow->carry(x, v, points.dt)) {
         if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);

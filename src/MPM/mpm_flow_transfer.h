@@ -19,6 +19,7 @@ namespace LAMMPS_NS {
 class MPMFlowInflow;
 class MPMFlowRegions;
 class MPMFlowSolids;
+class MPMFlowViscosities;
 
 /** Width of the rows of velocity gradients of points: dv_c/dx_d at dim c + d and, in 3d, d2v_c/dx_d dx_e at 9 +
  *  c, with the two other axes d and e. Across c, the functions of faces consist of hats along these axes only.
@@ -62,6 +63,9 @@ struct MPMFlowUpdate {
   const double *paths = nullptr;
   /** Viscosity of the stress that fluid points have in addition to the pressure. */
   double viscosity = 0.0;
+  /** Viscosities of cells and edges over this one, of several liquids; null: there is one. Points have those of the boxes in which
+   *  the gradients of velocities are constant, so that a shear stress is the same on both sides of an interface. */
+  const MPMFlowViscosities *viscosities = nullptr;
 };
 
 /** Transfer from points to cells. sums: [cell][3 dim + 1] with momentum, mass, and force at faces, and the

@@ -8,6 +8,8 @@
 
 #include "mpm_flow_viscosity.h"
 
+#include "mpm_flow_viscosities.h"
+
 #include <algorithm>
 
 using namespace LAMMPS_NS;
@@ -21,6 +23,13 @@ static constexpr int LEAST_AT_EDGE = 3;
 // least height of what shear acts on, in spacings: half a cell, as where a surface is in the middle of a cell
 static constexpr double LEAST_HEIGHT = 0.5;
 
+void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
+                           std::vector<double> &sum) const
+{
+  viscosities ? add<true>(factor, u, sum) : add<false>(factor, u, sum);
+}
+
+template <bool several>
 void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
                            std::vector<double> &sum) const
 {
@@ -41,13 +50,20 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
     const auto reach = [&](int offset, int to) {
       return wet(offset) && !wet(to) ? std::max(0.0, water.distance(at[offset], at[to])) : 0.5;
     };
+    // viscosities over the largest one, in the middle of a cell and at an edge
+    const auto in_cell = [&](int offset) {
+      return several ? viscosities->in_cell(at[offset]) : 1.0;
+    };
+    const auto at_edge = [&](int c, int d, int offset) {
+      return several ? viscosities->at_edge(at[offset], c + d - 1) : 1.0;
+    };
     for (int c = 0; c < dim; c++) {
       if (cell.walls >> 2 * c & 1) continue;
       const int e = stride[c];
       if (!wet(0) && !wet(-e)) continue;
       double normal = 0.0, length = 1.0;
-      if (wet(0)) normal += v(c, e) - v(c, 0);
-      if (wet(-e)) normal -= v(c, 0) - v(c, -e);
+      if (wet(0)) normal += in_cell(0) * (v(c, e) - v(c, 0));
+      if (wet(-e)) normal -= in_cell(-e) * (v(c, 0) - v(c, -e));
       if (!wet(0)) length = std::max(NEAREST, reach(-e, 0));
       if (!wet(-e)) length = std::max(NEAREST, reach(0, -e));
       double force = 2.0 * normal / length;
@@ -58,8 +74,8 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
           return wet(0) + wet(-e) + wet(side) + wet(side - e) >= LEAST_AT_EDGE;
         };
         double shear = 0.0, height = 0.0;
-        if (in_fluid(n)) shear += v(c, n) - v(c, 0) + v(d, n) - v(d, n - e);
-        if (in_fluid(-n)) shear -= v(c, 0) - v(c, -n) + v(d, 0) - v(d, -e);
+        if (in_fluid(n)) shear += at_edge(c, d, n) * (v(c, n) - v(c, 0) + v(d, n) - v(d, n - e));
+        if (in_fluid(-n)) shear -= at_edge(c, d, 0) * (v(c, 0) - v(c, -n) + v(d, 0) - v(d, -e));
         if (shear == 0.0) continue;
         for (const int from : {0, -e})
           if (wet(from)) height += reach(from, from + n) + reach(from, from - n);
