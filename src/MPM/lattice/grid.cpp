@@ -143,11 +143,16 @@ namespace {
 template <class Move> void with_width(int n, const Move &move)
 {
   switch (n) {
-    case 1: return move(std::integral_constant<int, 1>());
-    case 2: return move(std::integral_constant<int, 2>());
-    case 3: return move(std::integral_constant<int, 3>());
-    case 4: return move(std::integral_constant<int, 4>());
-    default: return move(n);
+    case 1:
+      return move(std::integral_constant<int, 1>());
+    case 2:
+      return move(std::integral_constant<int, 2>());
+    case 3:
+      return move(std::integral_constant<int, 3>());
+    case 4:
+      return move(std::integral_constant<int, 4>());
+    default:
+      return move(n);
   }
 }
 
