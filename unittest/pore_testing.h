@@ -70,7 +70,7 @@ inline std::string load(int n, double q, double ramp)
 }
 inline void run_to(Scene &run, double end)
 {
-  run.commands(strprintf("fix dt all mpm/dt 0.5 until %.17g\nrun 1000000\n", end));
+  run.commands(strprintf("fix dt all mpm/dt 0.8 until %.17g\nrun 1000000\n", end));
 }
 
 /** Terzaghi: pressure over the initial one at a depth z below the drained top of a column of 1. */

@@ -30,6 +30,7 @@
 #include "mesh/shared_strain.h"
 #include "mesh/triangle_gap.h"
 #include "modify.h"
+#include "mpm_clear.h"
 #include "mpm_field.h"
 #include "mpm_image.h"
 #include "mpm_input.h"
@@ -675,7 +676,7 @@ void FixMPMElements::compute(bool starting)
   if (pressure) add_pressure(starting);
   comm->reverse_comm(this);
 
-  force_on.assign(3 * (std::size_t) atom->nmax, 0.0);
+  clear_points(force_on, atom, 3);
   double **const f = atom->f;
   for (int i = 0; i < nlocal; i++) {
     if (!(atom->mask[i] & groupbit)) continue;

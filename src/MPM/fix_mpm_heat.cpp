@@ -18,6 +18,7 @@
 #include "force.h"
 #include "input.h"
 #include "modify.h"
+#include "mpm_clear.h"
 #include "mpm_field.h"
 #include "mpm_leaks.h"
 #include "mpm_options.h"
@@ -423,7 +424,7 @@ void FixMPMHeat::give_rubbing(double dt)
   double sum = 0.0;
   for (auto &of : fields) {
     if (!of->conducts()) continue;
-    rubbed.assign(atom->nmax, 0.0);
+    clear_points(rubbed, atom);
     for (int i = 0; i < atom->nlocal; i++)
       if (of->field.is_point(i)) sum += rubbed[i] = dt * rubbing[i][0];
     of->give(rubbed);

@@ -91,6 +91,7 @@
 #include "error.h"
 #include "material/mean_conduction.h"
 #include "math_extra.h"
+#include "mpm_clear.h"
 #include "mpm_cpdi.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
@@ -938,7 +939,7 @@ void MPMConduction::add_given()
 void MPMConduction::give(std::vector<double> &energy)
 {
   const auto &pic = field.pic;
-  at_rest.assign(3 * (std::size_t) atom->nmax, 0.0);
+  clear_points(at_rest, atom, 3);
   const PointRows r = field.rows_at_rest(at_rest.data(), energy.data());
   const TransferStep still = field.step_data(0.0);
   auto &nodes = field.work.nodes;

@@ -24,6 +24,7 @@
 #include "fix_mpm_heat.h"
 #include "force.h"
 #include "modify.h"
+#include "mpm_clear.h"
 #include "mpm_conduction.h"
 #include "mpm_field.h"
 #include "mpm_passes.h"
@@ -141,7 +142,7 @@ void MPMFrictionHeat::map_means(Body &body, int first, int nvalue, int width, co
   MPMField &field = *body.field;
   const auto &pic = field.pic;
   const std::size_t nmax = atom->nmax;
-  values.assign(3 * nmax, 0.0);
+  clear_points(values, atom, 3);
   weights.resize(nmax);
   const PointRows r = field.rows_at_rest(values.data(), weights.data());
   const TransferStep still = field.step_data(0.0);

@@ -26,6 +26,7 @@
 #include "fix.h"
 #include "fix_mpm_material.h"
 #include "modify.h"
+#include "mpm_clear.h"
 #include "mpm_conduction.h"
 #include "mpm_field.h"
 #include "update.h"
@@ -128,7 +129,7 @@ double MPMGrainHeat::sum_waiting() const
 
 void MPMGrainHeat::give(MPMConduction &conduction)
 {
-  energy.assign(atom->nmax, 0.0);
+  clear_points(energy, atom);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!conduction.field.is_point(i)) continue;
     energy[i] = waiting[i][0];

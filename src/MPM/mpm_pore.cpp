@@ -50,6 +50,7 @@
 #include "material/material_point.h"
 #include "math/matrix.h"
 #include "math_const.h"
+#include "mpm_clear.h"
 #include "mpm_field.h"
 #include "mpm_frame.h"
 #include "mpm_node_sums.h"
@@ -322,7 +323,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
   if (!quadratic.empty()) quadratic.resize(atom->nmax);
   const double density = water.density * force->mvv2e * force->nktv2p;
   if (warmth)
-    for (auto *list : {&grown, &warm}) list->assign(atom->nmax, 0.0);
+    for (auto *list : {&grown, &warm}) clear_points(*list, atom);
   if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
   fastest = exchange = largest = 0.0;
   if (waiting) lie.assign(soils.size(), {});

@@ -59,6 +59,7 @@
 #include "atom.h"
 #include "force.h"
 #include "math/matrix.h"
+#include "mpm_clear.h"
 #include "mpm_field.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
@@ -101,8 +102,8 @@ double MPMPoreMotion::fading(const Pores &pores, double resistance) const
 void MPMPoreMotion::begin_step(const MPMRows &of_points)
 {
   flow = of_points;
-  share.assign(atom->nmax, 0.0);
-  lead.assign(3 * (std::size_t) atom->nmax, 0.0);
+  clear_points(share, atom);
+  clear_points(lead, atom, 3);
 }
 
 void MPMPoreMotion::set_gradient(int i, const double *gradient)

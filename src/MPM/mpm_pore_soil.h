@@ -127,17 +127,27 @@ struct MPMPoreResistance {
   /** Magnitude of the flow for which |flow_k| = push_k/(free + at(k, flow)) in both directions k. */
   double flow(const double *push, double free) const
   {
-    const auto next = [&](double w) {
-      const double a = push[0] / (free + at(0, w)), b = push[1] / (free + at(1, w));
-      return std::sqrt(a * a + b * b);
-    };
-    double low = 0.0, high = next(0.0);
-    if (quadratic[0] == 0.0 && quadratic[1] == 0.0) return high;
-    for (int turn = 0; turn < 60 && high - low > 1.0e-14 * high; turn++) {
-      const double middle = 0.5 * (low + high);
-      (next(middle) > middle ? low : high) = middle;
+    // the flow in one direction alone is less. The right-hand side is convex in the flow: from below, Newton's
+    // method never goes beyond the solution
+    double w = 0.0;
+    for (int k = 0; k < 2; k++) {
+      const double first = free + linear[k];
+      w = std::max(
+          w, 2.0 * push[k] / (first + std::sqrt(first * first + 4.0 * quadratic[k] * push[k])));
     }
-    return high;
+    for (int turn = 0; turn < 60; turn++) {
+      double square = 0.0, slope = 0.0;
+      for (int k = 0; k < 2; k++) {
+        const double r = free + at(k, w), flow = push[k] / r;
+        square += flow * flow;
+        slope += flow * flow * quadratic[k] / r;
+      }
+      if (square == 0.0) return 0.0;
+      const double both = std::sqrt(square), step = (both - w) / (1.0 + slope / both);
+      w += step;
+      if (!(step > 1.0e-14 * w)) break;
+    }
+    return w;
   }
 };
 

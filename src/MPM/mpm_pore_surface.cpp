@@ -41,6 +41,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "force.h"
+#include "mpm_clear.h"
 #include "mpm_field.h"
 #include "mpm_passes.h"
 #include "mpm_points.h"
@@ -159,7 +160,7 @@ void MPMPoreSurface::map_volume()
   const auto &pic = field.pic;
   auto &work = field.work;
   const std::size_t nmax = field.atom->nmax;
-  work.vectors.assign(3 * nmax, 0.0);
+  clear_points(work.vectors, field.atom, 3);
   work.weights.resize(std::max(work.weights.size(), nmax));
   work.stress.resize(6 * nmax);
   PointRows rows = field.rows_at_rest(work.vectors.data(), work.weights.data());

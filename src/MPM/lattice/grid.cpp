@@ -13,6 +13,7 @@
 #include <cstring>
 #include <new>
 #include <numeric>
+#include <type_traits>
 
 using namespace MPM_NS;
 
@@ -135,22 +136,48 @@ void Grid::zero()
   if (node) memset(nodes(), 0, nnodes() * nreal * sizeof(double));
 }
 
+namespace {
+
+/** Calls move(n). Where n is small it is one that the compiler knows: an inner loop over a few numbers would take twice the
+ *  time of their sums. */
+template <class Move> void with_width(int n, const Move &move)
+{
+  switch (n) {
+    case 1:
+      return move(std::integral_constant<int, 1>());
+    case 2:
+      return move(std::integral_constant<int, 2>());
+    case 3:
+      return move(std::integral_constant<int, 3>());
+    case 4:
+      return move(std::integral_constant<int, 4>());
+    default:
+      return move(n);
+  }
+}
+
+}    // namespace
+
 void Grid::fold_aliases(double *nodes, int nreals, int lane, int nlane) const
 {
-  for (std::size_t k = 0; k < alias_node.size(); k++) {
-    const double *from = nodes + alias_node[k] * nreals;
-    double *to = nodes + alias_of[k] * nreals;
-    for (int r = lane; r < lane + nlane; r++) to[r] += from[r];
-  }
+  with_width(nlane, [&](auto width) {
+    for (std::size_t k = 0; k < alias_node.size(); k++) {
+      const double *from = nodes + alias_node[k] * nreals + lane;
+      double *to = nodes + alias_of[k] * nreals + lane;
+      for (int r = 0; r < width; r++) to[r] += from[r];
+    }
+  });
 }
 
 void Grid::copy_aliases(double *nodes, int nreals) const
 {
-  for (std::size_t k = 0; k < alias_node.size(); k++) {
-    const double *from = nodes + alias_of[k] * nreals;
-    double *to = nodes + alias_node[k] * nreals;
-    for (int r = 0; r < nreals; r++) to[r] = from[r];
-  }
+  with_width(nreals, [&](auto width) {
+    for (std::size_t k = 0; k < alias_node.size(); k++) {
+      const double *from = nodes + alias_of[k] * width;
+      double *to = nodes + alias_node[k] * width;
+      for (int r = 0; r < width; r++) to[r] = from[r];
+    }
+  });
 }
 
 std::vector<int64_t> Grid::canonical() const
