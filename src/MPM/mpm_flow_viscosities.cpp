@@ -19,20 +19,21 @@ using namespace MPM_NS;
 
 // least viscosity over the largest one: equations have to divide by it
 static constexpr double LEAST = 1.0e-9;
-// share that a box gets from points in its neighbors, along each axis, for those that have no points of their own
+// share that a box gets from points in the next half of its neighbors, along each axis, for those that have no points of their own
 static constexpr double FROM_AFAR = 1.0e-8;
 
 namespace {
-/** Share of a point in each of three boxes along an axis, from first on, whose lower ends are at whole numbers. */
+/** Share of a point in the box along an axis that it is in and in the nearer one of the next, from first on. Lower ends of boxes are
+ *  at whole numbers. */
 struct Overlap {
   int first;
-  double share[3];
+  double share[2];
 
   void find(double t, double width)
   {
-    first = cell_below(t) - 1;
+    first = cell_below(t - 0.5);
     const double low = t - 0.5 * width - first, high = low + width;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 2; k++)
       share[k] =
           FROM_AFAR + std::max(0.0, std::min(high, k + 1.0) - std::max(low, (double) k)) / width;
   }
@@ -90,14 +91,14 @@ void MPMFlowViscosities::give(double *const *x, const double *volume, const int 
           to[0] += share;
           to[1] += share * value;
         };
-        for (int k = 0; k < 3; k++)
-          for (int l = 0; l < 3; l++) {
+        for (int k = 0; k < 2; k++)
+          for (int l = 0; l < 2; l++) {
             const double share = V * along[0]->share[k] * along[1]->share[l];
             const int kx = along[0]->first - base[0] + k, ky = along[1]->first - base[1] + l;
             if constexpr (d == 2)
               add(kx, ky, 0, share);
             else
-              for (int m = 0; m < 3; m++)
+              for (int m = 0; m < 2; m++)
                 add(kx, ky, along[2]->first - base[2] + m, share * along[2]->share[m]);
           }
       }
