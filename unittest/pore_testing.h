@@ -68,9 +68,10 @@ inline std::string load(int n, double q, double ramp)
                 ramp, ramp) +
       "variable fy equal -v_q*lx/count(top)\nfix load top addforce 0 v_fy 0\n";
 }
-inline void run_to(Scene &run, double end)
+/** Run to a time, with steps of this part of the limit. */
+inline void run_to(Scene &run, double end, double part = 0.5)
 {
-  run.commands(strprintf("fix dt all mpm/dt 0.8 until %.17g\nrun 1000000\n", end));
+  run.commands(strprintf("fix dt all mpm/dt %g until %.17g\nrun 1000000\n", part, end));
 }
 
 /** Terzaghi: pressure over the initial one at a depth z below the drained top of a column of 1. */
