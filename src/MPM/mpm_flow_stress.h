@@ -79,7 +79,7 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
     int64_t at;
     int row;
     int64_t face[4];    // with the signs + - + -
-    double area[2];     // of the stress on the first two, and on the others
+    double area[4];     // of the stress on each
     double volume;
   };
 
@@ -93,8 +93,8 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   std::vector<Edge> edges;
   // place in stresses of each element of vectors: those of owned wet cells and edges, in ascending order
   std::vector<int64_t> unknowns;
-  std::vector<double> carried;     // [stress] contribution of walls to W E u; empty without regions
-  std::vector<double> areas[2];    // [stress] for both components on which a shear stress acts
+  std::vector<double> carried;    // [stress] contribution of walls to W E u; empty without regions
+  std::vector<double> volumes;    // [stress] without the part behind walls
   std::vector<double> length, inverse_mass, speed, stress;       // of the lattice
   std::vector<double> right_side, solution, inverse_diagonal;    // by unknowns
   std::vector<double> mine, of_ranks;                            // sums
@@ -107,10 +107,11 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   void find_rows();
   void find_forces();
   void find_diagonal();
-  void find_edge(Edge &, double third);
+  void find_edge(Edge &, int pair);
   double open(int64_t face) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
   bool is_wall(int64_t face) const;
+  double shear_area(int64_t face, int axis) const;
   bool is_held(int64_t face) const { return mobility && (*mobility)[face] == 0.0; }
   void strain(const double *u, double *out, double sign) const;
   void spread(const double *x);
