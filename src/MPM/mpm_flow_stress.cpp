@@ -271,6 +271,12 @@ void MPMFlowStress::find_diagonal()
 
 /* ---------------------------------------------------------------------- */
 
+/** Difference of two flows through areas; to the last digit that of the velocities where the areas are the same. */
+static double difference(const double *area, double upper, double lower)
+{
+  return area[0] == area[1] ? area[0] * (upper - lower) : area[0] * upper - area[1] * lower;
+}
+
 /** out += sign W E u. */
 void MPMFlowStress::strain(const double *u, double *out, double sign) const
 {
@@ -281,8 +287,7 @@ void MPMFlowStress::strain(const double *u, double *out, double sign) const
   for (const auto &edge : edges) {
     const int64_t *const f = edge.face;
     out[edge.row] += sign *
-        (edge.area[0] * u[f[0]] - edge.area[1] * u[f[1]] + edge.area[2] * u[f[2]] -
-         edge.area[3] * u[f[3]]);
+        (difference(edge.area, u[f[0]], u[f[1]]) + difference(edge.area + 2, u[f[2]], u[f[3]]));
   }
 }
 

@@ -35,10 +35,10 @@ class MPMFlowStick;
  *  with differences E of velocities, their transpose E^T, which is minus the divergence of a stress, volumes W of cells and
  *  edges, masses M of faces (both up to the surface, in units of a cell), and the compliance C.
  *
- *  Walls that stick drag the faces next to them: this adds a mass with the velocity of the wall to M. Faces whose middle is in
- *  a region that sticks have its velocity, and an inverse mass of zero. Next to such regions, stresses at edges act over the
- *  distance from a face to the wall instead of a spacing, and stresses in cells on the open part of the cell and its faces,
- *  as for the pressure. Fluid that enters a cell (MPMFlowPressure::sources) does so equally from all directions: it is no
+ *  Walls of the box that stick drag the faces next to them: this adds a mass with the velocity of the wall to M. Next to regions
+ *  that stick, strains are means over the open parts of cells and of boxes around edges, by what flows through their sides, and
+ *  volumes and masses are those of open parts (MPMFlowStick). Faces next to closed have the velocity of the region, and an
+ *  inverse mass of zero. Fluid that enters a cell (MPMFlowPressure::sources) does so equally from all directions: it is no
  *  strain, and a third of it (in 2d one half) is subtracted from each normal component of E u_1. */
 class MPMFlowStress : public MPM_NS::LinearSystem {
  public:
