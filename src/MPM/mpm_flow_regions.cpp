@@ -304,6 +304,26 @@ double MPMFlowRegions::level_of_face(int64_t cell, int axis, double far, double 
   return level;
 }
 
+double MPMFlowRegions::plane_at(int64_t cell, const double *offset, double far, double *normal,
+                                int &wall) const
+{
+  int index[3];
+  double x[3];
+  cells.grid.node_index(cells.grid.blocks[cell / NODES_PER_BLOCK], cell % NODES_PER_BLOCK, index);
+  place(index, offset, x);
+  const double level = distance(x, far, wall);
+  if (std::fabs(level) < far) normal_at(wall, x, normal);
+  return level;
+}
+
+double MPMFlowRegions::velocity_at_face(int wall, int64_t cell, int axis) const
+{
+  double x[3], v[3];
+  face_middle(cell, axis, x);
+  velocity_at(wall, x, v);
+  return v[axis];
+}
+
 double MPMFlowRegions::find_way_out(const MPMFlowLattice::Cell &cell, double *out) const
 {
   constexpr double middle[3] = {0.5, 0.5, 0.5};
@@ -313,13 +333,6 @@ double MPMFlowRegions::find_way_out(const MPMFlowLattice::Cell &cell, double *ou
   const double level = distance(x, FAR * cells.lattice.h, wall);
   normal_at(wall, x, out);
   return -level;
-}
-
-double MPMFlowRegions::room_in(const MPMFlowLattice::Cell &cell) const
-{
-  double sum = 0.0;
-  for (int d = 0; d < dim; d++) sum += open(cell.number, d) + open(cell.near[2 * d + 1], d);
-  return sum / (2 * dim);
 }
 
 double MPMFlowRegions::closed_by(int wall, int64_t cell, int axis, double *arm) const

@@ -70,12 +70,15 @@ class MPMFlowRegions : protected Pointers {
   /** Distance of the middle of the lower face of a cell from walls, positive in the flow, at most far. velocity: component
    *  along the axis of the velocity of the nearest wall, extended rigidly to the face. */
   double level_of_face(int64_t cell, int axis, double far, double &velocity) const;
+  /** Distance of a place in a cell from walls, positive in the flow, at most far. offset: [3] from the lower corner, in spacings.
+   *  wall: the nearest one. normal: [3] unit vector out of it, not set beyond far. */
+  double plane_at(int64_t cell, const double *offset, double far, double *normal, int &wall) const;
+  /** Component of the velocity of a wall along the axis of the lower face of a cell, extended rigidly to its middle. */
+  double velocity_at_face(int wall, int64_t cell, int axis) const;
   /** Distance of the middle of a cell from walls, positive in the flow, at most a few spacings. */
   double level(int64_t cell) const { return levels[cell]; }
   /** Depth of the middle of a cell in a region; out: [3] unit vector out of it. */
   double find_way_out(const MPMFlowLattice::Cell &cell, double *out) const;
-  /** Open share of a cell: the mean of its faces. */
-  double room_in(const MPMFlowLattice::Cell &) const;
 
   /** Gives velocities [cell][dim] of closed faces near walls the normal component of the wall (moving), or none; of all cells
    *  before and afterwards. Collective. */

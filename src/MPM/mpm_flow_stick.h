@@ -16,9 +16,12 @@
 namespace LAMMPS_NS {
 class MPMFlowRegions;
 
-/** Regions without slip: distances of the faces of cells from walls, and velocities of walls there. A face whose middle is in
- *  a wall has the velocity of the wall. Between it and a face in the flow, the velocity at the wall is that of the wall.
- *  Faces are numbered cell*dim + axis. */
+/** Regions without slip: what is open of the faces, edges, and cells of viscous stresses, and velocities of walls there.
+ *  Faces are numbered cell*dim + axis.
+ *
+ *  Next to a wall, strains are means over the open part of cells and of boxes around edges, by what flows through their sides
+ *  (Gauss). The middle of a face is in one side of these boxes for each axis along it: area() is the open share of that side.
+ *  Forces are the transpose, so that a stress that is the same everywhere has none. */
 class MPMFlowStick {
  public:
   MPMFlowStick(const MPMFlowLattice &cells, const MPMFlowRegions &regions) :
@@ -31,6 +34,20 @@ class MPMFlowStick {
   void find(bool again);
   /** Is the middle of a face in a wall, or the face closed? */
   bool is_wall(int64_t face) const { return !(level[face] > 0.0); }
+  /** Does a face have the velocity of the wall? */
+  bool holds(int64_t face) const { return masses[face] == 0.0; }
+  /** Mass of a face; 1 far from walls. */
+  double mass(int64_t face) const { return masses[face]; }
+  /** Drag of the wall on a face that no shear stress holds, over its mass and the viscosity. */
+  double drag(int64_t face) const { return drags[face]; }
+  /** Open share of a face for the shear along another axis; 1 far from walls. */
+  double area(int64_t face, int axis) const { return areas[face * cells.lattice.dim + axis]; }
+  /** Open share of a cell. */
+  double room(int64_t cell) const { return rooms[cell]; }
+  /** Open share of the box around the lower edge of a cell that is normal to two axes; pair: their sum less one. */
+  double room_at_edge(int64_t cell, int pair) const { return edge_rooms[cell * npair() + pair]; }
+  /** Component at a face of the velocity of the wall that is nearest to such an edge; 0 far from walls. */
+  double velocity_near(int64_t cell, int pair, int64_t face) const;
   /** Component of the velocity of the nearest wall, extended rigidly to the middle of a face; 0 far from walls. */
   double velocity(int64_t face) const { return carried[face]; }
   /** Effect of a wall between two faces, one spacing apart, on the difference of their velocities. */
@@ -47,14 +64,21 @@ class MPMFlowStick {
    *  wall at its surface. Of all cells before and afterwards. Collective. */
   void hold(std::vector<double> &velocity);
 
-  double memory_usage() const { return (level.capacity() + carried.capacity()) * sizeof(double); }
+  double memory_usage() const;
 
  private:
+  int npair() const { return cells.lattice.dim == 2 ? 1 : 3; }
+  double plane_at(int64_t cell, const double *offset, double *slope, int &wall) const;
+  void find_face(int64_t face, double open);
+  void find_edge(int64_t cell, int c, int d);
+
   const MPMFlowLattice &cells;
   const MPMFlowRegions &regions;
   bigint nbuild = -1;
   // [face] distance of the middle from walls, positive in the flow [spacings]; see velocity()
   std::vector<double> level, carried;
+  std::vector<double> masses, drags, areas, rooms, edge_rooms;    // see the functions
+  std::vector<int> nearest;                                       // [edge] wall, or -1
   std::vector<double> known, other, other_known;
 };
 

@@ -20,8 +20,6 @@ using namespace MPM_NS;
 
 // shortest distance of the surface from the middle of a cell that masses use, in spacings
 static constexpr double NEAREST = 0.1;
-// least share of a cell next to a region with stresses
-static constexpr double LEAST_ROOM = 0.05;
 // strides of neighbors among the cells around one
 static constexpr int STRIDE[2][3] = {{3, 1, 0}, {9, 3, 1}};
 
@@ -46,13 +44,24 @@ double MPMFlowStress::open_side(const MPMFlowLattice::Cell &cell, int side) cons
 
 bool MPMFlowStress::is_wall(int64_t face) const
 {
-  return stick && stick->is_wall(face);
+  return stick && stick->holds(face);
+}
+
+/** Open share of a face for shear along another axis. */
+double MPMFlowStress::shear_area(int64_t face, int axis) const
+{
+  return stick ? stick->area(face, axis) : 1.0;
 }
 
 /** Viscosities over the largest one. */
 double MPMFlowStress::in_cell(int64_t cell) const
 {
   return viscosities ? viscosities->in_cell(cell) : 1.0;
+}
+
+double MPMFlowStress::at_face(int64_t upper, int64_t lower) const
+{
+  return viscosities ? 0.5 * (viscosities->in_cell(upper) + viscosities->in_cell(lower)) : 1.0;
 }
 
 double MPMFlowStress::at_edge(int64_t cell, int pair) const
@@ -103,8 +112,12 @@ void MPMFlowStress::find_faces()
       }
       Face face = {};
       face.at = here * dim + c;
-      mass *= open(face.at);
+      const double inside = mass * open(face.at);
+      if (stick) mass *= stick->mass(face.at);
       double of_walls = 0.0;
+      if (stick && stick->drag(face.at) > 0.0)
+        of_walls = number * at_face(here, lower) * mass * stick->drag(face.at);
+      if (of_walls > 0.0) face.wall = of_walls * stick->velocity(face.at);
       for (int d = 0; d < dim; d++)
         for (int s = 0; d != c && s < 2; s++) {
           const auto &wall = cells.walls[d][s];
@@ -122,7 +135,7 @@ void MPMFlowStress::find_faces()
           }
           if (!sticks) continue;
           const double thick = at_edge(s ? cell.near[2 * d + 1] : here, pair_of(c, d)),
-                       drag = number * thick * mass / (distance * across[d]);
+                       drag = number * thick * inside / (distance * across[d]);
           of_walls += drag;
           face.wall += drag * v;
         }
@@ -144,7 +157,7 @@ void MPMFlowStress::find_stresses()
 {
   normals.clear();
   edges.clear();
-  for (auto &area : areas) area.assign(cells.size() * width, 0.0);
+  volumes.assign(cells.size() * width, 0.0);
   if (stick) carried.assign(cells.size() * width, 0.0);
   const int here_around = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
   for (std::size_t k = 0; k < cells.cells.size(); k++) {
@@ -160,8 +173,8 @@ void MPMFlowStress::find_stresses()
         one.lower[d] = here * dim + d;
         one.upper[d] = (int64_t) cell.near[2 * d + 1] * dim + d;
       }
-      one.room = stick ? std::max(LEAST_ROOM, water.regions->room_in(cell)) : 1.0;
-      std::fill_n(areas[0].begin() + one.at, dim, one.volume);
+      one.room = stick ? stick->room(here) : 1.0;
+      std::fill_n(volumes.begin() + one.at, dim, one.volume);
       const auto wall = [&](int64_t face, int side) {
         const bool open_too = is_wall(face) && !(cell.walls >> side & 1);
         return water.regions->flux(face / dim, face % dim) +
@@ -194,28 +207,27 @@ void MPMFlowStress::find_stresses()
         edge.face[1] = below * dim + c;
         edge.face[2] = here * dim + d;
         edge.face[3] = left * dim + d;
-        find_edge(edge, dim == 3 ? third / wet : 1.0);
+        edge.volume = dim == 3 ? third / wet : 1.0;
+        for (int k = 0; k < 4; k++)
+          edge.area[k] = edge.volume * shear_area(edge.face[k], k < 2 ? d : c);
+        if (*std::max_element(edge.area, edge.area + 4) == 0.0) continue;    // in a wall
+        volumes[edge.at] = edge.volume;
+        if (stick) find_edge(edge, pair_of(c, d));
         edge.compliance = 2.0 * (0.5 / (number * at_edge(here, pair_of(c, d)))) * edge.volume;
         edges.push_back(edge);
       }
   }
-  for (auto &area : areas) cells.publish(area.data(), width);
+  cells.publish(volumes.data(), width);
 }
 
-/** Volume and areas of a shear stress: walls cut off the part behind them. third: length along the edge. */
-void MPMFlowStress::find_edge(Edge &edge, double third)
+/** Open volume of a shear stress, and velocities of the wall there. */
+void MPMFlowStress::find_edge(Edge &edge, int pair)
 {
-  edge.volume = third;
-  for (double &area : edge.area) area = third;
-  if (stick) {
-    const auto first = stick->between(edge.face[0], edge.face[1]),
-               other = stick->between(edge.face[2], edge.face[3]);
-    edge.volume *= first.length * other.length;
-    edge.area[0] *= other.length;
-    edge.area[1] *= first.length;
-    carried[edge.at] = edge.area[0] * first.wall + edge.area[1] * other.wall;
-  }
-  for (int k = 0; k < 2; k++) areas[k][edge.at] = edge.area[k];
+  const int64_t cell = edge.at / width;
+  edge.volume *= stick->room_at_edge(cell, pair);
+  for (int k = 0; k < 4; k++)
+    carried[edge.at] +=
+        (k % 2 ? 1.0 : -1.0) * edge.area[k] * stick->velocity_near(cell, pair, edge.face[k]);
 }
 
 /** Numbers the stresses that exist. Vectors have only these, which are few on the lattice where a thread
@@ -252,10 +264,9 @@ void MPMFlowStress::find_forces()
           face->from[upper] = (int64_t) cell.near[2 * d + 1] * width + pair;
           face->from[lower] = here * width + pair;
         }
-        const double share = d == c ? open(face->at) : 1.0;
-        const auto &area = areas[d < c];
-        face->weight[upper] = share * area[face->from[upper]];
-        face->weight[lower] = -share * area[face->from[lower]];
+        const double share = d == c ? open(face->at) : shear_area(face->at, d);
+        face->weight[upper] = share * volumes[face->from[upper]];
+        face->weight[lower] = -share * volumes[face->from[lower]];
       }
       ++face;
     }
@@ -285,12 +296,18 @@ void MPMFlowStress::find_diagonal()
   }
   for (const auto &edge : edges) {
     double sum = 0.0;
-    for (int k = 0; k < 4; k++) sum += square(edge.area[k / 2]) * inverse_mass[edge.face[k]];
+    for (int k = 0; k < 4; k++) sum += square(edge.area[k]) * inverse_mass[edge.face[k]];
     inverse_diagonal[edge.row] = 1.0 / (sum + (several() ? edge.compliance : edge.volume / number));
   }
 }
 
 /* ---------------------------------------------------------------------- */
+
+/** Difference of two flows through areas; to the last digit that of the velocities where the areas are the same. */
+static double difference(const double *area, double upper, double lower)
+{
+  return area[0] == area[1] ? area[0] * (upper - lower) : area[0] * upper - area[1] * lower;
+}
 
 /** out += sign W E u. */
 void MPMFlowStress::strain(const double *u, double *out, double sign) const
@@ -301,8 +318,8 @@ void MPMFlowStress::strain(const double *u, double *out, double sign) const
           (open(one.upper[d]) * u[one.upper[d]] - open(one.lower[d]) * u[one.lower[d]]);
   for (const auto &edge : edges) {
     const int64_t *const f = edge.face;
-    out[edge.row] +=
-        sign * (edge.area[0] * (u[f[0]] - u[f[1]]) + edge.area[1] * (u[f[2]] - u[f[3]]));
+    out[edge.row] += sign *
+        (difference(edge.area, u[f[0]], u[f[1]]) + difference(edge.area + 2, u[f[2]], u[f[3]]));
   }
 }
 
@@ -411,8 +428,8 @@ double MPMFlowStress::memory_usage() const
   double bytes = faces.capacity() * sizeof(Face) + normals.capacity() * sizeof(Normal) +
       edges.capacity() * sizeof(Edge) + unknowns.capacity() * sizeof(int64_t) +
       method.memory_usage();
-  for (const auto *list : {&length, &inverse_mass, &areas[0], &areas[1], &carried, &speed,
-                           &right_side, &solution, &stress, &inverse_diagonal})
+  for (const auto *list : {&length, &inverse_mass, &volumes, &carried, &speed, &right_side,
+                           &solution, &stress, &inverse_diagonal})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

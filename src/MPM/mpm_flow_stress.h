@@ -36,10 +36,10 @@ class MPMFlowViscosities;
  *  with differences E of velocities, their transpose E^T, which is minus the divergence of a stress, volumes W of cells and
  *  edges, masses M of faces (both up to the surface, in units of a cell), and the compliance C.
  *
- *  Walls that stick drag the faces next to them: this adds a mass with the velocity of the wall to M. Faces whose middle is in
- *  a region that sticks have its velocity, and an inverse mass of zero. Next to such regions, stresses at edges act over the
- *  distance from a face to the wall instead of a spacing, and stresses in cells on the open part of the cell and its faces,
- *  as for the pressure. Fluid that enters a cell (MPMFlowPressure::sources) does so equally from all directions: it is no
+ *  Walls of the box that stick drag the faces next to them: this adds a mass with the velocity of the wall to M. Next to regions
+ *  that stick, strains are means over the open parts of cells and of boxes around edges, by what flows through their sides, and
+ *  volumes and masses are those of open parts (MPMFlowStick). Faces that are nearly closed have the velocity of the region, and an
+ *  inverse mass of zero. Fluid that enters a cell (MPMFlowPressure::sources) does so equally from all directions: it is no
  *  strain, and a third of it (in 2d one half) is subtracted from each normal component of E u_1.
  *
  *  With several liquids, S has the density of psi, masses are those of the densities of faces, and the compliance is that of the
@@ -91,7 +91,7 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
     int64_t at;
     int row;
     int64_t face[4];    // with the signs + - + -
-    double area[2];     // of the stress on the first two, and on the others
+    double area[4];     // of the stress on each
     double volume, compliance;
   };
 
@@ -105,8 +105,8 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   std::vector<Edge> edges;
   // place in stresses of each element of vectors: those of owned wet cells and edges, in ascending order
   std::vector<int64_t> unknowns;
-  std::vector<double> carried;     // [stress] contribution of walls to W E u; empty without regions
-  std::vector<double> areas[2];    // [stress] for both components on which a shear stress acts
+  std::vector<double> carried;    // [stress] contribution of walls to W E u; empty without regions
+  std::vector<double> volumes;    // [stress] without the part behind walls
   std::vector<double> length, inverse_mass, speed, stress;       // of the lattice
   std::vector<double> right_side, solution, inverse_diagonal;    // by unknowns
   std::vector<double> mine, of_ranks;                            // sums
@@ -119,11 +119,13 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   void find_rows();
   void find_forces();
   void find_diagonal();
-  void find_edge(Edge &, double third);
+  void find_edge(Edge &, int pair);
   double open(int64_t face) const;
   double open_side(const MPMFlowLattice::Cell &cell, int side) const;
   bool is_wall(int64_t face) const;
+  double shear_area(int64_t face, int axis) const;
   double in_cell(int64_t cell) const;
+  double at_face(int64_t upper, int64_t lower) const;
   double at_edge(int64_t cell, int pair) const;
   bool several() const { return viscosities || lightness; }
   bool is_held(int64_t face) const { return mobility && (*mobility)[face] == 0.0; }
