@@ -4,9 +4,9 @@
 #ifndef MPM_BAD_INPUT_TESTING_H
 #define MPM_BAD_INPUT_TESTING_H
 
-// Mistakes in an input: a good scene with one thing changed, in a LAMMPS instance of its own, must
-// give an error that says what is wrong. A scene that would run forever is killed by a timer, which counts
-// processor time: a busy machine changes nothing.
+// Tests of mistakes in an input. A good scene with one change, in a LAMMPS instance of its own, must
+// give an error that explains the mistake. A timer kills a scene that would run forever. It counts
+// processor time, so that the tests also pass on a busy machine.
 
 #include "mpm_lammps.h"
 
@@ -18,7 +18,7 @@ namespace MPM_TEST {
 
 constexpr int SECONDS_PER_CASE = 60;
 
-/** This process ends by a signal once it has used so many seconds of processor time; 0: never. */
+/** Ends this process by a signal once it has used this many seconds of processor time; 0: never. */
 inline void allow_seconds(int seconds)
 {
   itimerval timer = {};
@@ -26,7 +26,7 @@ inline void allow_seconds(int seconds)
   setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
-/** What LAMMPS says to an input, in time: the text of its error, or nothing. */
+/** The message of the error that an input gives within the time allowed; empty if it gives none. */
 inline std::string answer(const std::string &input)
 {
   allow_seconds(SECONDS_PER_CASE);
@@ -35,11 +35,13 @@ inline std::string answer(const std::string &input)
   return text;
 }
 
+/** Whether a regular expression matches a part of the text. */
 inline bool contains(const std::string &text, const std::string &pattern)
 {
   return std::regex_search(text, std::regex(pattern));
 }
 
+/** The text with the first occurrence of from replaced by to. */
 inline std::string changed(std::string text, const std::string &from, const std::string &to)
 {
   const auto at = text.find(from);
@@ -47,13 +49,14 @@ inline std::string changed(std::string text, const std::string &from, const std:
   return text.replace(at, from.size(), to);
 }
 
-/** A mistake: this part of the good scene becomes that, and the error matches a pattern. */
+/** A mistake: from, a part of the good scene, is replaced by to. error: pattern of the message. */
 struct Change {
   std::string name, from, to, error;
   friend void PrintTo(const Change &mistake, std::ostream *out) { *out << mistake.to; }
 };
 
-/** Mistakes in one line of the scene: what comes after its first words. */
+/** Mistakes in one line of the scene, whose first words stay as they are. rows: name of the test,
+ *  new rest of the line, and pattern of the error. */
 inline std::vector<Change> mistakes_in(const std::string &line, const std::string &words,
                                        const std::vector<std::array<const char *, 3>> &rows)
 {
@@ -68,6 +71,7 @@ inline std::string case_name(const ::testing::TestParamInfo<Change> &info)
   return info.param.name;
 }
 
+/** Expects that the scene with this mistake gives the error that explains it. */
 inline void expect_explained(const std::string &good_scene, const Change &mistake)
 {
   const std::string text = answer(changed(good_scene, mistake.from, mistake.to));

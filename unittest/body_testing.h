@@ -4,7 +4,7 @@
 #ifndef MPM_BODY_TESTING_H
 #define MPM_BODY_TESTING_H
 
-// Volume, center, and inertia of bodies that are made of points.
+// Volume, center, and moments of inertia of bodies that consist of points.
 
 #include "mpm_lammps.h"
 
@@ -12,7 +12,8 @@
 
 namespace MPM_TEST {
 
-/** Sums over all points, of their volumes. */
+/** Sums over the initial volumes of all points: their volume, their center, and their second moments
+ *  about the center. least: smallest volume of a point. */
 struct Sum {
   double volume = 0.0, center[3] = {0.0, 0.0, 0.0}, second[3][3] = {{0.0}}, least = 1.0e300;
   int points = 0;
@@ -44,7 +45,7 @@ struct Sum {
     points = (int) scene.lmp->atom->natoms;
   }
 
-  /** Principal moments of inertia of unit density, each point being a cube of this size. */
+  /** Principal moments of inertia for unit density, if each point is a cube with this edge length. */
   std::array<double, 3> moments(double size) const
   {
     double I[3][3], values[3], vectors[3][3];

@@ -10,7 +10,7 @@
 
 namespace MPM_TEST {
 
-/** Roots of x tan(x) = Bi, the k-th from 0 on. */
+/** The root k = 0, 1, ... of x tan(x) = Bi. */
 inline double slab_root(double Bi, int k)
 {
   double low = k * PI, high = (k + 0.5) * PI;
@@ -21,8 +21,8 @@ inline double slab_root(double Bi, int k)
   return low;
 }
 
-/** Mean temperature of a slab that is at 1 first, with convection on one side and none on the other, after
- *  the time Fo. */
+/** Mean temperature at the Fourier number Fo of a slab of initial temperature 1. One side loses heat by
+ *  convection (Biot number Bi) to surroundings of temperature 0; the other side is insulated. */
 inline double slab_mean(double Bi, double Fo)
 {
   double sum = 0.0;

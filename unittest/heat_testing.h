@@ -10,7 +10,8 @@
 
 namespace MPM_TEST {
 
-/** Temperatures, capacities, and places of the points of a material with the ID m, which has no melting. */
+/** Temperatures, heat capacities, and positions of the points of one material, which must not melt.
+ *  id: of its fix mpm/material. */
 struct Warm {
   Scene &run;
   FixMPMMaterial *material;
@@ -26,12 +27,13 @@ struct Warm {
   {
     return run.mass()[i] * material->material->conduction(material->history[i]).capacity;
   }
-  /** T = f(x) of all points. */
+  /** Sets T = f(x) for all points of the material. */
   template <class F> void set(const F &f)
   {
     for (int i = 0; i < run.n(); i++)
       if (has(i)) T(i) = f(run.x()[i]);
   }
+  /** Heat of the material: the sum of capacity times temperature over all ranks. */
   double heat()
   {
     double sum = 0.0;
@@ -42,7 +44,7 @@ struct Warm {
   struct Error {
     double rms, most;
   };
-  /** Differences from f(x). */
+  /** Rms and largest difference of the temperatures from f(x), over all ranks. */
   template <class F> Error error(const F &f)
   {
     double sum = 0.0, n = 0.0, most = 0.0;
@@ -55,7 +57,8 @@ struct Warm {
     const auto all = over_ranks({sum, n});
     return {std::sqrt(all[0] / all[1]), over_ranks(most, MPI_MAX)};
   }
-  /** Mean over the points with their place in a range, at the place that these have in the mean. */
+  /** Mean temperature of the points whose distances from x and y along the axes are smaller than near.
+   *  It is the temperature at the mean position of these points. */
   double at(double x, double y, double near)
   {
     double sum = 0.0, n = 0.0;
@@ -69,14 +72,15 @@ struct Warm {
   }
 };
 
-/** Lines of the log of a scene that say that a body is too thin for heat through its surface. */
+/** Number of lines in the log of a scene that warn of a body too thin for heat through its surface. */
 inline int said_thin(const std::string &scene)
 {
   return (int) lines_that_say(scene, "is thinner than 3").size();
 }
 
-/** A bar of the length 1 along x with capacity and conductivity 1, whose ends are the faces of the box, with n
- *  cells; offset: of the faces from nodes, in cells. Four cells wide, periodic. */
+/** Input of a bar of length 1 along x, with n cells, whose capacity and conductivity are 1. Its ends are
+ *  faces of the box. It is four cells wide and periodic along y. heat: arguments of fix mpm/heat;
+ *  offset: distance of the ends from nodes, in cells; T0: initial temperature. */
 inline std::string bar(int n, const std::string &heat, double offset = 0.0,
                        const std::string &grid = "", double T0 = 0.0)
 {
@@ -89,14 +93,15 @@ inline std::string bar(int n, const std::string &heat, double offset = 0.0,
              T0) +
       "fix heat all mpm/heat " + heat + "\n";
 }
+/** Runs from time 0 to the time end in equal steps of at most dt. */
 inline void run_to(Scene &run, double end, double dt)
 {
   const int steps = (int) std::ceil(end / dt - 1.0e-9);
   run.commands(strprintf("timestep %.17g\nrun %d\n", end / steps, steps));
 }
 
-/** A disk of two materials with an uneven temperature, and a piece of one that does not conduct; it flies across the
- *  lattice, all ranks, and periodic faces, and deforms. */
+/** Input of a disk and a block, of two conducting materials with different temperatures, and of a block
+ *  that does not conduct. They fly across the lattice, all ranks, and periodic faces, and deform. */
 inline std::string disk(const std::string &heat, const std::string &velocity = "0.8 0.5 0",
                         const std::string &grid = "")
 {
@@ -113,9 +118,11 @@ inline std::string disk(const std::string &heat, const std::string &velocity = "
       "\ntimestep 0.02\n";
 }
 
+/** Tag and temperature of a point. */
 struct Named {
   double tag, T;
 };
+/** Temperatures of all points of the materials m and n, on all ranks, in order of tags. */
 inline std::vector<Named> temperatures(Scene &run)
 {
   std::vector<Named> mine;
@@ -127,7 +134,8 @@ inline std::vector<Named> temperatures(Scene &run)
   return all_by_tag(mine, run.lmp->world);
 }
 
-/** Largest difference of the temperatures of the same points of two scenes; huge where there are others. */
+/** Largest difference between the temperatures of the same points of two scenes. It is 1e300 if there
+ *  are no points, or not the same number of them. */
 inline double temperature_difference(Scene &a, Scene &b)
 {
   const auto one = temperatures(a), other = temperatures(b);

@@ -4,8 +4,8 @@
 #ifndef MPM_LAMMPS_TEST_H
 #define MPM_LAMMPS_TEST_H
 
-// A LAMMPS instance for tests, on any communicator: one rank may run its own serial reference
-// next to a parallel run. This header brings what nearly all tests need, so that they need not name it.
+// A LAMMPS instance for tests, on any communicator: a rank may run its own serial reference next to
+// a parallel run. This header includes the headers that nearly all tests need.
 
 #include "atom.h"
 #include "comm.h"
@@ -61,7 +61,7 @@ using ::testing::ValuesIn;
 
 constexpr double PI = 3.14159265358979323846;
 
-/** A test of what does not depend on the number of ranks: on more than one it is skipped. */
+/** A test of results that do not depend on the number of ranks. It is skipped on more than one rank. */
 #define SERIAL_TEST(suite, name)                            \
   static void suite##_##name();                             \
   TEST(suite, name)                                         \
@@ -71,7 +71,7 @@ constexpr double PI = 3.14159265358979323846;
   }                                                         \
   static void suite##_##name()
 
-/** A test for each of some parameters: Values(...) or ValuesIn(...). */
+/** A test for each of the parameters that are given by Values(...) or ValuesIn(...). */
 #define PARAMETER_TEST(suite, name, type, ...)            \
   class suite : public ::testing::TestWithParam<type> {}; \
   INSTANTIATE_TEST_SUITE_P(All, suite, __VA_ARGS__);      \
@@ -91,7 +91,7 @@ inline int rank(MPI_Comm comm = MPI_COMM_WORLD)
   return me;
 }
 
-/** Sums over all ranks, or what else these are to be reduced to. */
+/** Values reduced over all ranks, by default to their sums. */
 inline std::vector<double> over_ranks(std::vector<double> values, MPI_Op op = MPI_SUM,
                                       MPI_Comm comm = MPI_COMM_WORLD)
 {
@@ -103,7 +103,7 @@ inline double over_ranks(double value, MPI_Op op = MPI_SUM)
   return over_ranks(std::vector<double>{value}, op)[0];
 }
 
-/** The rows of all ranks, one rank after the other. */
+/** The rows of all ranks, in order of ranks. */
 template <class T> std::vector<T> all_rows(const std::vector<T> &mine, MPI_Comm comm)
 {
   int bytes = mine.size() * sizeof(T);
@@ -116,7 +116,7 @@ template <class T> std::vector<T> all_rows(const std::vector<T> &mine, MPI_Comm 
   return all;
 }
 
-/** The same in order of their tags. */
+/** The same, sorted by tag. */
 template <class T> std::vector<T> all_by_tag(const std::vector<T> &mine, MPI_Comm comm)
 {
   auto all = all_rows(mine, comm);
@@ -126,9 +126,9 @@ template <class T> std::vector<T> all_by_tag(const std::vector<T> &mine, MPI_Com
   return all;
 }
 
-/** A file that exists during a test at the most; all ranks wait when it is made and removed. Its
- *  name has the source of the test and the number of ranks in front, since tests may run at the
- *  same time. */
+/** A file that is removed at the end of a test at the latest. All ranks wait when it is written and
+ *  removed. Its name begins with the source file of the test and the number of ranks, since tests may
+ *  run at the same time. */
 struct ScratchFile {
   const std::string name;
 
@@ -160,19 +160,19 @@ struct ScratchFile {
   static std::string source()
   {
     const std::string file = ::testing::UnitTest::GetInstance()->current_test_info()->file();
-    const auto start = file.rfind('/') + 1;    // 0 where there is none
+    const auto start = file.rfind('/') + 1;    // 0 if there is no slash
     return file.substr(start, file.rfind('.') - start);
   }
 };
 
-/** What a file has in it, nothing if there is none. */
+/** The contents of a file; empty if it does not exist. */
 inline std::string file_text(const std::string &name)
 {
   std::ifstream file(name, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/** Text with the arguments of printf in it. */
+/** The text that printf would print. */
 template <class... Args> std::string strprintf(const char *text, Args... args)
 {
   std::vector<char> buffer(snprintf(nullptr, 0, text, args...) + 1);
@@ -180,7 +180,7 @@ template <class... Args> std::string strprintf(const char *text, Args... args)
   return buffer.data();
 }
 
-/** Scene with its words in capitals, MPM_<name>, replaced. */
+/** The scene with all occurrences of the word replaced by the text. */
 inline std::string replaced(std::string scene, const std::string &word, const std::string &text)
 {
   for (std::size_t at = 0; (at = scene.find(word, at)) != std::string::npos; at += text.size())
@@ -188,8 +188,8 @@ inline std::string replaced(std::string scene, const std::string &word, const st
   return scene;
 }
 
-/** The first lines of a scene: a box, and material points as atoms. faces: "f f f", extent: "xlo xhi ylo yhi zlo zhi";
- *  in 2d without those of z, which are periodic, -0.5 and 0.5. skin: of neighbor lists, 0: LAMMPS's default. */
+/** The first lines of a scene: a box, and material points as atoms. faces: "f f f"; extent: "xlo xhi ylo
+ *  yhi zlo zhi"; types: number of atom types; skin: of neighbor lists, 0: the default of LAMMPS. */
 inline std::string space(const std::string &units, const std::string &faces,
                          const std::string &extent, int types = 1, double skin = 0.0, int dim = 3)
 {
@@ -199,7 +199,8 @@ inline std::string space(const std::string &units, const std::string &faces,
       strprintf("region box block %s\ncreate_box %d box\n", extent.c_str(), types);
 }
 
-/** faces: "f f"; the extent may have that along z, for another thickness. */
+/** The same in 2d, periodic along z. faces: "f f"; extent: "xlo xhi ylo yhi", and zlo and zhi for another
+ *  thickness than from -0.5 to 0.5. */
 inline std::string plane(const std::string &units, const std::string &faces, std::string extent,
                          int types = 1, double skin = 0.0)
 {
@@ -207,7 +208,7 @@ inline std::string plane(const std::string &units, const std::string &faces, std
   return space(units, faces + " p", extent, types, skin, 2);
 }
 
-/** In 2d, of faces and extent what is in the plane. */
+/** The same in 3d or 2d. faces and extent are those of 3d; the parts along z are left out in 2d. */
 inline std::string box(int dim, const std::string &units, const std::string &faces,
                        std::string extent, int types = 1, double skin = 0.0)
 {
@@ -217,8 +218,8 @@ inline std::string box(int dim, const std::string &units, const std::string &fac
   return plane(units, faces.substr(0, 3), extent.substr(0, end), types, skin);
 }
 
-/** Next, mostly: a lattice, and one body of one material (region "box": that fills the box). grid: node spacing
- *  and options. The fixes are named grid and m, the region body. */
+/** The usual next lines: a lattice, and one body of one material, in the region body (region "box": it
+ *  fills the box). grid: node spacing and options of fix mpm. The IDs of the fixes are grid and m. */
 inline std::string body(const std::string &region, const std::string &material,
                         const std::string &grid = "1.0", const std::string &ppc = "2")
 {
@@ -228,12 +229,13 @@ inline std::string body(const std::string &region, const std::string &material,
       "fix m all mpm/material " + material + "\n";
 }
 
-/** A body of points: region and group have its name. lattice: spacing and options of its fix mpm. */
+/** A body of points. region: arguments of the region command; region and group have its name.
+ *  lattice: spacing and options of its fix mpm. */
 struct Body {
   std::string name, region, lattice = "";
 };
 
-/** Bodies of types 1, 2, ...; sites: options of create_points, in which # is the type. */
+/** Creates bodies of types 1, 2, .... sites: options of create_points, in which # stands for the type. */
 inline std::string bodies(const std::vector<Body> &all, const std::string &sites = "ppc 2")
 {
   std::string text;
@@ -246,8 +248,8 @@ inline std::string bodies(const std::vector<Body> &all, const std::string &sites
   return text;
 }
 
-/** Bodies of types 1, 2, ..., each in a field of its own, which are fixes F1, F2, ...; lattice: of those that
- *  have none. */
+/** Creates bodies of types 1, 2, ..., each in a field of its own, with the fixes F1, F2, .... lattice: for
+ *  the bodies that have none. */
 inline std::string fields(const std::vector<Body> &all, const std::string &lattice = "1.0")
 {
   std::string fixes;
@@ -259,7 +261,7 @@ inline std::string fields(const std::vector<Body> &all, const std::string &latti
   return fixes + bodies(all, "ppc 2 fix F#");
 }
 
-/** A LAMMPS instance: what a test drives. (Not named Run, which is a member of ::testing::Test.) */
+/** A LAMMPS instance that a test drives. (::testing::Test has a member Run, hence another name.) */
 class Scene {
  public:
   LAMMPS *lmp;
@@ -277,7 +279,7 @@ class Scene {
   Scene(const Scene &) = delete;
   Scene &operator=(const Scene &) = delete;
 
-  /** Execute lines of input; & at the end of a line continues it as in a script. */
+  /** Executes lines of input. As in a script, & at the end of a line continues it. */
   void commands(const std::string &text)
   {
     std::string line;
@@ -293,7 +295,7 @@ class Scene {
     }
   }
 
-  /** The message of the error that lines of input give on all ranks, or nothing. */
+  /** Executes lines of input, and returns the message of their error on all ranks; empty: no error. */
   std::string error(const std::string &text)
   {
     try {
@@ -304,6 +306,7 @@ class Scene {
     return "";
   }
 
+  /** The first n values of the vector of a fix, valid until the next call. */
   double *fix_vector(const std::string &id, int n)
   {
     values.resize(n);
@@ -315,13 +318,13 @@ class Scene {
   {
     return lmp->input->variable->compute_equal(lmp->input->variable->find(name.c_str()));
   }
-  /** Evaluate an equal-style formula, in a run 0 so that computes are current. */
+  /** Evaluates an equal-style formula. Computes in it must be current, as after run 0. */
   double evaluate(const std::string &formula)
   {
     return lmp->input->variable->compute_equal(formula);
   }
 
-  /** Values of a compute, by default of a compute e all mpm/energy. */
+  /** The vector of a compute, by default of the one with the ID e, mostly a compute mpm/energy. */
   const double *compute_vector(const std::string &id = "e")
   {
     auto *compute = lmp->modify->get_compute_by_id(id);
@@ -333,11 +336,12 @@ class Scene {
     return lmp->modify->get_compute_by_id(id)->compute_scalar();
   }
 
-  /** State of one point, gathered on all ranks, in order of tags. */
+  /** State of one point: unwrapped position, Cauchy stress, current volume. */
   struct State {
     double tag, type, x[3], v[3], F[9], stress[6], vol, mass;
     double pressure() const { return -(stress[0] + stress[1] + stress[2]) / 3.0; }
   };
+  /** States of the points of all ranks, on all ranks, in order of tags. */
   std::vector<State> gather()
   {
     auto *atom = lmp->atom;
@@ -360,12 +364,12 @@ class Scene {
     return all_by_tag(mine, lmp->world);
   }
 
-  // what follows is for one rank
+  // the following members know only the points and nodes of this rank
 
-  /** Call f after the forces of each step, also of step 0: positions, velocities and stress are of
-   *  that time, and what f writes to force[i], which is zero before, acts in the step that follows.
-   *  every: only at multiples of this number (for output, not for forces).
-   *  To be called once, when the box exists. */
+  /** Calls f after the forces of each step, also of step 0. Positions, velocities, and stresses belong
+   *  to that time. f may write a force to force[i], which is zero before; it acts in the next step.
+   *  every: calls f only at multiples of this number of steps (for output, not for forces).
+   *  Call this once, after the box is created. */
   void each_step(std::function<void(double **force)> f, int every = 1)
   {
     callback = f;
@@ -394,7 +398,7 @@ class Scene {
   }
   FixMPMMaterial *material(const std::string &id = "m") { return fix<FixMPMMaterial>(id); }
 
-  // what tests read of a field: nothing else in the tests knows the members of fix mpm
+  // access of the tests to a field: only the members below know the members of fix mpm
   std::vector<std::string> fields()
   {
     std::vector<std::string> ids;
@@ -404,37 +408,37 @@ class Scene {
   int dim() { return lmp->domain->dimension; }
   double spacing(const std::string &id = "grid") { return field(id)->lattice.h; }
   bool is_point(int i, const std::string &id = "grid") { return field(id)->is_point(i); }
-  /** C[dim*j+i] = d v_i / d x_j of APIC, for each point; null without. */
+  /** C[dim*j+i] = d v_i / d x_j of APIC for each point; null if the field has none. */
   MPMRows affine(const std::string &id = "grid")
   {
     return field(id)->affine ? field(id)->affine->C : MPMRows();
   }
-  /** Bilinear modes of PolyPIC; null without. */
+  /** Bilinear modes of PolyPIC; null if the field has none. */
   MPMRows modes(const std::string &id = "grid")
   {
     return field(id)->affine ? field(id)->affine->Q : MPMRows();
   }
-  /** Corners of CPDI2 from the point; null without. */
+  /** Corners of CPDI2 domains relative to the point; null if the field has none. */
   MPMRows corners(const std::string &id = "grid")
   {
     return field(id)->domains ? field(id)->domains->corners : MPMRows();
   }
-  /** Reference positions, and F at the last update of the reference (total frame). */
+  /** Reference positions, and F at the last update of the reference (total frame only). */
   MPMRows reference_positions() { return total_frame().X; }
   MPMRows reference_F() { return total_frame().R; }
-  /** Displacement since the last step of the cycle. */
+  /** Displacement of point i along axis d since the last step of the cycle of keyword every. */
   double waiting(int i, int d, const std::string &id = "grid")
   {
     return field(id)->every ? field(id)->every->displacement(i, d) : 0.0;
   }
-  /** This rank's stable time step; the point that has it, and its wave speed. */
+  /** This rank's stable time step. tag, wave_speed: receive those of the point that limits it. */
   double stable_dt(tagint *tag = nullptr, double *wave_speed = nullptr)
   {
     tagint whose;
     double c;
     return field()->time_limit->stable_dt(tag ? *tag : whose, wave_speed ? *wave_speed : c);
   }
-  /** The share that points have of the volume around them. */
+  /** The share of the volume around each point that is filled with points. */
   std::vector<double> volume_shares()
   {
     std::vector<double> share;
@@ -443,7 +447,8 @@ class Scene {
   }
   /** Work of the walls on this rank. */
   double work_of_boundaries() { return field()->ledger.boundary; }
-  /** From the next run on. Another fix mpm would lose its reference configuration. */
+  /** Switches off the cure of volumetric locking from the next run on. (A new fix mpm would lose the
+   *  reference configuration.) */
   void switch_locking_off()
   {
     const_cast<LAMMPS_NS::MPMFieldOptions &>(field()->options).locking =
@@ -452,11 +457,11 @@ class Scene {
 
   MPM_NS::Grid &grid(const std::string &id = "grid") { return field(id)->grid; }
 
-  /** A node after the step. */
+  /** A node after the step: index, position, velocity, and mass. */
   struct Node {
     int index[3];
     double x[3], v[3], mass;
-    bool owned, alias;    ///< counted by this rank; periodic image of another one
+    bool owned, alias;    ///< this rank counts the node; it is a periodic image of another node
   };
   /** Calls f(node) for all nodes of this rank. */
   template <class F> void each_node(const F &f, const std::string &id = "grid")
@@ -476,7 +481,7 @@ class Scene {
         f(node);
       }
   }
-  /** Velocity and mass of a node of this rank; null where there is none, or no mass. */
+  /** Velocity [3] and mass of a node; null if this rank does not have it, or if it has no mass. */
   const double *node(const int index[3], const std::string &id = "grid")
   {
     auto &nodes = grid(id);
@@ -485,7 +490,7 @@ class Scene {
     return record && record[3] > 0.0 ? record : nullptr;
   }
 
-  /** Take the present positions as the reference: reference(i) is then that of local atom i. */
+  /** Takes the present positions as references; reference(i) gives the one of local atom i. */
   void set_reference()
   {
     auto *atom = lmp->atom;
@@ -495,9 +500,10 @@ class Scene {
   }
   const double *reference(int i) const { return references[lmp->atom->tag[i]].data(); }
 
-  /** Adds to L what the last step changed of the angular momentum by moving points along other velocities than those
-   *  that they have, as musl and usavg do: sum of m (x - reference) x v. References are to be of the step before, and
-   *  are of this one then. The sums without it keep what the transfer keeps. */
+  /** Adds to L the change of the angular momentum in the last step that is due to moving points along
+   *  other velocities than their own, as musl and usavg do: the sum of m (x - reference) x v. The
+   *  references must be positions of the step before; they are replaced by the present ones.
+   *  sums() without this change conserves what the transfer conserves. */
   void add_angular_momentum_of_motion(double *L)
   {
     for (int i = 0; i < n(); i++) {
@@ -510,17 +516,17 @@ class Scene {
     set_reference();
   }
 
-  /** Set the velocity of all atoms to f(position, velocity). */
+  /** Calls f(position, velocity) for all atoms, which may change the velocity. */
   void set_velocity(std::function<void(const double *x, double *v)> f)
   {
     for (int i = 0; i < n(); i++) f(x()[i], v()[i]);
   }
 
-  /** Conserved quantities of all atoms, or of those of one type. The angular momentum about the
-   *  origin has the part of spins, and that of the affine matrices of APIC (quadratic and cubic),
-   *  which are not numbers before the first run. */
+  /** Conserved quantities of all atoms, or of the atoms of one type. The angular momentum L about the
+   *  origin includes the spins and the affine matrices of APIC (quadratic and cubic shapes), which are
+   *  NaN before the first run. */
   struct Sums {
-    double mass, x[3], p[3], L[3], kinetic;    ///< x: centre of mass
+    double mass, x[3], p[3], L[3], kinetic;    ///< x: center of mass
   };
   Sums sums(int type = 0)
   {
@@ -579,7 +585,7 @@ class Scene {
     return out;
   }
 
-  /** Energy that the material points store. */
+  /** Stored energy of the material points. */
   double stored_energy()
   {
     double sum = 0.0;
@@ -614,7 +620,7 @@ struct Totals {
   }
 };
 
-/** B-splines of order 1 to 3 at a distance from their node, in spacings, and their slopes. */
+/** B-spline of order 1 to 3 at the distance u from its node, in spacings, and its slope. */
 inline double bspline(int order, double u)
 {
   const double a = std::fabs(u);
@@ -631,7 +637,7 @@ inline double bspline_slope(int order, double u)
   return sign * (a < 1.0 ? -2.0 * a + 1.5 * a * a : (a < 2.0 ? -0.5 * (2.0 - a) * (2.0 - a) : 0.0));
 }
 
-/** Show a measured number in the output of the test. */
+/** Shows a measured number in the output of the test, and returns it. */
 inline double measured(const std::string &what, double value)
 {
   printf("[ MEASURED ] %s: %.6g\n", what.c_str(), value);
@@ -639,8 +645,9 @@ inline double measured(const std::string &what, double value)
   return value;
 }
 
-/** Largest difference of two sets of states, each quantity relative to its largest magnitude, stress to
- *  the given one if that is larger. */
+/** Largest difference between two sets of states. Each quantity is relative to its largest magnitude;
+ *  the stress is relative to the given one if that is larger. It is 1e300 if there are no points, not
+ *  the same number of them, or NaN. */
 inline double difference(const std::vector<Scene::State> &a, const std::vector<Scene::State> &b,
                          double stress = 1.0e-300)
 {
@@ -663,20 +670,20 @@ inline double difference(const std::vector<Scene::State> &a, const std::vector<S
   return worst;
 }
 
-/** The same to the last bit. */
+/** Whether two sets of states are equal to the last bit. */
 inline bool identical(const std::vector<Scene::State> &a, const std::vector<Scene::State> &b)
 {
   return a.size() == b.size() && !memcmp(a.data(), b.data(), a.size() * sizeof(Scene::State));
 }
 
-/** A scene on one rank, and the same on all of them, there with a layout of the ranks. */
+/** A scene on one rank, and the same on all ranks. layout: commands for the latter only. */
 struct OnRanks {
   Scene serial{MPI_COMM_SELF}, parallel;
 
   OnRanks(const std::string &scene, const std::string &run, const std::string &layout = "")
   {
     serial.commands(scene + run);
-    // the number of ranks along axes must be given before there is a box
+    // the command processors must come before the box is created
     if (layout.find("processors") == 0)
       parallel.commands(layout + scene + run);
     else
@@ -685,11 +692,12 @@ struct OnRanks {
   double difference() { return MPM_TEST::difference(serial.gather(), parallel.gather()); }
 };
 
-/** A scene that writes a restart file on its way, and one that goes on from this file. */
+/** A scene that writes a restart file in the middle, and one that continues from this file. */
 struct Continued {
   Scene whole, again;
 
-  /** scene ... run before, write_restart, run after; and read_restart, next ..., run after */
+  /** Runs the scene for before steps, writes a restart file, and runs for after steps. again: reads the
+   *  restart file, executes next, and runs for after steps. */
   Continued(const std::string &scene, int before, const std::string &next, int after)
   {
     const ScratchFile file("restart");
@@ -712,11 +720,13 @@ velocity two set -0.5 0.1 0.3
 timestep 0.05
 )";
 
-/** The same on one rank and on all, and to the last bit after a restart file in the middle of the run. */
+/** A scene on one rank, on all ranks, and continued from a restart file in the middle. Expects the first
+ *  two to differ by less than the tolerance, and the last two to be equal to the last bit. */
 struct Twins {
   Scene serial{MPI_COMM_SELF}, whole, again;
 
-  /** scene ... run before, write_restart, run after; and read_restart, next ..., run after */
+  /** Runs the scene for before steps, writes a restart file, and runs for after steps. again: reads the
+   *  restart file, executes next, and runs for after steps. */
   Twins(const std::string &scene, int before, const std::string &next, int after, double tolerance)
   {
     const ScratchFile file("restart");
@@ -731,7 +741,7 @@ struct Twins {
   }
 };
 
-/** Lines of the log of these commands that have these words. */
+/** Lines of the log of these commands that contain these words. */
 inline std::vector<std::string> lines_that_say(const std::string &commands,
                                                const std::string &words)
 {
@@ -746,14 +756,14 @@ inline std::vector<std::string> lines_that_say(const std::string &commands,
   return lines;
 }
 
-/** The message of the error that an input gives, or nothing. */
+/** The message of the error that an input gives; empty: no error. */
 inline std::string error_of(const std::string &input)
 {
   Scene scene;
   return scene.error(input);
 }
 
-/** Lines of input give an error with these words. */
+/** Expects lines of input to give an error whose message contains these words. */
 inline void expect_error(Scene &scene, const std::string &lines, const std::string &words)
 {
   const auto found = scene.error(lines);
@@ -766,12 +776,13 @@ inline void expect_error(const std::string &input, const std::string &words)
   expect_error(scene, input, words);
 }
 
-/** Mistakes in the input, each with words of its message. */
+/** A mistake in the input, and words of the error message that it must give. */
 struct Mistake {
   std::string lines, message;
 };
 
-/** Each of these lines is refused after a scene that is fine, each in an instance of its own. */
+/** Expects each of these mistakes to be refused after a valid scene, each in an instance of its own.
+ *  run: further lines of input. */
 inline void expect_refused(const std::string &scene, const std::vector<Mistake> &mistakes,
                            const std::string &run = "")
 {
@@ -781,7 +792,7 @@ inline void expect_refused(const std::string &scene, const std::vector<Mistake> 
   }
 }
 
-/** Options of fix mpm that are refused for two bodies. */
+/** Expects each of these options of fix mpm to be refused in the scene two_bodies. */
 inline void expect_options_refused(const std::vector<Mistake> &mistakes)
 {
   for (const auto &mistake : mistakes)

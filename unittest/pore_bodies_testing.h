@@ -4,7 +4,7 @@
 #ifndef MPM_PORE_BODIES_TESTING_H
 #define MPM_PORE_BODIES_TESTING_H
 
-// Bodies with pore water that collide, on other ranks and after restarts, for tests of fix mpm/pore.
+// Bodies with pore water that collide, for tests of fix mpm/pore on several ranks and after restarts.
 
 #include "mpm_lammps.h"
 
@@ -12,8 +12,8 @@
 
 namespace MPM_TEST {
 
-/** Two blocks of soils and a third body, which collide across ranks and periodic faces. variables: those of the words of fix
- *  mpm/pore, water. */
+/** Input of a disk and a block of soils and a dry block, which collide across ranks and periodic faces.
+ *  water: arguments of fix mpm/pore; variables: input lines that define the variables in them. */
 inline std::string colliding(const std::string &variables, const std::string &water)
 {
   return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
@@ -26,18 +26,18 @@ inline std::string colliding(const std::string &variables, const std::string &wa
       "velocity all set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n" +
       variables + "fix water all mpm/pore " + water + "\ntimestep 0.005\n";
 }
-/** The same between walls along x and y. */
+/** The same scene between walls at all faces along x and y. kind: options of these walls. */
 inline std::string between_walls(const std::string &scene, const std::string &kind = "slip")
 {
   return replaced(scene, "boundary p p p", "boundary f f p") +
       "fix b all mpm/boundary xlo xhi ylo yhi " + kind + "\n";
 }
 
-/** Pressure and saturation of the water of a point. */
+/** Pressure p and saturation S of the water of a point. */
 struct PointWater {
   double tag, p, S;
 };
-/** Those of all points by the computes of PORE. */
+/** Water of all points on all ranks, in order of tags. The scene must have the computes of PORE. */
 inline std::vector<PointWater> water_of_points(Scene &run)
 {
   const auto values = [&](const char *id) {
@@ -53,8 +53,8 @@ inline std::vector<PointWater> water_of_points(Scene &run)
 constexpr const char *PORE = "compute pore all mpm/atom pore\n"
                              "compute saturation all mpm/atom saturation\n";
 
-/** The greatest difference of the pressures and of the saturations of the same points of two scenes; huge where there
- *  are others. */
+/** Largest difference between the pressures and between the saturations of the same points of two scenes.
+ *  It is 1e300 if there are no points, or not the same number of them. */
 inline double water_difference(Scene &a, Scene &b)
 {
   const auto one = water_of_points(a), other = water_of_points(b);
@@ -68,7 +68,8 @@ inline double water_difference(Scene &a, Scene &b)
                   measured("of saturations", most[1]));
 }
 
-/** One rank and several: points, pressures and saturations to this difference, and the water that came in. */
+/** Expects the same results on one rank and on all: states of points, volume of the water that came in,
+ *  and pressures and saturations within this difference. */
 inline void expect_same_on_ranks(const std::string &scene, double difference)
 {
   OnRanks run(scene + PORE, "run 300\n");
@@ -78,7 +79,8 @@ inline void expect_same_on_ranks(const std::string &scene, double difference)
               run.parallel.fix("water")->compute_scalar(), 1e-12);
 }
 
-/** A scene of colliding() that goes on after a restart as without. */
+/** Expects that a scene of colliding() gives the same bits with a restart in the middle as without it.
+ *  variables: as for colliding(). */
 inline void expect_continues(const std::string &scene, const std::string &variables)
 {
   const std::string tail = scene.substr(scene.find("fix m one"));

@@ -11,15 +11,17 @@
 
 namespace MPM_TEST {
 
+// porosity, density of the saturated soil, weight of the water per volume
 constexpr double N = 0.4, RHO = 0.6 * 2650.0 + N * 1000.0, G = 9810.0;
-/** Of a column of soil between closed ends. */
+/** First mode of vibration of a column of soil between closed ends. */
 struct Mode {
-  double K, k;    ///< bulk modulus of water, hydraulic conductivity
-  std::string transfer;
+  double K, k;             ///< bulk modulus of water, hydraulic conductivity
+  std::string transfer;    ///< options of fix mpm
 };
 
-/** Velocity of the soil v, flow w, stress s, and pressure p of a mode between closed ends: RK4 up to each of the
- *  times; of v = 1 and w = 0. */
+/** Velocity of the soil at the given times, in units of its initial value. The velocity v of the soil, the
+ *  flow w, the stress s, and the pressure p of the mode are integrated by RK4, with v = 1 and the others 0
+ *  at the start. moves: false for the u-p formulation, in which w follows the pressure without inertia. */
 inline std::vector<double> exact(const Mode &mode, const std::vector<double> &times,
                                  bool moves = true)
 {
@@ -57,7 +59,8 @@ inline std::vector<double> exact(const Mode &mode, const std::vector<double> &ti
   return result;
 }
 
-/** The amplitude y of the velocity of points at times t, over a number of periods. */
+/** Runs the mode for about this many periods. Appends the times of the steps to t, and to y the amplitude
+ *  of the velocity of the points in units of the initial one. formulation: options of fix mpm/pore. */
 inline void vibrate(const Mode &mode, const std::string &formulation, double periods,
                     std::vector<double> &t, std::vector<double> &y)
 {

@@ -10,7 +10,7 @@
 
 namespace MPM_TEST {
 
-/** Origin of a lattice that is so many levels finer than one with spacing 1 and its origin at zero. */
+/** Origin of a lattice this many levels finer than one with spacing 1 and its origin at zero. */
 inline double origin(const std::string &shape, int level)
 {
   double at = 0.0;
@@ -19,7 +19,8 @@ inline double origin(const std::string &shape, int level)
   return at;
 }
 
-/** Fields F0, F1, ... of points of types 1, 2, ... with half the spacing each; regions: what the points of each fill, in box. */
+/** Input of fields F0, F1, ... of points of types 1, 2, ..., each with half the spacing of the one before.
+ *  regions: of each field, as in the region command. Points fill it outside of the region of the next. */
 inline std::string lattices(int dim, const std::string &shape, const std::string &options,
                             const std::vector<std::string> &regions)
 {
@@ -30,7 +31,7 @@ inline std::string lattices(int dim, const std::string &shape, const std::string
                       k + 1, k, k, 1.0 / (1 << k), shape.c_str(), options.c_str(), o, o) +
         (dim == 3 ? strprintf(" %.17g\n", o) : "\n");
     std::string inner;
-    if (k + 1 < (int) regions.size()) {    // without what is finer
+    if (k + 1 < (int) regions.size()) {    // without the region of the finer field
       points += strprintf("region h%d %s side out\nregion b%d %s\nregion r%d intersect 2 b%d h%d\n",
                           k, regions[k + 1].c_str(), k, regions[k].c_str(), k, k, k);
     } else {
@@ -43,6 +44,7 @@ inline std::string lattices(int dim, const std::string &shape, const std::string
   return head + "fix one all mpm/refine" + all + "\n" + points;
 }
 
+/** Input of nested rectangles (3d: boxes), each on a lattice of its own. levels: 1 to 3 of them. */
 inline std::string nested(int dim, int levels, const std::string &shape, const std::string &options)
 {
   std::vector<std::string> all = {"block 0 12 0 11 ", "block 3 10 3 9 ", "block 4 8 5 8 "};
@@ -52,7 +54,7 @@ inline std::string nested(int dim, int levels, const std::string &shape, const s
   return lattices(dim, shape, options, all);
 }
 
-/** The same scene without what creates points, for a run after a restart. */
+/** Only the fix commands of a scene, for a run after a restart. */
 inline std::string without_points(const std::string &scene)
 {
   std::string again;

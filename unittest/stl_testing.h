@@ -4,13 +4,13 @@
 #ifndef MPM_STL_TESTING_H
 #define MPM_STL_TESTING_H
 
-// Surfaces of triangles for tests, as the text of STL files.
+// Surfaces of triangles for tests, as text of STL files.
 
 #include "mpm_lammps.h"
 
 namespace MPM_TEST {
 
-/** A ball of radius 1 as triangles: n steps from pole to pole. */
+/** A ball of radius 1 made of triangles, with n steps from pole to pole and 2 n around. */
 inline std::string ball_stl(int n)
 {
   const auto corner = [&](int i, int j) {

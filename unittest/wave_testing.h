@@ -4,13 +4,13 @@
 #ifndef MPM_WAVE_TESTING_H
 #define MPM_WAVE_TESTING_H
 
-// What a standing wave is like, for tests of soil and water.
+// Frequency and decay of a standing wave, for tests of soil and water.
 
 #include "mpm_lammps.h"
 
 namespace MPM_TEST {
 
-/** Angular frequency and decay of a signal, from its first and last zeros and peaks. */
+/** Angular frequency and decay rate of a signal y(t), from its first and last zeros and peaks. */
 inline std::array<double, 2> frequency_and_decay(const std::vector<double> &t,
                                                  const std::vector<double> &y)
 {

@@ -9,7 +9,8 @@
 #ifndef MPM_TEST_OPTION_MANUAL_H
 #define MPM_TEST_OPTION_MANUAL_H
 
-// What the manual says of declared options: the block of keywords, and the sentence about the defaults.
+// Parts of the manual that are made from declared options: the table of keywords, and the sentence
+// about the defaults.
 
 #include "declare/option.h"
 
@@ -42,6 +43,7 @@ inline std::string join(const Strings &parts, const std::string &separator)
   return text;
 }
 
+/** A range in words: "0 to 1", or "> 0 and <= 1"; empty if unbounded. */
 inline std::string interval(const Range &r)
 {
   if (r.low != -UNBOUNDED && r.high != UNBOUNDED && r.closed && r.closed_above)
@@ -69,6 +71,7 @@ inline std::vector<OptionWord> words(const OptionValue &value)
   return value.words ? *value.words : std::vector<OptionWord>();
 }
 
+/** The form of a value: its name, or the words to choose from; optional ones are in brackets. */
 inline std::string usage(const OptionValue &value)
 {
   std::string text = value.usage;
@@ -79,6 +82,7 @@ inline std::string usage(const OptionValue &value)
   return value.optional ? "[" + text + "]" : text;
 }
 
+/** The lines that explain a value and its words. */
 inline Strings lines(const OptionValue &value)
 {
   Strings lines_of, together;
@@ -100,7 +104,7 @@ inline Strings lines(const OptionValue &value)
   return lines_of;
 }
 
-/** What follows the keyword in the block. */
+/** The lines of an option in the table, after its keyword. */
 inline Strings lines(const Option &option)
 {
   int count = 0;
@@ -116,6 +120,7 @@ inline Strings lines(const Option &option)
   return all;
 }
 
+/** The table of keywords in the syntax of a command. */
 inline std::string table(const Options &declared)
 {
   const auto &options = declared.all();
@@ -129,7 +134,7 @@ inline std::string table(const Options &declared)
     line += next;
   }
   text += line + "\n\n  .. parsed-literal::\n\n";
-  std::string names;    // of options with the same values: they are explained once
+  std::string names;    // of successive options with the same values, which are explained once
   for (std::size_t k = 0; k < options.size(); k++) {
     const Strings mine = lines(options[k]);
     names += (names.empty() ? "*" : ",\\ *") + options[k].keyword + "*";
@@ -141,6 +146,7 @@ inline std::string table(const Options &declared)
   return text;
 }
 
+/** The sentence about the defaults. */
 inline std::string defaults(const Options &declared)
 {
   Strings parts;
@@ -150,7 +156,7 @@ inline std::string defaults(const Options &declared)
   for (std::size_t k = 0; k < parts.size(); k++) {
     const std::string next = " " + std::string(k > 0 && k + 1 == parts.size() ? "and " : "") +
         parts[k] + (k + 1 == parts.size() ? "." : (parts.size() > 2 ? "," : ""));
-    const auto start = text.rfind('\n') + 1;    // of the line; 0 when it is the first
+    const auto start = text.rfind('\n') + 1;    // start of the line; 0 for the first line
     if (text.size() - start + next.size() > 100)
       text += "\n" + next.substr(1);
     else

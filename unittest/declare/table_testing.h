@@ -9,8 +9,8 @@
 #ifndef MPM_TEST_TABLE_TESTING_H
 #define MPM_TEST_TABLE_TESTING_H
 
-// Parts of the manual that are made from declarations in the source: a test compares them with the
-// files, and writes the files when MPM_WRITE is set in the environment (tools/tables.sh).
+// Parts of the manual that are made from declarations in the source. A test compares them with the
+// files, or writes the files if MPM_WRITE is set in the environment (tools/tables.sh).
 
 #include "gtest/gtest.h"
 
@@ -32,7 +32,8 @@ inline std::string text_of_file(const std::string &path)
   return text.str();
 }
 
-/** The files in a folder of doc/src are these: name, contents. */
+/** Expects the folder doc/src/name to have exactly these files. wanted: contents by file name. If MPM_WRITE
+ *  is set, writes files that differ and removes files that are not wanted. */
 inline void expect_up_to_date(const std::string &name,
                               const std::map<std::string, std::string> &wanted)
 {

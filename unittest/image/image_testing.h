@@ -4,7 +4,7 @@
 #ifndef MPM_IMAGE_TESTING_H
 #define MPM_IMAGE_TESTING_H
 
-// Image files for tests, byte by byte: they are written by none of the code that reads them.
+// Image files for tests, made byte by byte, independently of the code that reads them.
 
 #include <cstdint>
 #include <cstring>
@@ -14,7 +14,7 @@
 
 namespace MPM_TEST {
 
-/** Values of a picture, columns first. */
+/** Values of a picture; the index i along x runs fastest. */
 struct Pixels {
   int nx, ny, nz;
   std::vector<int> values;
@@ -29,15 +29,16 @@ struct Pixels {
   int at(int i, int j, int k = 0) const { return values[i + nx * (j + ny * k)]; }
 };
 
-/** A number as bytes. */
+/** The bytes of a number. big: most significant byte first. */
 template <class T> std::string bytes_of(T value, bool big = false)
 {
   char raw[sizeof(T)];
   memcpy(raw, &value, sizeof(T));
-  std::string text(raw, sizeof(T));    // tests run on machines whose first byte is the least one
+  std::string text(raw, sizeof(T));    // the tests assume a little-endian machine
   return big ? std::string(text.rbegin(), text.rend()) : text;
 }
 
+/** The bytes of all values. */
 template <class T> std::string raw(const Pixels &p, bool big = false)
 {
   std::string text;
@@ -50,7 +51,7 @@ inline std::string sizes(const Pixels &p)
   return std::to_string(p.nx) + " " + std::to_string(p.ny);
 }
 
-/** Gray values as text or bytes, 8 or 16 bits by the largest one. */
+/** A PGM file: gray values as text, or as bytes, two of them per value if largest is above 255. */
 inline std::string pgm(const Pixels &p, bool text = false, int largest = 255)
 {
   std::string file =
@@ -60,13 +61,14 @@ inline std::string pgm(const Pixels &p, bool text = false, int largest = 255)
   return file;
 }
 
-/** Colors whose red, green, and blue are these functions of the values. */
+/** Color of a value: its red (channel 0), green (1), and blue (2). */
 using Palette = std::function<int(int value, int channel)>;
 inline int as_gray(int value, int)
 {
   return value;
 }
 
+/** A PPM file of colors, as text or bytes. */
 inline std::string ppm(const Pixels &p, const Palette &color = as_gray, bool text = false)
 {
   std::string file = (text ? "P3\n" : "P6\n") + sizes(p) + " 255\n";
@@ -76,7 +78,7 @@ inline std::string ppm(const Pixels &p, const Palette &color = as_gray, bool tex
   return file;
 }
 
-/** Bits, 1 for black: what is 0. */
+/** A PBM file: one bit per pixel, 1 (black) where the value is 0. */
 inline std::string pbm(const Pixels &p, bool text)
 {
   std::string file = (text ? "P1\n" : "P4\n") + sizes(p) + "\n";
@@ -96,7 +98,7 @@ inline std::string pbm(const Pixels &p, bool text)
   return file;
 }
 
-// PNG (ISO/IEC 15948) with values that are not compressed
+// PNG files (ISO/IEC 15948) whose data are not compressed
 
 inline std::string png_chunk(const std::string &type, const std::string &data)
 {
@@ -108,6 +110,7 @@ inline std::string png_chunk(const std::string &type, const std::string &data)
   return bytes_of((uint32_t) data.size(), true) + type + data + bytes_of(~crc, true);
 }
 
+/** A zlib stream of stored (not compressed) blocks. */
 inline std::string zlib_stored(const std::string &data)
 {
   std::string out = "\x78\x01";
@@ -124,7 +127,7 @@ inline std::string zlib_stored(const std::string &data)
   return out + bytes_of(b << 16 | a, true);
 }
 
-/** bits: of a number; color: 0 gray, 2 colors, 3 palette, 4 gray with alpha. */
+/** A PNG file. bits: per number; color: 0 gray, 2 colors, 3 palette, 4 gray with alpha; of: colors. */
 inline std::string png(const Pixels &p, int bits = 8, int color = 0, const Palette &of = as_gray)
 {
   std::string rows, header = bytes_of((uint32_t) p.nx, true) + bytes_of((uint32_t) p.ny, true);

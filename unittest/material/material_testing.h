@@ -4,8 +4,8 @@
 #ifndef MATERIAL_TESTING_H
 #define MATERIAL_TESTING_H
 
-// What tests of constitutive laws share: 3x3 matrices, motions of a point, and samples of all laws. This
-// header brings the standard ones that they need.
+// Tools for tests of constitutive laws: 3x3 matrices, motions of a point, and samples of all laws. This
+// header includes the standard headers that these tests need.
 
 #include "material/material_point.h"
 #include "math/matrix.h"
@@ -34,7 +34,7 @@ using MPM_NS::MaterialPoint;
 using Matrix = std::array<double, 9>;
 constexpr Matrix IDENTITY = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-/** Texts and numbers one after the other, numbers with all their digits. */
+/** Texts and numbers joined to one text, with 17 digits of the numbers. */
 template <class... Parts> std::string joined(const Parts &...parts)
 {
   std::ostringstream text;
@@ -51,12 +51,13 @@ inline std::vector<std::string> words_of(const std::string &text)
   return words;
 }
 
+/** The material with this definition. isa: instruction set; null: the default. */
 inline std::unique_ptr<Material> make(const std::string &text, const char *isa = nullptr)
 {
   return Material::create(words_of(text), isa);
 }
 
-/** A point that brings its material. */
+/** A point that owns its material. */
 struct Held {
   std::unique_ptr<Material> held;
 };
@@ -68,7 +69,7 @@ struct Point : private Held, public MaterialPoint {
   }
 };
 
-/** The definition in a file of the folder potentials. */
+/** The definition in a material file of the folder potentials, without comments. */
 inline std::string definition(const std::string &name)
 {
   std::ifstream file(std::string(MPM_SOURCE_DIR) + "/potentials/" + name + ".mpm");
@@ -115,7 +116,7 @@ inline Matrix inverse(const Matrix &M)
   return transpose(c);
 }
 
-constexpr std::array<double, 3> AXIS = {0.48, 0.6, 0.64};    ///< of rotations, for most tests
+constexpr std::array<double, 3> AXIS = {0.48, 0.6, 0.64};    ///< axis of rotations in most tests
 
 /** Rotation by an angle about a unit axis. */
 inline Matrix rotation(const std::array<double, 3> &n, double angle)
@@ -129,7 +130,7 @@ inline Matrix rotation(const std::array<double, 3> &n, double angle)
   return R;
 }
 
-/** Velocity gradient that turns by an angle about AXIS in a unit of time, in one step. */
+/** Velocity gradient that turns a point by an angle about AXIS in one step of unit time. */
 inline Matrix spin(double angle)
 {
   const double w = 2.0 * std::tan(0.5 * angle);
@@ -142,6 +143,7 @@ inline Matrix stress_of(const MaterialPoint &p)
           p.stress(5), p.stress(4), p.stress(5), p.stress(2)};
 }
 
+/** Frobenius norm. */
 inline double size(const Matrix &a)
 {
   double sum = 0.0;
@@ -156,7 +158,7 @@ inline double distance(const Matrix &a, const Matrix &b)
   return size(d);
 }
 
-/** Row of a history variable. */
+/** Row of the history variable with this name. */
 inline int row(const Material &material, const std::string &name)
 {
   for (size_t k = 0; k < material.history().size(); k++)
@@ -179,27 +181,28 @@ inline void move_to(MaterialPoint &p, const Matrix &F, double dt = 1.0)
   p.move(A.data(), dt);
 }
 
-/** n steps of equal size with strain along x, to the stretch l. */
+/** Stretches a point along x to the stretch l, in n equal steps. */
 inline void compress(MaterialPoint &p, double l, int n, double dt = 1.0)
 {
   const double start = p.batch.F[0][0];
   for (int i = 1; i <= n; i++) move_to(p, uniaxial_stretch(start + (l - start) * i / n), dt);
 }
 
-/** n steps with a velocity gradient. */
+/** Makes n steps with the velocity gradient L. */
 inline void steps(MaterialPoint &p, const Matrix &L, double dt, int n = 1)
 {
   for (int i = 0; i < n; i++) p.step(L.data(), dt);
 }
 
-/** n steps of the motion F_new = (I + A) F. */
+/** Makes n steps of the motion F_new = (I + A) F. */
 inline void moves(MaterialPoint &p, const Matrix &A, double dt, int n = 1)
 {
   for (int i = 0; i < n; i++) p.move(A.data(), dt);
 }
 
-/** n steps of a motion F(t), t from 0 to 1, of one point, and of another on top of which a rotation
- *  turns it by an angle; check(plain, turned, difference of the stresses) after each. */
+/** Makes n steps of a motion F(t), t from 0 to 1, of two points, plain and turned. The motion of the
+ *  second point is rotated in addition, by an angle that grows to the given one. Calls check(plain,
+ *  turned, difference) after each step; difference: of the stress from that of plain, rotated. */
 template <class Motion, class Check>
 void turn_on_top(const Material &material, const Motion &F, double angle, int n, const Check &check)
 {
@@ -213,8 +216,8 @@ void turn_on_top(const Material &material, const Motion &F, double angle, int n,
   }
 }
 
-/** A rotation on top of a motion turns the stress and leaves the energy alone, to a tolerance; more:
- *  other checks of the point as it is and of the one that turns. */
+/** Expects that a rotation on top of a motion rotates the stress and does not change the stored energy,
+ *  to a relative tolerance. more(plain, turned): other checks of the two points. */
 template <class Motion, class More>
 void expect_objective(const Material &material, const Motion &F, double angle, double tolerance,
                       const More &more)
@@ -228,7 +231,7 @@ void expect_objective(const Material &material, const Motion &F, double angle, d
               });
 }
 
-/** Matrices of random numbers with a normal distribution. */
+/** Matrices of normally distributed random numbers. */
 struct RandomMatrix {
   std::mt19937 random;
   std::normal_distribution<double> normal;
@@ -242,8 +245,9 @@ struct RandomMatrix {
   }
 };
 
-/** Points that take n steps into any direction, some for each strain and duration of a step, and
- *  check(p, e, dt) after each; e: of the first history variable before it. */
+/** Makes n steps with random velocity gradients, for repeats points with each size of the strain and
+ *  each duration of a step. Calls check(p, e, dt) after each step. e: first history variable before the
+ *  step, 0 if the law has none. */
 template <class Check>
 void random_steps(const Material &material, std::mt19937 &random,
                   const std::vector<double> &strains, const std::vector<double> &durations,
@@ -266,7 +270,8 @@ void random_steps(const Material &material, std::mt19937 &random,
       }
 }
 
-/** The equivalent stress is at the flow stress Y in plastic flow, and else not above it. */
+/** Expects the equivalent stress to be equal to the flow stress Y in plastic flow, and not above it
+ *  otherwise. digits_of: another stress whose rounding errors are allowed for. */
 inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of = 0.0)
 {
   if (p.batch.plastic[0] > 0.0)
@@ -275,13 +280,14 @@ inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of
     EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
 }
 
-/** A definition that is wrong, with words or a pattern of the message, and the word that it is
- *  about (-1: not looked at). */
+/** A wrong definition, with a part or a pattern of the error message. word: number of the word that the
+ *  error is about (-1: not checked). */
 struct Refusal {
   std::string text;
   const char *message;
   int word = -1;
 };
+/** Expects errors for these definitions. start: common first words of them. */
 inline void expect_refused(const std::vector<Refusal> &refusals, const std::string &start = "")
 {
   for (const auto &bad : refusals) {
@@ -298,7 +304,7 @@ inline void expect_refused(const std::vector<Refusal> &refusals, const std::stri
   }
 }
 
-/** Stress, wave speed, energy, and history are numbers. */
+/** Expects stress, wave speed, stored energy, and history to be finite. */
 inline void expect_finite(const MaterialPoint &p)
 {
   for (int k = 0; k < 6; k++) EXPECT_TRUE(std::isfinite(p.stress(k))) << "stress " << k;
@@ -308,7 +314,7 @@ inline void expect_finite(const MaterialPoint &p)
     EXPECT_TRUE(std::isfinite(p.history(k))) << p.material.history()[k].name;
 }
 
-/** The errors error(n) of n, 2 n, 4 n, ... steps. */
+/** The errors error(n), error(2 n), error(4 n), ... with n, 2 n, 4 n, ... steps. */
 template <std::size_t N = 3, class Error> std::array<double, N> refined(int n, const Error &error)
 {
   std::array<double, N> result;
@@ -316,7 +322,7 @@ template <std::size_t N = 3, class Error> std::array<double, N> refined(int n, c
   return result;
 }
 
-/** Errors at steps that are halved each time fall with this order. */
+/** Expects the errors for steps that are halved each time to decrease with this order. */
 template <std::size_t N>
 void expect_order(const std::array<double, N> &error, double order, double tolerance)
 {
@@ -324,15 +330,16 @@ void expect_order(const std::array<double, N> &error, double order, double toler
     EXPECT_NEAR(std::log2(error[k - 1] / error[k]), order, tolerance);
 }
 
-/** Steps with a velocity gradient that depends on time. */
+/** Makes n steps up to the time with a velocity gradient L(t), taken in the middle of each step. */
 inline void follow(MaterialPoint &p, const std::function<Matrix(double)> &L, double time, int n)
 {
   const double dt = time / n;
   for (int i = 0; i < n; i++) p.step(L((i + 0.5) * dt).data(), dt);
 }
 
-/** Integrates dy/dt = f(t, y) from t = 0 on by the classical method of Runge and Kutta. */
+/** Unknowns of a system of differential equations. */
 using State = std::vector<double>;
+/** Integrates dy/dt = f(t, y) from t = 0 to the time in n steps of the classical Runge-Kutta method. */
 inline State runge_kutta(const std::function<State(double, const State &)> &f, State y, double time,
                          int n)
 {
@@ -353,8 +360,8 @@ inline State runge_kutta(const std::function<State(double, const State &)> &f, S
 
 constexpr double MPa = 1e6, GPa = 1e9;
 
-/** One material of each kind, with names for messages: the tests of properties that all laws have
- *  (objectivity, energy, wave speed, instruction sets, extremes) go through these. */
+/** A material, with a name for messages. The list has one of each kind, for the tests of properties that
+ *  all laws share (objectivity, energy, wave speed, instruction sets, extremes). */
 struct Sample {
   const char *name, *text;
 };

@@ -4,7 +4,7 @@
 #ifndef MPM_MESH_TESTING_H
 #define MPM_MESH_TESTING_H
 
-// One mesh in the files of several programs.
+// One mesh in the file formats of several programs.
 
 #include "mpm_lammps.h"
 
@@ -12,13 +12,13 @@
 
 namespace MPM_TEST {
 
-// a cube with a corner pulled out, V = 1.25, and a tetrahedron on its side, V = 1/6
+// a cube with one corner pulled out, V = 1.25, and a tetrahedron on one of its sides, V = 1/6
 const double nodes[9][3] = {{0, 0, 0}, {1, 0, 0},       {1, 1, 0}, {0, 1, 0}, {0, 0, 1},
                             {1, 0, 1}, {1.5, 1.3, 1.2}, {0, 1, 1}, {-1, 0, 0}};
 const int cube[8] = {0, 1, 2, 3, 4, 5, 6, 7}, tet[4] = {0, 3, 4, 8};
 constexpr double VOLUME = 1.25 + 1.0 / 6.0;
 
-/** Numbers as words, or as bytes in one of the two orders. */
+/** A file of numbers as text, or as bytes with the least (LITTLE) or most significant one (BIG) first. */
 struct MeshOutput {
   enum Kind { TEXT, LITTLE, BIG } kind;
   std::string all;
@@ -44,6 +44,7 @@ struct MeshOutput {
   }
 };
 
+/** The mesh as a file of Gmsh, of format 2.2 (old) or 4.1. */
 inline std::string gmsh(bool old, MeshOutput::Kind kind)
 {
   MeshOutput o{kind,
@@ -100,6 +101,7 @@ inline std::string gmsh(bool old, MeshOutput::Kind kind)
   return o.all + "\n$EndElements\n";
 }
 
+/** The mesh as a legacy VTK file, of version 3.0 (old) or 5.1, with data at points and in cells. */
 inline std::string vtk(bool old, MeshOutput::Kind kind)
 {
   MeshOutput o{kind, old ? "# vtk DataFile Version 3.0\n" : "# vtk DataFile Version 5.1\n"};
@@ -132,7 +134,7 @@ inline std::string vtk(bool old, MeshOutput::Kind kind)
   return o.all + "\n";
 }
 
-/** In groups of four characters. */
+/** Bytes in base64 encoding, padded to groups of four characters. */
 inline std::string base64(const std::string &bytes)
 {
   static const char *const digits =
@@ -148,7 +150,8 @@ inline std::string base64(const std::string &bytes)
   return text;
 }
 
-/** The same mesh in XML of this machine: numbers as ascii, or bytes as binary (in base64 among the tags), or behind them as base64 or raw. */
+/** The mesh as an XML file of VTK, little-endian. format: "ascii" (numbers as text), "binary" (base64 inside
+ *  of the tags), or "base64" or "raw" (encoding of the data appended after the tags). */
 inline std::string vtu(const std::string &format)
 {
   const bool ascii = format == "ascii", inside = ascii || format == "binary";
@@ -198,6 +201,7 @@ inline std::string vtu(const std::string &format)
       "</VTKFile>\n";
 }
 
+/** The mesh as an input file of Abaqus. */
 inline std::string abaqus()
 {
   std::string s = "** a comment\n*Heading\n text, 1, 2\n*Node\n";

@@ -1,10 +1,10 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-#ifndef MPM_STL_TESTING_H
-#define MPM_STL_TESTING_H
+#ifndef MPM_MESH_STL_TESTING_H
+#define MPM_MESH_STL_TESTING_H
 
-// Surfaces of triangles for tests, and the bytes of their STL files.
+// Surfaces of triangles for tests, and their files in STL and OBJ format.
 
 #include "mesh/surface_mesh.h"
 #include "mpm_lammps.h"
@@ -21,8 +21,10 @@ namespace MPM_TEST {
 
 using Point = MPM_NS::SurfaceMesh::Point;
 
+/** Triangles by their corners. */
 using Soup = std::vector<std::array<Point, 3>>;
 
+/** The triangles as an STL file of text. */
 inline std::string text_of(const Soup &soup)
 {
   std::string s = "solid test\n";
@@ -34,6 +36,7 @@ inline std::string text_of(const Soup &soup)
   return s + "endsolid test\n";
 }
 
+/** The triangles as a binary STL file. */
 inline std::string binary_of(const Soup &soup)
 {
   std::string s(84, ' ');
@@ -68,7 +71,8 @@ inline Soup box(const Point &lo, const Point &hi)
   return soup;
 }
 
-/** The box with x moved by this share of z and y by half of it: its inertia has all components. */
+/** The surface with x moved by share times z, and y by half of that. The inertia tensor of a sheared box
+ *  has all components. */
 inline Soup sheared(Soup soup, double share)
 {
   for (auto &t : soup)
@@ -79,7 +83,7 @@ inline Soup sheared(Soup soup, double share)
   return soup;
 }
 
-/** Torus about z: not convex, and with a hole. */
+/** Torus about z, with major radius R and minor radius r: it is not convex and has a hole. */
 inline Soup torus(double R, double r, int n)
 {
   const auto at = [&](int i, int j) {
@@ -95,6 +99,7 @@ inline Soup torus(double R, double r, int n)
   return soup;
 }
 
+/** The surface with its inside and outside exchanged. */
 inline Soup inverted(Soup soup)
 {
   for (auto &t : soup) std::swap(t[1], t[2]);
@@ -107,7 +112,7 @@ inline Soup both(Soup soup, const Soup &other)
   return soup;
 }
 
-/** Ball of the given radius: an icosahedron whose triangles are divided into four so many times. */
+/** Ball of the given radius: an icosahedron whose triangles are divided into four this many times. */
 inline Soup ball(double radius, int divisions)
 {
   const auto onto = [](Point x) {
@@ -141,7 +146,7 @@ inline Soup ball(double radius, int divisions)
   return soup;
 }
 
-/** What is between z = 0 and the height over a polygon, which is cut into the given triangles. */
+/** Prism over a polygon, from z = 0 to the height. cut: triangles of the polygon, by their corners. */
 inline Soup prism(const std::vector<std::array<double, 2>> &p, double height,
                   const std::vector<std::array<int, 3>> &cut)
 {
@@ -177,7 +182,8 @@ inline Soup cylinder(int n, double height)
   return prism(p, height, cut);
 }
 
-/** Bodies whose volume, moments, and sites inside are known. */
+/** A body whose volume, principal moments of inertia (unit density), and number of lattice sites inside
+ *  are known. size: spacing of the sites; sites = 0: number not known. */
 struct Solid {
   const char *name;
   Soup soup;
@@ -215,7 +221,8 @@ inline std::vector<Solid> solids()
        26000}};
 }
 
-/** A file with the corners of each triangle by numbers, backward from the last one for every other triangle. */
+/** The triangles as an OBJ file. Every other triangle refers to its corners by negative numbers, which
+ *  count backward from the last corner. */
 inline std::string obj_of(const Soup &soup)
 {
   std::string s = "# a comment\no thing\n";

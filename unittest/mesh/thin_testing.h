@@ -12,7 +12,7 @@ namespace MPM_TEST {
 
 using Node = std::array<double, 3>;
 
-/** A mesh file of Gmsh with elements of one kind: 1: lines, 2: triangles, 3: quadrangles. */
+/** A mesh file of Gmsh with elements of one kind: 1 for lines, 2 for triangles, 3 for quadrangles. */
 inline std::string gmsh(int kind, const std::vector<Node> &nodes,
                         const std::vector<std::vector<int>> &elements)
 {
@@ -29,7 +29,8 @@ inline std::string gmsh(int kind, const std::vector<Node> &nodes,
   return text + "$EndElements\n";
 }
 
-/** Two straight halves of a cable of length 1 between 0 0 and span 0, n lines; up: axis 1 or 2. */
+/** Mesh of a cable of length 1 with n lines: two straight halves that hang between x = 0 and x = span.
+ *  up: vertical axis, 1 or 2. */
 inline std::string hanging(int n, double span, int up)
 {
   std::vector<Node> nodes;
@@ -44,7 +45,7 @@ inline std::string hanging(int n, double span, int up)
   return gmsh(1, nodes, lines);
 }
 
-/** n x n squares or pairs of triangles over 0 to l, with nodes in the plane z = 0. */
+/** Mesh of n x n squares or pairs of triangles, from 0 to l along x and y in the plane z = 0. */
 inline std::string sheet(int n, double l, bool triangles)
 {
   std::vector<Node> x;
@@ -63,6 +64,7 @@ inline std::string sheet(int n, double l, bool triangles)
   return gmsh(triangles ? 2 : 3, x, f);
 }
 
+/** Input of a box from low to high along each axis, and of a lattice with spacing h. */
 inline std::string box(int dim, double low, double high, double h, const std::string &options)
 {
   const std::string range = strprintf("%g %g ", low, high);
@@ -72,6 +74,8 @@ inline std::string box(int dim, double low, double high, double h, const std::st
       "\ncreate_box 1 box\n" + strprintf("fix grid all mpm %g ", h) + options + "\n";
 }
 
+/** Input of a body from a mesh file. thin: words after the file name, such as the thickness; material:
+ *  after its density of 1000; more: options of fix mpm/elements. */
 inline std::string thin_body(const std::string &file, const std::string &thin,
                              const std::string &material, const std::string &more = "")
 {

@@ -4,7 +4,7 @@
 #ifndef MPM_TEST_CELL_SCENES_H
 #define MPM_TEST_CELL_SCENES_H
 
-// Parts of a box that are wet, as systems of equations for the pressure of their cells.
+// Systems of equations for the pressures of the cells in the wet parts of a box.
 
 #include "solve/cell_multigrid.h"
 #include "solve/krylov.h"
@@ -16,15 +16,16 @@
 
 namespace MPM_NS {
 
-/** Cells of [0,1]^dim: which of them are wet, and what flows between neighbors. Faces of the box are closed. */
+/** Cells of [0,1]^dim: which of them are wet, and the coefficients of the faces between them. Faces of the
+ *  box are closed. */
 struct CellScene {
   int dim, n;    ///< cells along an axis
   std::function<bool(const double *)> wet = [](const double *) {
     return true;
-  };    ///< by the middle of a cell
+  };    ///< whether a cell with this center is wet
   std::function<double(const int *, int)> open = [](const int *, int) {
     return 1.0;
-  };    ///< coefficient of the upper face of a cell along an axis
+  };    ///< coefficient of the upper face of a cell along an axis: open(index, axis)
   bool periodic[3] = {false, false, false};
   int shift[3] = {0, 0, 0};    ///< index of the first cell
 
@@ -49,7 +50,7 @@ struct CellScene {
   {
     return {dim, 1.0 / n, {0.0, 0.0, 0.0}, {periodic[0], periodic[1], periodic[2]}, {n, n, n}};
   }
-  /** f(index) for all cells of the box. */
+  /** Calls f(index) for all cells of the box. */
   template <class F> void each(const F &f) const
   {
     int i[3];
@@ -57,8 +58,8 @@ struct CellScene {
       for (i[1] = shift[1]; i[1] < shift[1] + n; i[1]++)
         for (i[2] = shift[2]; i[2] < shift[2] + (dim == 3 ? n : 1); i[2]++) f(i);
   }
-  /** The face of a cell along an axis: closed between two dry cells, and at faces of the box. Coefficients are those of
-   *  canonical cells. */
+  /** Coefficient of the upper face of a cell along axis d. It is 0 between two dry cells and at faces of the
+   *  box. Periodic images have the coefficients of the canonical cells. */
   double face(const int *index, int d) const
   {
     int upper[3] = {index[0], index[1], index[2]}, canonical[3];
@@ -68,7 +69,7 @@ struct CellScene {
       canonical[e] = periodic[e] ? (((index[e] - shift[e]) % n) + n) % n + shift[e] : index[e];
     return open(canonical, d);
   }
-  /** Coefficients of a node: all that there are, also those that images have. */
+  /** Gives A all coefficients of a node, also of a periodic image. */
   void give(CellOperator &A, int64_t node) const
   {
     int index[3];
@@ -135,7 +136,7 @@ class CellSystem : public LinearSystem {
     }
   }
   std::vector<double> zeros() const { return std::vector<double>(grid.nnodes(), 0.0); }
-  /** Values of canonical nodes of the box and their images by a function of their index. */
+  /** Values of(index) at the nodes of the box and their periodic images; 0 elsewhere. */
   std::vector<double> values(const std::function<double(const int *)> &of) const
   {
     auto all = zeros();
@@ -147,7 +148,7 @@ class CellSystem : public LinearSystem {
     }
     return all;
   }
-  /** Numbers at random, which depend on the place alone, at wet cells. */
+  /** Random numbers at wet cells, which depend on the index and the seed only. */
   std::vector<double> noise(unsigned seed = 1) const
   {
     return values([&](const int *i) {
@@ -166,6 +167,7 @@ class CellSystem : public LinearSystem {
   {
     return ConjugateGradients().solve(*this, b.data(), x.data(), goal);
   }
+  /** Iterations for a random right-hand side; 100000 if the solution does not converge. */
   int iterations()
   {
     auto b = noise(), x = zeros();
@@ -175,7 +177,8 @@ class CellSystem : public LinearSystem {
   }
 };
 
-/** The shapes of part O7 of the reference values: a tank with a sloping surface, a disk (or ball), a tank with 40 disks. */
+/** The shapes of part O7 of the reference values: a tank with a sloping surface, a disk, and a tank with 40
+ *  small disks (drops). */
 inline bool sloping(const double *x)
 {
   return x[1] < 0.5 + 0.2 * (x[0] - 0.5);

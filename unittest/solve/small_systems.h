@@ -4,7 +4,7 @@
 #ifndef MPM_TEST_SMALL_SYSTEMS_H
 #define MPM_TEST_SMALL_SYSTEMS_H
 
-// Small systems for tests of methods of solution.
+// Small systems of equations for tests of solvers.
 
 #include "solve/linear_system.h"
 
@@ -13,7 +13,7 @@
 
 namespace MPM_NS {
 
-/** A system given by functions, on one rank. */
+/** A system on one rank with the operator A and the preconditioner M, which are functions. */
 class System : public LinearSystem {
  public:
   using Operator = std::function<void(const double *, double *)>;
@@ -40,7 +40,7 @@ class System : public LinearSystem {
   Operator A, M;
 };
 
-/** A rod of n springs between fixed ends (held), or free at both. */
+/** Operator of a rod: a chain of n unknowns joined by unit springs, with both ends fixed (held) or free. */
 inline System::Operator rod(int n, bool held)
 {
   return [=](const double *x, double *y) {

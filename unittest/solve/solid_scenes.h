@@ -4,7 +4,8 @@
 #ifndef MPM_TEST_SOLID_SCENES_H
 #define MPM_TEST_SOLID_SCENES_H
 
-// Linear elasticity of points with B-splines on a lattice, as systems of equations for the displacements of its nodes.
+// Linear elasticity of points with B-splines on a lattice, as systems of equations for the displacements
+// of the nodes.
 
 #include "solve/krylov.h"
 #include "solve/spline_multigrid.h"
@@ -17,7 +18,8 @@
 
 namespace MPM_NS {
 
-/** Points on a lattice of their own, 2 in a spacing, with a stiffness each, and what holds nodes. */
+/** Points on a regular lattice, 2 per node spacing along each axis, with their stiffnesses, and the
+ *  constraints of the nodes. */
 struct SolidScene {
   int dim;
   double h;                  ///< spacing of nodes
@@ -28,19 +30,19 @@ struct SolidScene {
   std::function<double(const double *)> young = [](const double *) {
     return 1.0;
   };
-  /** Projection of a node at x: P [3][3] is unity before. */
+  /** Sets the projection P [3][3] of a node at x, which is the unit matrix before the call. */
   std::function<void(const double *, double (*)[3])> hold = [](const double *, double (*)[3]) {
   };
   double poisson = 0.3;
-  double density = 0.0;    ///< times what makes it a stiffness
-  int order = 2;           ///< of the splines
-  double offset = 0.0;     ///< of the first point from the corner of its cell [h/2]
+  double density = 0.0;    ///< times the factor that makes it a stiffness
+  int order = 2;           ///< of the splines, 1 to 3
+  double offset = 0.0;     ///< shift of all points from their regular places [h/2]
   bool periodic[3] = {false, false, false};
-  int few = 0;    ///< unknowns of the level that is factorized
-  int all = 0;    ///< unknowns of a system that is factorized as a whole
+  int few = 0;    ///< largest number of unknowns of a level that is factorized
+  int all = 0;    ///< largest number of unknowns of a system that is factorized as a whole
 };
 
-/** The system of a scene, by loops over its points. */
+/** The system of a scene. Its operator is applied by loops over the points, without a matrix. */
 class SolidSystem : public LinearSystem {
  public:
   enum Preconditioner { NOTHING, BLOCKS, MULTIGRID };
@@ -53,7 +55,7 @@ class SolidSystem : public LinearSystem {
   Preconditioner preconditioner = MULTIGRID;
   int64_t napply = 0;
 
-  /** Points of a rank are those for which mine is true. ranks_of: when blocks are known. */
+  /** mine(x): whether a point is on this rank. ranks_of: makes the ranks once the blocks are known. */
   explicit SolidSystem(
       const SolidScene &scene,
       const std::function<bool(const double *)> &mine =
@@ -154,7 +156,7 @@ class SolidSystem : public LinearSystem {
     std::fill_n(value, m, 0.0);
     for (std::size_t k = 0; k < all.size(); k++) value[k % m] += all[k];
   }
-  /** Projections are symmetric. y may be x. */
+  /** y = P x with the projection P of each node, which is symmetric. y may be x. */
   void project(const double *x, double *y) const
   {
     for (int64_t n = 0; n < grid.nnodes(); n++) {
@@ -165,7 +167,7 @@ class SolidSystem : public LinearSystem {
       std::copy_n(sum, dim, y + n * dim);
     }
   }
-  /** Of a force per volume. */
+  /** Forces on the nodes, projected, from a force body(x, axis) per volume. */
   std::vector<double> forces(const std::function<double(const double *, int)> &body) const
   {
     std::vector<double> f(size(), 0.0);
@@ -186,17 +188,18 @@ class SolidSystem : public LinearSystem {
   std::size_t npoints() const { return points.size(); }
 
   struct Point {
-    double x[3], volume, lambda, mu;    // the latter two times the volume
+    double x[3], volume, lambda, mu;    ///< lambda and mu are times the volume
   };
   std::vector<Point> points;
-  int nnodes;    // that a point reaches
+  int nnodes;    ///< nodes that a point reaches
   std::vector<int64_t> nodes;
   std::vector<double> weights, gradients;
 
  private:
   std::vector<double> moved;
 
-  /** Volume times dS/dH, (l*dim + a) of both. */
+  /** C [dim*dim][dim*dim]: volume times dS/dH, the derivative of the stress by the displacement gradient.
+   *  Component [a][l] of either has the index l*dim + a. */
   void stiffness(const Point &point, double *C) const
   {
     const int m = dim * dim;
@@ -208,7 +211,8 @@ class SolidSystem : public LinearSystem {
                 point.mu * ((a == b && l == k) + (a == k && l == b)) +
                 (a == l && b == k ? point.lambda : 0.0);
   }
-  /** Weights and their derivatives along an axis, from the first node that a point reaches. */
+  /** Weights w and their derivatives g (per spacing) along an axis. Returns the index of the first node
+   *  that a point reaches. */
   int along(double x, double *w, double *g) const
   {
     const double s = x / scene.h;
@@ -244,6 +248,7 @@ class SolidSystem : public LinearSystem {
     g[3] = 0.5 * t * t;
     return base;
   }
+  /** Calls f(index, weight, gradient) for all nodes that a point reaches. */
   template <class F> void each_node(const Point &point, const F &f) const
   {
     double w[3][4] = {{1.0}, {1.0}, {1.0}}, g[3][4] = {};
@@ -268,7 +273,7 @@ class SolidSystem : public LinearSystem {
     int n[3] = {1, 1, 1};
     for (int d = 0; d < dim; d++)
       n[d] = (int) std::floor((scene.high[d] - scene.low[d]) / step + 0.5);
-    // both points of a spacing one after the other: blocks of 2^dim points
+    // the 2^dim points of a cell are successive
     const auto at = [&](int d, int i) {
       return d < dim ? scene.low[d] + (i + 0.5 + scene.offset) * step : 0.0;
     };
@@ -305,6 +310,7 @@ class SolidSystem : public LinearSystem {
         gradients.insert(gradients.end(), gradient, gradient + dim);
       });
   }
+  /** Finds the projections of all nodes. */
   void hold_nodes()
   {
     const auto canonical = grid.canonical();
@@ -317,6 +323,7 @@ class SolidSystem : public LinearSystem {
         for (int b = 0; b < dim; b++) projection[(n * dim + a) * dim + b] = P[a][b];
     }
   }
+  /** Finds the diagonal blocks [dim][dim] of the operator, and the masses of the nodes. */
   void find_blocks()
   {
     blocks.assign(grid.nnodes() * dim * dim, 0.0);

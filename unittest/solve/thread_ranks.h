@@ -14,7 +14,7 @@
 
 namespace MPM_NS {
 
-/** Ranks of a LAMMPS that are threads: what they give is put together in their order. */
+/** Threads that act as the ranks of a LAMMPS instance, and the bytes that each of them gives. */
 struct Threads {
   std::mutex mutex;
   std::condition_variable all_have_come;
@@ -22,6 +22,7 @@ struct Threads {
   int count = 0, turn = 0;
   explicit Threads(int n) : given(n) {}
 
+  /** Waits until all threads have called this. */
   void meet()
   {
     std::unique_lock<std::mutex> lock(mutex);
@@ -37,6 +38,7 @@ struct Threads {
   }
 };
 
+/** One of these ranks. Bytes are concatenated in order of ranks; sum() does nothing. */
 struct ThreadRank : LatticeRanks {
   Threads &team;
   const int mine;

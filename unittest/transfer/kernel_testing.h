@@ -9,8 +9,8 @@
 #ifndef MPM_KERNEL_TESTING_H
 #define MPM_KERNEL_TESTING_H
 
-// Random numbers, comparisons, and all combinations for tests of the kernels, with the standard
-// headers that they need.
+// Random numbers, comparisons, and all combinations for tests of the kernels. This header includes
+// the standard headers that these tests need.
 
 #include "transfer/kernels.h"
 
@@ -28,7 +28,8 @@ namespace MPM_TEST {
 
 using Reals = std::vector<double>;
 
-/** With sanitizers (test_sanitize.sh) each place in the code counts, and fewer repetitions will do. */
+/** Whether this is a build with sanitizers (test_sanitize.sh). Tests then need to reach each place in the
+ *  code only, and repeat less often. */
 #if defined(MPM_SANITIZED)
 constexpr bool SANITIZED = true;
 #else
@@ -50,7 +51,7 @@ inline void fill(Reals &a, double size = 1.0)
   for (double &x : a) x = uniform(-size, size);
 }
 
-/** Largest difference, relative to the largest value. */
+/** Largest difference between a and b, relative to the largest value of b. */
 inline double difference(const Reals &a, const Reals &b)
 {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
@@ -62,6 +63,7 @@ inline double difference(const Reals &a, const Reals &b)
   return diff / scale;
 }
 
+/** A step with random parameters. */
 inline MPM_NS::TransferStep random_step()
 {
   MPM_NS::TransferStep step;
@@ -75,11 +77,11 @@ inline MPM_NS::TransferStep random_step()
   return step;
 }
 
-/** Range of base nodes; as P2G wants it before the first call. */
+/** Lowest and highest tile indices of base nodes, and their values before the first call of P2G. */
 using Box = std::array<int, 6>;
 constexpr Box NO_BOX = {1000, 1000, 1000, -1000, -1000, -1000};
 
-/** From the points [first,last) of a test to a tile, and back. */
+/** Transfers the points [first,last) of a test to a tile, and back. p2g returns the widened box. */
 template <class Points> Box p2g(MPM_NS::P2G kernel, Points &points, double *tile, Box box = NO_BOX)
 {
   kernel(points.rows(), points.step, points.first, points.last, points.base, tile, box.data());
@@ -91,19 +93,19 @@ int g2p(MPM_NS::G2P kernel, Points &points, const double *tile, double *L = null
   return kernel(points.rows(), points.step, points.first, points.last, points.base, tile, L);
 }
 
-/** A tile with the nodes in front of the block, the last base node, and how many nodes the
- *  stencil has behind a base node. */
+/** A tile and its shape. margin: nodes in front of the block; last: largest tile index of a base node;
+ *  reach: nodes of the stencil behind a base node. */
 struct TileShape {
   int dim, stride_x, stride_y, margin, last, reach;
   double *tile;
   int reals;
 };
 
-/** Boxes of a tile go to blocks and back. */
+/** Expects that prefetch, flush, load, and load_mean move random boxes of a tile to blocks and back. */
 inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileShape &t)
 {
   const int side = MPM_NS::block_side(t.dim), shift = side - t.margin, nreal = kernels.nreal;
-  const auto block = [=](int node) {    // 0, 1, 2
+  const auto block = [=](int node) {    // 0, 1, or 2 along an axis
     return (node + shift) / side;
   };
   for (int trial = 0; trial < (SANITIZED ? 10 : 60); trial++) {
@@ -112,7 +114,7 @@ inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileS
       box[a] = integer(0, t.last);
       box[3 + a] = integer(box[a], t.last);
     }
-    // blocks that the box touches have a slot in a random order, the others do not exist
+    // blocks that the box touches have slots in a random order; the others do not exist
     for (int i = 0; i < 27; i++) slot[i] = i;
     std::shuffle(slot, slot + 27, generator);
     for (int i = 0; i < 27; i++) {
@@ -121,7 +123,7 @@ inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileS
         if (a < t.dim ? b[a] < block(box[a]) || b[a] > block(box[3 + a] + t.reach) : b[a] != 1)
           slot[i] = -1000000;
     }
-    const auto for_box = [&](auto act) {    // all reals of the box in the tile and in the store
+    const auto for_box = [&](auto act) {    // all reals of the box, in the tile and in the store
       const int depth = t.dim == 3 ? box[5] + t.reach : 0;
       for (int i = box[0]; i <= box[3] + t.reach; i++)
         for (int j = box[1]; j <= box[4] + t.reach; j++)
@@ -171,7 +173,7 @@ inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileS
   }
 }
 
-/** A combination of kernels. */
+/** A choice of kernels. */
 struct Case {
   const char *isa;
   int dim;
@@ -180,7 +182,7 @@ struct Case {
   bool split;
 };
 
-/** Merged records suffice. */
+/** Whether merged records are sufficient for this transfer. */
 inline bool may_be_merged(MPM_NS::Transfer transfer)
 {
   return transfer == MPM_NS::APIC || transfer == MPM_NS::TPIC;
@@ -195,7 +197,7 @@ inline bool is_not_reference(const Case &c)
   return std::string(c.isa) != "reference";
 }
 
-/** Those of all instruction sets with the given shapes that a suite is about. */
+/** Cases with these shapes for all instruction sets, as far as they are wanted. */
 inline auto all_cases(const std::vector<MPM_NS::Shape> &shapes,
                       bool wanted(const Case &) = any_case)
 {
@@ -221,7 +223,7 @@ inline std::string case_name(const ::testing::TestParamInfo<Case> &info)
       transfers[c.transfer] + (may_be_merged(c.transfer) ? (c.split ? "_split" : "_merged") : "");
 }
 
-/** The kernels of a case, and the plain ones. */
+/** The kernels of a case, and the reference kernels. */
 class KernelTest : public ::testing::TestWithParam<Case> {
  protected:
   int dim = 0, nreal = 0;
