@@ -11,6 +11,8 @@
 
 #include "group.h"
 
+#include <Eigen/Dense>
+
 using namespace MPM_TEST;
 
 namespace {
@@ -379,6 +381,56 @@ SERIAL_TEST(Shear, Decay)
     EXPECT_NEAR(measured("heat over loss of energy",
                          heat / (energy - run.fix("w")->compute_vector(KINETIC))),
                 1.0, 0.02);
+  }
+}
+
+/** Growth of the wave with the wave number k between half spaces (S. Chandrasekhar, Hydrodynamic and Hydromagnetic Stability,
+ *  1961, chapter X): the solution n of the conditions at the interface, for velocities A exp(-k |y|) + B exp(-q |y|) on each
+ *  side. rho, mu: below, above. */
+double growth(double k, double g, const double *rho, const double *mu)
+{
+  const auto determinant = [&](double n) {
+    Eigen::Matrix4d M;    // A and B below, A and B above
+    for (int s = 0; s < 2; s++) {
+      const double q = std::sqrt(k * k + n * rho[s] / mu[s]), side = s ? -1.0 : 1.0;
+      M.col(2 * s) << side, k, side * 2.0 * mu[s] * k * k,
+          rho[s] * (n / k + side * g / n) + 2.0 * mu[s] * k;
+      M.col(2 * s + 1) << side, q, side * mu[s] * (q * q + k * k),
+          side * rho[s] * g / n + 2.0 * mu[s] * q;
+    }
+    return M.determinant();
+  };
+  double low = 1e-3, high = std::sqrt(g * k);
+  for (int turn = 0; turn < 60; turn++) {
+    const double middle = 0.5 * (low + high);
+    ((determinant(middle) > 0.0) == (determinant(low) > 0.0) ? low : high) = middle;
+  }
+  return low;
+}
+
+// A heavy liquid above a light one whose viscosity is the same per density, or a tenth: waves grow as they should.
+SERIAL_TEST(Shear, GrowthOfWaves)
+{
+  constexpr int N = 16;
+  constexpr double K = 2.0 * PI, DT = 0.005;
+  for (const double thick : {100.0, 1000.0}) {
+    const double rho[] = {1000.0, 2000.0}, mu[] = {50.0, thick};
+    Scene run(
+        plane("si", "f f", "0 0.5 0 2", 1, 0.005) +
+        strprintf("create_points 1 box spacing %.17g\n", 0.25 / N) +
+        "region top block INF INF 1 INF INF INF\ngroup heavy region top\n"
+        "variable up atom 1e-4*cos(2*PI*x)*exp(-2*PI*abs(y-1))\n"
+        "variable side atom 1e-4*sin(2*PI*x)*exp(-2*PI*abs(y-1))*(2*(y>1)-1)\n"
+        "velocity all set v_side v_up NULL\n" +
+        strprintf("fix w all mpm/incompressible %.17g 1000 viscosity 50 implicit yes iterations "
+                  "1000 liquid heavy 2000 %g\n",
+                  0.5 / N, thick) +
+        "fix g all gravity 9.81 vector 0 -1 0\n" + strprintf("timestep %g\n", DT));
+    run.commands("run 200");
+    const double before = run.fix("w")->compute_vector(KINETIC);
+    run.commands("run 60");
+    const double rate = 0.5 * std::log(run.fix("w")->compute_vector(KINETIC) / before) / (60 * DT);
+    EXPECT_LT(std::abs(rate / growth(K, 9.81, rho, mu) - 1.0), 0.02) << rate << ' ' << thick;
   }
 }
 
