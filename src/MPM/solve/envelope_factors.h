@@ -30,8 +30,8 @@ namespace MPM_NS {
  *  does not depend on the number of ranks, and neither does the result. */
 class EnvelopeFactors {
  public:
-  /** How factors are kept. Rounded ones take half of the memory and of the time of a solution, which reads
-   *  all of them. They are those of another matrix, which is positive definite as well: along a vector v its
+  /** How factors are kept. Rounded ones take half of the memory, all of which a solution has to read.
+   *  They are those of another matrix, which is positive definite as well: along a vector v its
    *  v^T A v differs by a part of some 1e-7 times the root of the condition of A, at most. This is for
    *  preconditioners. Factors are made and used in double precision. */
   enum Precision { DOUBLE, ROUNDED };
