@@ -88,7 +88,7 @@ endfunction()
 # Eigen is header-only
 find_path(EIGEN3_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 
-# FFTW, for random fields of parameters; without it they are refused
+# FFTW, for random fields of parameters and solver fourier of fix mpm/incompressible; without it they are refused
 find_path(FFTW3_INCLUDE_DIR fftw3.h)
 find_library(FFTW3_LIBRARY fftw3)
 set(MPM_LIBRARIES ${CMAKE_DL_LIBS})

@@ -239,6 +239,11 @@ Options MPMIncompressibleOptions::declare(int dim)
   o.add("spread",
         {number(spread, "S", FRACTION, "1",
                 "share of the excess of points in a cell that is moved elsewhere in a step")});
+  o.add("solver",
+        {word(solver,
+              {{"multigrid", MULTIGRID, "coarser lattices help to find the pressure"},
+               {"fourier", FOURIER,
+                "Fourier transforms do, which are faster where the fluid fills a box"}})});
   o.add("tolerance",
         {number(tolerance, "tol", {0.0, 1.0e-2, false, true}, "1",
                 "remaining divergence, relative to the divergence before the solution")});
@@ -364,6 +369,12 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
                "atom_modify id no");
 
   pressure = std::make_unique<MPMFlowPressure>(lmp, cells);
+  if (solver == FOURIER && !MPMFlowFourier::is_there())
+    error->all(
+        FLERR,
+        "Fix mpm/incompressible solver fourier: this program was built without FFTW; install "
+        "it (libfftw3-dev) and build again, or use solver multigrid");
+  if (solver == FOURIER) pressure->use_fourier();
   air = std::make_unique<MPMFlowAir>(cells);
   thickest = largest_viscosity();
   if (implicit && thickest == 0.0)

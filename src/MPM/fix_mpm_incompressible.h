@@ -58,6 +58,8 @@ struct MPMIncompressibleOptions {
   bool sharp = false;      ///< sharp paths of points, see find_paths()
   double spread = 0.5;     ///< share of an excess of points that spreads in a step
   double tolerance = 1.0e-9;
+  enum Solver { MULTIGRID, FOURIER };
+  int solver = MULTIGRID;    ///< preconditioner of the pressure
   int most_iterations = 10000;
   int64_t most_parts = 64;    ///< most parts of a step if implicit viscosity does not converge
   bool parts_are_given = false;

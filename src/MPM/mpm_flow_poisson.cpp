@@ -9,6 +9,7 @@
 #include "mpm_flow_poisson.h"
 
 #include "mpm_flow_bodies.h"
+#include "mpm_flow_fourier.h"
 #include "mpm_flow_gas_rows.h"
 #include "mpm_node_system.h"
 
@@ -49,6 +50,23 @@ void MPMFlowPoisson::apply(const double *x, double *y)
   for (int i = 0; i < n; i++) y[i] = of_cells[1][rows.cell_at(i)];
 }
 
+/** Corrects values of even cells by their residuals in sum. */
+void MPMFlowPoisson::correct()
+{
+  const int neven = rows.size_of(MPMFlowRows::EVEN);
+  auto &values = rows.values;
+  if (fourier) {
+    parts.assign(sum.begin(), sum.begin() + neven);
+    fourier->solve(parts);
+    for (int i = 0; i < neven; i++) values[i] += parts[i];
+    return;
+  }
+  parts.assign(multigrid.parts(), 0.0);
+  for (int i = 0; i < neven; i++) parts[part[i]] += sum[i];
+  multigrid.correct(parts);
+  for (int i = 0; i < neven; i++) values[i] += parts[part[i]];
+}
+
 void MPMFlowPoisson::precondition(const double *r, double *z)
 {
   constexpr auto EVEN = MPMFlowRows::EVEN, ODD = MPMFlowRows::ODD;
@@ -61,10 +79,7 @@ void MPMFlowPoisson::precondition(const double *r, double *z)
   for (int i = 0; i < neven; i++) values[i] = inverse[i] * r[i];
   relax_odd();
   rows.sum(EVEN, weight, sum.data());
-  parts.assign(multigrid.parts(), 0.0);
-  for (int i = 0; i < neven; i++) parts[part[i]] += sum[i];
-  multigrid.correct(parts);
-  for (int i = 0; i < neven; i++) values[i] += parts[part[i]];
+  correct();
   relax_odd();
   rows.sum(EVEN, weight, sum.data());
   for (int i = 0; i < neven; i++) z[i] = inverse[i] * (r[i] + sum[i]);

@@ -231,7 +231,35 @@ void MPMFlowPressure::find_levels()
   find_rows();
   weigh_rows(0.0, poisson.diagonal, poisson.weight);
   poisson.begin();
+  if (fourier) find_box();
   levels_are_there = true;
+}
+
+void MPMFlowPressure::use_fourier()
+{
+  fourier = std::make_unique<MPMFlowFourier>(lmp, cells);
+  poisson.fourier = fourier.get();
+}
+
+/** Gives the wet cells to the Fourier transforms, with the mean weight of faces between them. */
+void MPMFlowPressure::find_box()
+{
+  double mine[2] = {0.0, 0.0}, all[2];
+  fourier->begin();
+  for (int i = 0; i < rows.size(); i++) {
+    const auto &one = wet[rows.row_at(i)];
+    int closed = 0;
+    for (int s = 0; s < 2 * cells.lattice.dim; s++) {
+      if (one.weight[s] == 0.0) closed |= 1 << s;
+      if (one.near[s] < 0) continue;
+      mine[0] += one.weight[s];
+      mine[1] += 1.0;
+    }
+    fourier->add(cells.cells[one.cell].index, closed, i < rows.size_of(MPMFlowRows::EVEN));
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  const double h = cells.lattice.h;
+  fourier->arrange(all[0] > 0.0 ? all[0] / all[1] : 1.0 / (h * h));
 }
 
 /* ---------------------------------------------------------------------- */
@@ -447,5 +475,5 @@ double MPMFlowPressure::memory_usage() const
     reals += list->capacity();
   return reals * sizeof(double) + wet.capacity() * sizeof(Wet) + method.memory_usage() +
       coefficients.memory_usage() + rows.memory_usage() + poisson.memory_usage() +
-      equal_filling.memory_usage();
+      (fourier ? fourier->memory_usage() : 0.0) + equal_filling.memory_usage();
 }

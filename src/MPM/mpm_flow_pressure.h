@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_FLOW_PRESSURE_H
 #define LMP_MPM_FLOW_PRESSURE_H
 
+#include "mpm_flow_fourier.h"
 #include "mpm_flow_lattice.h"
 #include "mpm_flow_poisson.h"
 #include "mpm_flow_rows.h"
@@ -17,6 +18,7 @@
 #include "solve/cell_operator.h"
 #include "solve/krylov.h"
 
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -32,9 +34,9 @@ class MPMFlowRegions;
  *  wet cell at which the pressure is zero (F. Gibou, R.P. Fedkiw, L.-T. Cheng, M. Kang, J. Comput. Phys. 176 (2002) 205).
  *
  *  The unknown is the potential psi = dt p/density, whose gradient is subtracted from velocities; with several densities it
- *  is first multiplied by this density over the density at the face. The solver has a multigrid preconditioner, which is
- *  faster than others even for the smallest flows. The equations for spreading points reach only a few cells, and the
- *  diagonal is enough for them (MPMFlowSpread). */
+ *  is first multiplied by this density over the density at the face. The preconditioner of the solver is multigrid, or Fourier
+ *  transforms, which are faster where water fills a box (MPMFlowFourier). The equations for spreading points reach only a few
+ *  cells, and the diagonal is enough for them (MPMFlowSpread). */
 class MPMFlowPressure : protected Pointers {
  public:
   MPMFlowPressure(class LAMMPS *lmp, const MPMFlowLattice &cells) :
@@ -53,6 +55,9 @@ class MPMFlowPressure : protected Pointers {
 
   /** [cell][dim] density in psi over the density at faces, of all cells; null: there is one density. */
   const std::vector<double> *lightness = nullptr;
+
+  /** Uses Fourier transforms as the preconditioner, instead of multigrid; see MPMFlowFourier::is_there(). */
+  void use_fourier();
 
   /** Density of a cell over that in psi: the mean of its open faces. */
   double density_in(const MPMFlowLattice::Cell &) const;
@@ -137,6 +142,7 @@ class MPMFlowPressure : protected Pointers {
   MPM_NS::CellOperator coefficients;    // of the equations, for the multigrid preconditioner
   MPMFlowRows rows;                     // of the wet cells
   MPMFlowPoisson poisson;
+  std::unique_ptr<MPMFlowFourier> fourier;                  // null: multigrid
   bool rows_are_there = false, levels_are_there = false;    // for the cells that are wet now
   std::vector<Wet> wet;
   std::vector<double> excess, lift, flag, right_side, solution;
@@ -160,6 +166,7 @@ class MPMFlowPressure : protected Pointers {
   void follow_neighbors();
   void find_weights();
   void find_levels();
+  void find_box();
   double light(int64_t cell, int axis) const
   {
     return lightness ? (*lightness)[cell * cells.lattice.dim + axis] : 1.0;
