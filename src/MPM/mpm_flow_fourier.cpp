@@ -11,6 +11,7 @@
 #include "mpm_flow_lattice.h"
 
 #include "comm.h"
+#include "error.h"
 #include "lammps.h"
 #include "math_const.h"
 
@@ -281,6 +282,15 @@ void MPMFlowFourier::arrange(double weight)
 {
   const int dim = cells.lattice.dim, nranks = lmp->comm->nprocs;
   if (find_box()) {
+    bigint most = (axis[dim - 1].n + nranks - 1) / nranks;    // cells of a rank
+    for (int d = 0; d < dim - 1; d++) most *= axis[d].n;
+    if (most > MAXSMALLINT)
+      lmp->error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/incompressible solver fourier: the box around the fluid has {} x {} x "
+          "{} cells, too many for {} processes; use more of them, or solver multigrid, "
+          "which has only the cells of the fluid",
+          axis[0].n, axis[1].n, dim == 3 ? axis[2].n : 1, nranks);
     ncolumns = 1;
     for (int d = 0; d < dim - 1; d++) ncolumns *= axis[d].n;
     layers.divide(axis[dim - 1].n, nranks);
