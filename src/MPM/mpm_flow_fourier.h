@@ -18,12 +18,11 @@ class MPMFlowLattice;
 /** Solves Poisson's equation with the same weight at all faces in the box around the wet cells, by Fourier transforms, as a
  *  preconditioner of the equations of the pressure (MPMFlowPoisson).
  *
- *  An axis that is periodic has all of its period. At an end of another axis, no water flows if most of the outermost wet cells
- *  have a wall there. Otherwise psi is zero one half of a cell beyond: most of the water is then next to air. So the functions
- *  of an axis are the sines and cosines of period, or those of its two ends (S.A. Martucci, IEEE Trans. Signal Process. 42
- *  (1994) 1038, the four types of even length). Where water fills the box, the solution is exact. Elsewhere the cells of the box
- *  that are dry are left out of it, and the number of iterations grows about as the square root of the number of cells along
- *  an axis.
+ *  A periodic axis has all of its period. At an end of another axis, no water flows if most of the outermost wet cells have a
+ *  wall there. Otherwise psi is zero half a cell beyond them: most of the water is then next to air. The functions of an axis
+ *  are those sines and cosines that fit its two ends (S.A. Martucci, IEEE Trans. Signal Process. 42 (1994) 1038; types II and
+ *  IV). Where water fills the box, the solution is exact. Elsewhere it ignores that dry cells of the box have no water, and the
+ *  number of iterations grows about as the square root of the number of cells along an axis.
  *
  *  A rank has layers of the box across its last axis for the transforms along the other ones, and lines for those along the
  *  last one. Transforms are those of FFTW. */
