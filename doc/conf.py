@@ -17,7 +17,7 @@ from pygments.token import Comment, Keyword, Name, Number, String, Text
 
 project = "MPM package for LAMMPS"
 SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "src", "MPM")
-with open(os.path.join(SOURCES, "mpm_version.h"), encoding="utf-8") as header:
+with open(os.path.join(SOURCES, "base", "mpm_version.h"), encoding="utf-8") as header:
     release = version = re.search(r'MPM_VERSION "(.*)"', header.read()).group(1)
 author = "the authors of the MPM package"
 copyright = "distributed under the GNU General Public License, version 2"

@@ -8,7 +8,7 @@ import re
 import sys
 
 ROOT = os.environ.get("MPM_ROOT", os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-sys.path.insert(0, os.path.join(ROOT, "unittest"))
+sys.path.insert(0, os.path.join(ROOT, "unittest", "docs"))
 
 import docs_scenes    # noqa: E402  (of unittest)
 import fuzz_scenes    # noqa: E402

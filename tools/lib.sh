@@ -41,6 +41,7 @@ tests and benchmarks: libgtest-dev libgmock-dev libbenchmark-dev
 plots: python3-matplotlib
 manual: python3-sphinx python3-sphinx-rtd-theme libjs-mathjax
 format of the sources: clang-format
+faster compilation: ccache
 LIST
   return 0
 }
@@ -290,15 +291,25 @@ find_sources() {
 
 lammps_version() { sed -n 's/.*"\(.*\)".*/\1/p' "$LAMMPS_SOURCE_DIR/src/version.h"; }
 
+# compiler_cache: objects of earlier builds, also of other clones, are taken again where nothing has changed.
+# Sets the variables of ccache, and launcher, an option for cmake
+compiler_cache() {
+  command -v ccache >/dev/null || return 0
+  export CCACHE_DIR=$cache/ccache CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=5G
+  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+  launcher="-D CMAKE_CXX_COMPILER_LAUNCHER=ccache"
+}
+
 # configure_project [OPTION...]: when needed; holds the lock of the build tree
 configure_project() {
-  local tests=off args
+  local tests=off launcher= args
+  compiler_cache
   is_installed libgtest-dev && tests=on
   command -v dpkg-query >/dev/null || tests=on
   mkdir -p "$build"
   build=$(cd "$build" && pwd)
   lock "$build/.lock"
-  args="-D LAMMPS_BUILD_DIR=$LAMMPS_BUILD_DIR -D MPM_DEMO=off -D MPM_TEST=$tests $* ${MPM_CMAKE:-}"
+  args="-D LAMMPS_BUILD_DIR=$LAMMPS_BUILD_DIR -D MPM_DEMO=off -D MPM_TEST=$tests $launcher $* ${MPM_CMAKE:-}"
   : >"$build/build.log"
   [ -e "$build/Makefile" ] && [ "$(cat "$build/.args" 2>/dev/null)" = "$args" ] && return 0
   say "configuring in $build"

@@ -13,9 +13,9 @@
 #include "domain.h"
 #include "error.h"
 #include "lammpsplugin.h"
-#include "mpm_field.h"
-#include "mpm_point_map.h"
-#include "mpm_stencil.h"
+#include "field/mpm_field.h"
+#include "field/mpm_point_map.h"
+#include "field/mpm_stencil.h"
 #include "version.h"
 
 #include <cmath>

@@ -38,7 +38,7 @@
 #include "mpm_style_fix.h"
 #include "mpm_style_pair.h"
 #include "mpm_style_region.h"
-#include "mpm_version.h"
+#include "base/mpm_version.h"
 
 #include <cmath>
 #include <cstring>

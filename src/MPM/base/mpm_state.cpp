@@ -1,0 +1,185 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "base/mpm_state.h"
+
+#include "atom.h"
+#include "error.h"
+#include "memory.h"
+
+#include <algorithm>
+#include <vector>
+
+using namespace LAMMPS_NS;
+
+/* ---------------------------------------------------------------------- */
+
+MPMPointState::~MPMPointState()
+{
+  for (auto &array : arrays) {
+    array.mine.grown(memory, 0, array.width, array.name);
+    memory->sfree(array.pointers);
+  }
+}
+
+void MPMPointState::declare(MPMRows &rows, const char *name, int width, Fresh fresh)
+{
+  rows = MPMRows();
+  arrays.push_back({&rows, nullptr, nullptr, rows, nullptr, name, width, std::move(fresh)});
+}
+
+void MPMPointState::declare(double **&table, const char *name, int width, Fresh fresh)
+{
+  table = nullptr;
+  arrays.push_back({nullptr, &table, nullptr, MPMRows(), nullptr, name, width, std::move(fresh)});
+}
+
+void MPMPointState::declare(double *&values, const char *name, Fresh fresh)
+{
+  values = nullptr;
+  arrays.push_back({nullptr, nullptr, &values, MPMRows(), nullptr, name, 1, std::move(fresh)});
+}
+
+int MPMPointState::size() const
+{
+  int sum = 0;
+  for (const auto &array : arrays) sum += array.width;
+  return sum;
+}
+
+std::string MPMPointState::layout() const
+{
+  std::string text;
+  for (const auto &array : arrays)
+    text +=
+        (text.empty() ? "" : ", ") + std::string(array.name) + " " + std::to_string(array.width);
+  return text;
+}
+
+void MPMPointState::grow(int nmax)
+{
+  for (auto &array : arrays) {
+    array.mine = array.mine.grown(memory, nmax, array.width, array.name);
+    if (array.rows) *array.rows = array.mine;
+    if (array.values) *array.values = array.mine[0];
+    if (!array.table) continue;
+    array.pointers =
+        (double **) memory->srealloc(array.pointers, (bigint) sizeof(double *) * nmax, array.name);
+    for (int i = 0; i < nmax; i++) array.pointers[i] = array.mine[i];
+    *array.table = array.pointers;
+  }
+}
+
+void MPMPointState::copy(int from, int to)
+{
+  for (auto &array : arrays) std::copy_n(array.mine[from], array.width, array.mine[to]);
+}
+
+void MPMPointState::fresh(int i)
+{
+  for (auto &array : arrays) {
+    double *const row = array.mine[i];
+    std::fill_n(row, array.width, 0.0);
+    if (array.fresh) array.fresh(i, row);
+  }
+}
+
+int MPMPointState::pack(int i, double *buf) const
+{
+  for (const auto &array : arrays) buf = std::copy_n(array.mine[i], array.width, buf);
+  return size();
+}
+
+int MPMPointState::unpack(int i, const double *buf)
+{
+  for (auto &array : arrays) {
+    std::copy_n(buf, array.width, array.mine[i]);
+    buf += array.width;
+  }
+  return size();
+}
+
+/* ---------------------------------------------------------------------- */
+
+FixMPMState::~FixMPMState()
+{
+  if (!callbacks || !modify) return;
+  atom->delete_callback(id, Atom::GROW);
+  if (restarts) atom->delete_callback(id, Atom::RESTART);
+}
+
+void FixMPMState::keep_arrays(bool in_restart_files)
+{
+  if (state.empty()) return;
+  state.grow(atom->nmax);
+  // may end with an error; then there must be no callbacks to a fix that does not exist
+  for (int i = 0; i < atom->nlocal; i++) state.fresh(i);
+  callbacks = true;
+  restarts = in_restart_files;
+  atom->add_callback(Atom::GROW);
+  if (restarts) atom->add_callback(Atom::RESTART);
+  restart_peratom = restarts;
+  create_attribute = 1;
+  maxexchange = state.size();
+}
+
+double FixMPMState::memory_usage()
+{
+  return (double) state.size() * atom->nmax * sizeof(double);
+}
+
+int FixMPMState::pack_restart(int i, double *buf)
+{
+  buf[0] = 1 + pack_exchange(i, buf + 1);
+  return (int) buf[0];
+}
+
+const double *FixMPMState::from_restart(int i, int nth, int &n) const
+{
+  const double *extra = atom->extra[i];
+  for (int k = 0; k < nth; k++) extra += (int) *extra;
+  n = (int) *extra - 1;
+  return extra + 1;
+}
+
+void FixMPMState::unpack_restart(int i, int nth)
+{
+  int n;
+  const double *values = from_restart(i, nth, n);
+  if (n != state.size()) {
+    const auto layout = state.layout();
+    error->one(
+        FLERR, Error::NOLASTLINE,
+        "The restart file has {} numbers per point for fix {} (style {}), not {}{}: give the "
+        "fix the options with which the file was written",
+        n, id, style, state.size(), layout.empty() ? "" : " (" + layout + ")");
+  }
+  state.unpack(i, values);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::keep_totals(MPI_Comm world, double *values, int n)
+{
+  std::vector<double> total(n, 0.0);
+  MPI_Reduce(values, total.data(), n, MPI_DOUBLE, MPI_SUM, 0, world);
+  std::copy(total.begin(), total.end(), values);
+}
+
+void LAMMPS_NS::write_totals(FILE *fp, MPI_Comm world, std::vector<double> &totals,
+                             const std::vector<double> &same)
+{
+  keep_totals(world, totals.data(), (int) totals.size());
+  int me;
+  MPI_Comm_rank(world, &me);
+  if (me) return;
+  const int size = (int) ((totals.size() + same.size()) * sizeof(double));
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(totals.data(), sizeof(double), totals.size(), fp);
+  fwrite(same.data(), sizeof(double), same.size(), fp);
+}

@@ -1,0 +1,142 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_DIFFUSION_SOLVER_H
+#define LMP_MPM_DIFFUSION_SOLVER_H
+
+#include "field/mpm_lattice_ranks.h"
+#include "solve/flexible_gmres.h"
+#include "solve/krylov.h"
+#include "solve/linear_system.h"
+#include "solve/spline_multigrid.h"
+
+#include <functional>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMField;
+class MPMNodeScalar;
+
+/** Equations of diffusion C dy/dt = F(y) of scalars at nodes, such as temperatures: the interface that the solver needs.
+ *  Values, rates, and capacities are those of MPMNodeScalar, with the same values on all ranks that have a node. */
+class MPMDiffusion {
+ public:
+  /** A contribution G K G^T to the matrix -dF/dy: n nodes of this rank's grid, gradient: G [n][ngrad], which turns the values
+   *  at the nodes into ngrad gradients, and stiffness: K [ngrad][ngrad], which turns gradients into their conjugate fluxes. */
+  using Term = std::function<void(int n, const int64_t *nodes, int ngrad, const double *gradient,
+                                  const double *stiffness)>;
+
+  /** Find the rates of all values, and of all lists that are integrated with them. Collective. */
+  virtual void find_rates() = 0;
+  /** Linearize around the present values, for find_changes(). Returns whether the linear equations are symmetric in the norm
+   *  of capacities, the same on all ranks. Collective. */
+  virtual bool linearize() = 0;
+  /** Values are small changes: find the changes of the rates. Collective. */
+  virtual void find_changes() = 0;
+  /** Remove prescribed components from the changes of the values of a part: a projection that is orthogonal in the norm of
+   *  capacities. */
+  virtual void project(int part, std::vector<double> &change) = 0;
+  /** Terms of a part from this rank, for a preconditioner; prescribed values are stiff. dt: of the implicit equations. */
+  virtual void each_term(int part, double dt, const Term &) = 0;
+
+ protected:
+  ~MPMDiffusion() = default;    // owned and deleted as something else
+};
+
+/** Time integration of such equations. */
+struct MPMDiffusionOptions {
+  enum Time { EXPLICIT, EULER, SDIRK2 };
+  Time time = EXPLICIT;
+  double tolerance = 1.0e-6;    ///< of the equations, relative to the change in the step
+};
+
+/** Implicit steps of equations of diffusion.
+ *
+ *    euler:  y1 = y0 + dt f(y1), backward Euler, of first order
+ *    sdirk2: y1 = y0 + g dt f(y1), y2 = y0 + (1-g) dt f(y1) + g dt f(y2), g = 1 - 1/sqrt(2) (R. Alexander, SIAM J. Numer.
+ *            Anal. 14 (1977) 1006), of second order; fast modes decay in a step as with Euler's method
+ *
+ *  y1 and y2 are found by Newton's method with conjugate gradients, or with GMRES if the equations are not symmetric. The
+ *  preconditioner is multigrid or, in steps in which diffusion reaches only a few nodes, the diagonal. The values at the
+ *  end are then computed from the sums above with the rates at y1 and y2, and so are the lists of integrals. So all that
+ *  the rates conserve is conserved to round-off, however accurate the solution is. Nothing is kept from step to step. */
+class MPMDiffusionSolver : private MPM_NS::LinearSystem {
+  using LinearSystem = MPM_NS::LinearSystem;
+
+ public:
+  MPMDiffusionSolver(class LAMMPS *lmp, MPMDiffusion &equations,
+                     const MPMDiffusionOptions &options) :
+      lmp(lmp),
+      equations(equations), options(options)
+  {
+  }
+  /** Removes all parts and lists. */
+  void clear();
+  /** Adds a part; parts are numbered in the order of these calls. */
+  void add(MPMField &, MPMNodeScalar &);
+  /** Adds a list of any length that is integrated in time with its rates. */
+  void add(std::vector<double> &integral, const std::vector<double> &rate);
+
+  struct Report {
+    bool converged = true;
+    int newton = 0, linear = 0;    ///< iterations in the step
+    std::string failure;
+  };
+  /** A step. greatest, fastest: bounds of the rates of diffusion, and of all rates [1/time]. Collective. */
+  const Report &advance(double dt, double greatest, double fastest);
+  double memory_usage() const;
+
+ private:
+  struct Part {
+    MPMField &field;
+    MPMNodeScalar &scalar;
+    MPMLatticeRanks ranks;
+    std::vector<double> capacity;    // also of images
+    std::vector<double> base, at;    // values from which the stage starts; present values
+    std::vector<double> diagonal;
+    int64_t first = 0;    // place of the part in vectors
+    std::unique_ptr<LinearSystem> alone;
+    std::unique_ptr<MPM_NS::SplineMultigrid> levels;
+  };
+  struct Integral {
+    std::vector<double> &value;
+    const std::vector<double> &rate;
+    std::vector<double> before, sum;
+  };
+
+  class LAMMPS *const lmp;
+  MPMDiffusion &equations;
+  const MPMDiffusionOptions &options;
+  std::list<Part> parts;
+  std::list<Integral> integrals;
+  MPM_NS::ConjugateGradients conjugate;
+  MPM_NS::FlexibleGMRES general{40};
+  Report now;
+  double implicit_dt = 0.0;    // time step of the implicit equations: dt, or g dt
+  // of the preconditioner in this step: is it ready, and is it multigrid?
+  bool prepared = false, by_levels = false;
+  std::vector<double> residual, correction, room, of_ranks;
+
+  int64_t size() const override;
+  void apply(const double *x, double *y) override;
+  void precondition(const double *r, double *z) override;
+  void products(int n, const double *const *a, const double *const *b, double *value) override;
+
+  void prepare(double greatest);
+  bool solve(double greatest, double fastest);
+  double find_residual();
+  double size_of_values(bool of_change);
+
+  class OnePart;    // the equations of one part, for its multigrid levels
+};
+
+}    // namespace LAMMPS_NS
+#endif

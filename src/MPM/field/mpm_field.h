@@ -1,0 +1,179 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FIELD_H
+#define LMP_MPM_FIELD_H
+
+#include "field/mpm_field_options.h"
+#include "field/mpm_jacobians.h"
+#include "field/mpm_ledger.h"
+#include "field/mpm_nodes.h"
+#include "pointers.h"
+#include "transfer/kernels.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+struct Batch;
+struct BatchKernels;
+}    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+class Fix;
+class FixMPMElements;
+class FixMPMMaterial;
+class MPMAffine;
+class MPMBoxes;
+class MPMCpdi;
+class MPMEvery;
+class MPMFractureWatch;
+class MPMFrame;
+class MPMGuard;
+class MPMLocking;
+class MPMPhysics;
+class MPMPlan;
+class MPMPointMap;
+class MPMPointState;
+class MPMSmoothing;
+class MPMTimeLimit;
+class MPMTransferHeat;
+class MPMRows;
+struct MPMPoints;
+
+/** One velocity field on one lattice: options, points, nodes, and an object for each feature that only
+ *  some options need. */
+class MPMField : protected Pointers {
+  MPMFieldOptions chosen;
+
+  bool has_contact() const;
+
+ public:
+  using Options = MPMFieldOptions;
+
+  using Pointers::atom;
+  using Pointers::lmp;
+
+  Fix &fix;    ///< the fix mpm: its ID, its group, its requests for new neighbor lists
+  const Options &options = chosen;
+  MPM_NS::Grid grid;    ///< records of momentum: velocity and mass after the momentum equation
+  MPM_NS::Lattice &lattice;    ///< of the grid
+  MPMNodes nodes;
+  MPMPoints *points;    ///< of the present Atom object, which replicate exchanges: set in init()
+
+  std::vector<FixMPMMaterial *> materials;    ///< all of them, see find_materials()
+  std::vector<FixMPMElements *> elements;     ///< all of them, set in init()
+  MPMPlan *plan = nullptr;                    ///< of all fields, set in init()
+
+  const MPM_NS::MPMKernels *kernels = nullptr;
+  const MPM_NS::BatchKernels *batch_kernels = nullptr;
+  MPM_NS::TransferKernels kernel;    ///< of the step
+  MPM_NS::TransferKernels pic;       ///< of other sums over points, with records of 8 reals
+  MPM_NS::TransferKernels mapped;    ///< strain and motion of velocities that were mapped back
+  std::unique_ptr<MPM_NS::Batch> batch;
+
+  MPMLedger ledger;
+  /** A node action reads what nodes had before the momentum equation; set by its init_action(). */
+  bool keep_old = false;
+  /** The same until the blocks are renewed: set by its blocks_found(), followed by choose_kernels(). */
+  bool keep_old_now = false;
+  bool running = false;    ///< between the set-up and the end of a run
+  /** Positions of the end of the step wait in work.xnew, see MPMStages::nodes_to_points(). */
+  bool has_moved = false;
+  double last_dt = 0.0;    ///< duration of the last step of the cycle; 0: none so far
+
+  /** [n][dim] gradients on the lattice that other physics keep for points; set by their init_physics(). */
+  std::vector<const MPMRows *> slopes;
+  /** Physics that change how points strain; set by their init_physics(). */
+  std::vector<MPMPhysics *> stretching;
+  /** det F of points, for other physics, which ask for it in their topology_changed(). */
+  MPMJacobians jacobians;
+
+  // objects that only some options need; null: not with the present options
+
+  std::unique_ptr<MPMFrame> frame;    ///< never null
+  std::unique_ptr<MPMPointMap> map;
+  std::unique_ptr<MPMGuard> guard;
+  std::unique_ptr<MPMTimeLimit> time_limit;
+  std::unique_ptr<MPMFractureWatch> fracture_watch;
+  std::unique_ptr<MPMAffine> affine;
+  std::unique_ptr<MPMBoxes> boxes;
+  std::unique_ptr<MPMCpdi> domains;
+  std::unique_ptr<MPMEvery> every;
+  std::unique_ptr<MPMLocking> locking;
+  std::unique_ptr<MPMSmoothing> smoothing;
+  std::unique_ptr<MPMTransferHeat> heating;
+
+  /** Memory that stages share; nothing in it outlives a stage. */
+  struct {
+    std::vector<double> nodes;              ///< sums over points other than momentum
+    std::vector<double> node_velocities;    ///< [node][3] before XPIC and FMPM add terms
+    std::vector<double> vectors;      ///< [n][3] vectors that points give to nodes or get from them
+    std::vector<double> weights;      ///< [n] weights of the points for this
+    std::vector<double> places;       ///< [n][3] unused positions from transfers at rest
+    std::vector<double> stress;       ///< [n][6]
+    std::vector<double> no_volume;    ///< [n] zero
+    std::vector<double> xnew;    ///< [n][3] positions of the end of the step, when points move late
+    std::vector<double> history;    ///< [variable][BATCH]
+  } work;
+
+  /** The per-point arrays that the options ask for are declared in state. */
+  MPMField(class LAMMPS *, Fix &, double h, const Options &, MPMPointState &state);
+  ~MPMField();
+
+  /** The fields of all fix mpm, in order of definition. */
+  static std::vector<MPMField *> all(class LAMMPS *);
+  /** The field of a fix mpm; null: the fix does not exist or has another style. */
+  static MPMField *find(class LAMMPS *, const std::string &id);
+
+  /** Start of a run, before anything reads the options: choose the form of the stress if the input leaves it open. */
+  void choose_stress(const std::vector<MPMPhysics *> &);
+  /** Start of a run. */
+  void init(MPMPlan *);
+  /** List the present materials; also between runs, when materials of the last run may be gone. */
+  void find_materials();
+  /** Choose the transfers of this run. */
+  void choose_kernels();
+  /** Check that the lattice fits the box, which may have changed since the last run. */
+  void check_box();
+
+  /** ID of the fix mpm. */
+  const char *id() const;
+  /** Is atom i a material point of this field? */
+  bool is_point(int i) const;
+  /** Is atom i a node of finite elements, without stress and material of its own? */
+  bool is_element_node(int i) const;
+  /** The material of atom i; null: it has none. */
+  FixMPMMaterial *material_of(int i) const;
+
+  /** Duration of a step of the cycle. */
+  double step_dt() const;
+  /** Duration of the step before, which has moved the points to where they are; of this step, if there was none. */
+  double step_dt_before() const { return last_dt > 0.0 ? last_dt : step_dt(); }
+  /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
+  int steps_to_next() const;
+  /** The arrays of points as transfers read them. */
+  MPM_NS::PointRows rows() const;
+  /** Rows for transfers of other values and weights, in which points do not move (the time step is zero). */
+  MPM_NS::PointRows rows_at_rest(double *values, const double *weights);
+  /** Data for transfers, with the duration of a step of the cycle or another one. */
+  MPM_NS::TransferStep step_data() const { return step_data(step_dt()); }
+  MPM_NS::TransferStep step_data(double dt) const;
+
+  /** Counts and time steps of the present run. */
+  struct {
+    bigint steps = 0;
+    double point_steps = 0.0, dt_min = 0.0, dt_max = 0.0;
+  } counts;
+
+  double memory_usage() const;
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,236 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "field/mpm_ledger.h"
+
+#include "atom.h"
+#include "elements/fix_mpm_elements.h"
+#include "field/mpm_field.h"
+#include "field/mpm_locking.h"
+#include "field/mpm_passes.h"
+#include "field/mpm_physics.h"
+#include "force.h"
+#include "math/matrix.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ---------------------------------------------------------------------- */
+
+void MPMLedger::nodal_kinetic_energies(double &old, double &now) const
+{
+  const Grid &grid = field.grid;
+  const double *record = field.grid.nodes();
+  double before = 0.0, after = 0.0;
+  for (const auto &block : grid.blocks) {
+    for (int n = 0; n < NODES_PER_BLOCK; n++, record += 8) {
+      if (!(block.owned >> n & 1)) continue;
+      before += record[3] * dot(record + 4, record + 4);
+      after += record[3] * dot(record, record);
+    }
+  }
+  old = 0.5 * force->mvv2e * before;
+  now = 0.5 * force->mvv2e * after;
+}
+
+double MPMLedger::point_kinetic_energy() const
+{
+  const bool deep = field.lattice.dim == 3;
+  const int groupbit = field.fix.groupbit, nlocal = atom->nlocal, *const mask = atom->mask;
+  const double *const *const v = atom->v, *const mass = atom->rmass, *const volume = atom->vfrac;
+  double sum = 0.0;
+  for (int i = 0; i < nlocal; i++)
+    if ((mask[i] & groupbit) && volume[i] > 0.0)
+      sum += mass[i] * (v[i][0] * v[i][0] + v[i][1] * v[i][1] + (deep ? v[i][2] * v[i][2] : 0.0));
+  return 0.5 * force->mvv2e * sum;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMLedger::account_for_nodes()
+{
+  account_for_forces();
+  double old, kinetic;
+  nodal_kinetic_energies(old, kinetic);
+  transfer += old - kinetic_points;
+  kinetic_points = kinetic;
+}
+
+void MPMLedger::account_for_points()
+{
+  const double kinetic = point_kinetic_energy();
+  transfer += kinetic - kinetic_points;
+  kinetic_points = kinetic;
+}
+
+/* ----------------------------------------------------------------------
+   what n points from first on lose to the nodes by their stress, rows.tau: sum of V tau : grad v, with velocities
+   and their gradients L from the nodes
+------------------------------------------------------------------------- */
+
+double MPMLedger::stress_power(PointRows &rows, int first, int n, const double *L) const
+{
+  const int dim = field.lattice.dim, nL = dim * dim;
+  MPMFrame::ForceRows room;
+  const double *const f = rows.f, *const v = rows.velocity;
+  double power = 0.0;
+  field.frame->forces(rows, first, n, room);
+  for (int p = 0; p < n; p++) {
+    const double *const G = L + nL * p;
+    if (rows.f != f)    // hoop stress
+      for (int d = 0; d < dim; d++)
+        power -= force->nktv2p * (rows.f[3 * p + d] - f[3 * p + d]) * v[3 * p + d];
+    double rate = 0.0;
+    if (rows.P) {
+      for (int k = 0; k < nL; k++) rate += rows.P[nL * p + k] * G[k];
+    } else {
+      const double *const tau = rows.tau + 6 * p;
+      if (dim == 3)
+        rate = tau[0] * G[0] + tau[1] * G[4] + tau[2] * G[8] + tau[3] * (G[1] + G[3]) +
+            tau[4] * (G[2] + G[6]) + tau[5] * (G[5] + G[7]);
+      else
+        rate = tau[0] * G[0] + tau[1] * G[3] + tau[3] * (G[1] + G[2]);
+    }
+    power += rows.vol0[p] * rate;
+  }
+  return power;
+}
+
+/* ----------------------------------------------------------------------
+   work of the forces on points (atom->f) and of their stress, at the mean of the old and the final
+   velocity of the nodes, which go to the points by the weights and gradients with which P2G has
+   brought the forces to the nodes. What elements put on atom->f is internal
+------------------------------------------------------------------------- */
+
+void MPMLedger::account_for_forces()
+{
+  field.nodes.complete_velocities();
+  PointRows r = field.rows();
+  if (field.options.averages_stress()) r.tau = field.locking->stress();
+  const TransferStep s = field.step_data();
+  double outer = 0.0, inner = 0.0, stress = 0.0, loads = 0.0;
+  double L[9 * BATCH], velocity[3 * BATCH] = {};    // no velocity along z in 2d
+  const double *const pressure = pressure_of_physics(field);
+  double total_stress[6 * BATCH + 8];
+
+  const auto account = [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
+    PointRows b = rows_from(field, r, first);
+    b.velocity = velocity;
+    field.kernel.g2p_gradient(b, s, 0, n, base, field.map->tile_load, L);
+    const double *const v = velocity, *const f = b.f;
+    for (int p = 0; p < n; p++) outer += dot(f + 3 * p, v + 3 * p);
+    for (auto *ifix : field.elements) {
+      const double *const mine = ifix->forces() + 3 * (bigint) first;
+      for (int p = 0; p < n; p++) inner += dot(mine + 3 * p, v + 3 * p);
+    }
+    if (!run.material) return;    // nodes of elements
+
+    if (pressure) add_pressure(pressure, b, first, n, total_stress);
+    stress += stress_power(b, first, n, L);
+    if (!physics_adds_stress(field, first, first + n)) return;
+    std::fill_n(total_stress, 6 * n, 0.0);
+    add_stress_of_physics(field, first, n, total_stress);
+    b = rows_from(field, r, first);
+    b.velocity = velocity;
+    b.tau = total_stress;
+    loads += stress_power(b, first, n, L);
+  };
+  points_from_step(field, account, true);
+
+  const double unit = force->mvv2e * s.dt;
+  external += unit * (s.force_scale * (outer - inner) - s.stress_scale * loads);
+  internal += unit * (s.stress_scale * stress - s.force_scale * inner);
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Is there a mass that can take it? */
+bool MPMLedger::change_by(double *record, const double *impulse, double change[3])
+{
+  if (!(record[3] > 0.0)) return false;
+  for (int d = 0; d < 3; d++) {
+    change[d] = impulse[d] / record[3];
+    record[d] += change[d];
+  }
+  return true;
+}
+
+void MPMLedger::push_node(double *record, bool owned, const double *impulse)
+{
+  double change[3];
+  if (!change_by(record, impulse, change) || !owned) return;
+  for (int d = 0; d < field.lattice.dim; d++) driven += impulse[d] * record[d] * force->mvv2e;
+  count_push(record, change);
+}
+
+void MPMLedger::drag_node(double *record, bool owned, const double *impulse)
+{
+  double change[3], done = 0.0;
+  if (!change_by(record, impulse, change) || !owned) return;
+  for (int d = 0; d < field.lattice.dim; d++)
+    done += 0.5 * impulse[d] * (record[d] + record[4 + d]) * force->mvv2e;
+  driven += done;
+  contact += done;
+  if (on) note_push(record, change);
+}
+
+/* ----------------------------------------------------------------------
+   The work of the impulse takes the new velocity: that is what moves points. With the mean of the old
+   and the new one it would be the change of kinetic energy; the rest is lost in the collision
+------------------------------------------------------------------------- */
+
+void MPMLedger::count_push(const double *record, const double *change)
+{
+  double moved = 0.0, lost = 0.0;
+  for (int d = 0; d < field.lattice.dim; d++) moved += change[d] * record[d];
+  contact += record[3] * moved * force->mvv2e;
+  if (!on) return;
+  for (int d = 0; d < field.lattice.dim; d++) lost += 0.5 * change[d] * (record[d] - record[4 + d]);
+  transfer -= record[3] * lost * force->mvv2e;
+  note_push(record, change);
+}
+
+/* ----------------------------------------------------------------------
+   Where several actions meet at a node, each was counted with the velocity that it left, which the
+   next one changes. The kinetic energy of the node has the mean of its old and its final velocity in
+   all of them: what the change adds to earlier impulses is part of the collision
+------------------------------------------------------------------------- */
+
+double *MPMLedger::impulse(const double *record)
+{
+  if (impulses.empty()) impulses.resize(3 * field.grid.nnodes());
+  return &impulses[3 * ((record - field.grid.nodes()) / field.grid.nreal)];
+}
+
+void MPMLedger::note_push(const double *record, const double *change, const double *change_old)
+{
+  double *const earlier = impulse(record), met = 0.0;
+  for (int d = 0; d < field.lattice.dim; d++) {
+    const double with = change_old ? change_old[d] : 0.0;
+    met += 0.5 * earlier[d] * (change[d] + with);
+    earlier[d] += record[3] * (change[d] - with);
+  }
+  transfer += met * force->mvv2e;
+}
+
+/** The change works as an impulse, which is numerical. */
+void MPMLedger::count_series(const std::vector<double> &velocities)
+{
+  Grid &grid = field.grid;
+  for (int64_t n = 0; n < grid.nnodes(); n++) {
+    if (!grid.owns(n)) continue;
+    const double *const record = grid.record(n);
+    double change[3] = {0.0, 0.0, 0.0}, gained = 0.0;
+    for (int d = 0; d < field.lattice.dim; d++) {
+      change[d] = record[d] - velocities[3 * n + d];
+      gained += 0.5 * change[d] * (record[d] + record[4 + d]);
+    }
+    transfer += record[3] * gained * force->mvv2e;
+    note_push(record, change);
+  }
+}

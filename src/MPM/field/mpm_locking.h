@@ -1,0 +1,43 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_LOCKING_H
+#define LMP_MPM_LOCKING_H
+
+#include "field/mpm_field.h"
+
+namespace LAMMPS_NS {
+
+/** Cures for volumetric locking: averages over the points around each point. */
+class MPMLocking : protected Pointers {
+ public:
+  MPMLocking(class LAMMPS *, MPMField &, class MPMPointState &);
+
+  /** Room [n][dim*dim] for velocity gradients of all points. */
+  double *room_for_gradients();
+  /** F-bar method: updates strain and stress of all points from velocity gradients L in which the change of
+   *  volume is replaced by its average. */
+  void strain(const double *L, double dt);
+
+  /** Finds the stress for internal forces, with averaged pressure. */
+  void average_pressure();
+  /** Kirchhoff stress with averaged pressure, [n][6]. */
+  double *stress() { return tau.data(); }
+
+  double memory_usage() const { return (gradients.capacity() + tau.capacity()) * sizeof(double); }
+
+ private:
+  MPMField &field;
+  double *J = nullptr;    // [n] volume ratio by the motion of the point alone, 0: not yet known
+  std::vector<double> gradients, tau;
+
+  template <class Value> void average_around_points(const Value &);
+};
+
+}    // namespace LAMMPS_NS
+#endif

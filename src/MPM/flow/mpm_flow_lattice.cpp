@@ -1,0 +1,440 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "flow/mpm_flow_lattice.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "field/mpm_point_order.h"
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double FARTHEST = 4.0e6;    // largest index that a block can have, see MPMField
+
+MPMFlowLattice::MPMFlowLattice(LAMMPS *lmp, const MPM_NS::Lattice &of, int groupbit) :
+    Pointers(lmp), grid(of), lattice(grid.lattice), groupbit(groupbit), halo(lmp)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMFlowLattice::check_box(const char *style)
+{
+  if (domain->triclinic)
+    error->all(FLERR, Error::NOLASTLINE, "Fix {} requires an orthogonal box", style);
+  for (int d = 0; d < lattice.dim; d++) {
+    const char axis = 'x' + d;
+    if (domain->boundary[d][0] > 1 || domain->boundary[d][1] > 1)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix {} requires periodic or fixed boundaries (p or f), but axis {} is "
+                 "shrink-wrapped",
+                 style, axis);
+    const double length = domain->prd[d], n = std::round(length / lattice.h);
+    if (!(n >= 1.0) || std::fabs(n * lattice.h - length) > 1.0e-10 * length)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix {}: the length {} of the box along {} must be a multiple of the node spacing "
+                 "{}, as faces "
+                 "of cells are walls or meet their periodic images: the nearest valid spacing is "
+                 "{:.16g}",
+                 style, length, axis, lattice.h, length / std::max(n, 1.0));
+    if (!(n < FARTHEST))
+      error->all(FLERR, Error::NOLASTLINE, "Fix {}: node spacing {} is too small for the box",
+                 style, lattice.h);
+    lattice.origin[d] = domain->boxlo[d];
+    lattice.ncell[d] = (int) n;
+    lattice.periodic[d] = domain->periodicity[d] != 0;
+    for (auto &wall : walls[d]) wall.is = !lattice.periodic[d];
+  }
+}
+
+bool MPMFlowLattice::is_point(int i) const
+{
+  return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0;
+}
+
+void MPMFlowLattice::base_of(const double *x, int base[3]) const
+{
+  base[2] = 0;
+  for (int d = 0; d < lattice.dim; d++) {
+    const double t = (x[d] - lattice.origin[d]) / lattice.h - 0.5;
+    if (!(std::fabs(t) < FARTHEST))
+      error->one(FLERR, "A point of an incompressible flow is at the impossible place {} along {}",
+                 x[d], (char) ('x' + d));
+    base[d] = (int) std::floor(t);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMFlowLattice::sort()
+{
+  std::map<std::array<int, 3>, int> blocks;    // ordered
+  std::vector<int> key(atom->nlocal, -1);
+  const int mask = grid.side - 1;
+  std::array<int, 3> last = {INT_MAX, INT_MAX, INT_MAX};
+  int index = 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i)) continue;
+    int base[3];
+    base_of(atom->x[i], base);
+    const std::array<int, 3> b = {base[0] >> grid.shift_bits, base[1] >> grid.shift_bits,
+                                  base[2] >> grid.shift_bits};
+    if (b != last) {
+      index = blocks.emplace(b, (int) blocks.size()).first->second;
+      last = b;
+    }
+    int cell = 0;
+    for (int d = 0; d < lattice.dim; d++) cell = cell * grid.side + (base[d] & mask);
+    key[i] = index * NODES_PER_BLOCK + cell;
+  }
+  std::vector<int> rank(blocks.size());
+  int n = 0;
+  for (const auto &block : blocks) rank[block.second] = n++;
+  for (auto &k : key)
+    if (k >= 0) k = rank[k / NODES_PER_BLOCK] * NODES_PER_BLOCK + k % NODES_PER_BLOCK;
+  put_in_order(lmp, key, n * NODES_PER_BLOCK);
+  valid = false;
+}
+
+/* ----------------------------------------------------------------------
+   Cells that points can reach are known to all ranks that share them. With one more layer around these, an
+   owner has the neighbors of its cells.
+------------------------------------------------------------------------- */
+
+void MPMFlowLattice::find_cells()
+{
+  if (valid) return;
+  grid.clear();
+  runs.clear();
+  ranges.clear();
+  std::array<int, 3> last = {INT_MAX, INT_MAX, INT_MAX};
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i)) continue;
+    int base[3];
+    base_of(atom->x[i], base);
+    const std::array<int, 3> b = {base[0] >> grid.shift_bits, base[1] >> grid.shift_bits,
+                                  base[2] >> grid.shift_bits};
+    if (b == last && runs.back().last == i) {
+      runs.back().last++;
+    } else {
+      const int slot = grid.activate(b.data());
+      if (slot == (int) ranges.size())
+        ranges.push_back({{base[0], base[1], base[2]}, {base[0], base[1], base[2]}});
+      runs.push_back({i, i + 1, slot});
+      last = b;
+    }
+    Range &r = ranges[runs.back().slot];
+    for (int d = 0; d < 3; d++) {
+      r.low[d] = std::min(r.low[d], base[d]);
+      r.high[d] = std::max(r.high[d], base[d]);
+    }
+  }
+
+  // ranks share what they reach and the layers around it; where there are periodic images, all of their blocks
+
+  std::vector<uint64_t> shared;
+  constexpr int STENCIL = 2, LOWER = 1;    // of points that have a width
+  const int margin_of_all = DRIFT + HALF + wants_more;
+  const auto cover = [&](const Range &r, int margin, bool reached) {
+    int low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, b[3];
+    for (int d = 0; d < lattice.dim; d++) {
+      low[d] = r.low[d] - LOWER - margin;
+      high[d] = r.high[d] + STENCIL + margin;
+      if (lattice.periodic[d]) continue;
+      low[d] = std::max(low[d], -1);
+      high[d] = std::min(high[d], lattice.ncell[d] + 1);
+    }
+    const int bits = grid.shift_bits;
+    for (b[0] = low[0] >> bits; b[0] <= high[0] >> bits; b[0]++)
+      for (b[1] = low[1] >> bits; b[1] <= high[1] >> bits; b[1]++)
+        for (b[2] = low[2] >> bits; b[2] <= high[2] >> bits; b[2]++) {
+          const int slot = grid.activate(b);
+          const uint64_t nodes = grid.nodes_between(grid.blocks[slot], low, high);
+          shared.resize(std::max(shared.size(), (std::size_t) slot + 1), 0);
+          shared[slot] |= nodes;
+          if (reached) grid.blocks[slot].reached |= nodes;
+        }
+  };
+  for (const auto &range : ranges) {
+    cover(range, margin_of_all, true);
+    cover(range, margin_of_all + overlap, false);
+  }
+  of_visitors.clear();
+  for (const int i : visitors) {
+    Range r;
+    base_of(atom->x[i], r.low);
+    std::copy_n(r.low, 3, r.high);
+    of_visitors.push_back(r);
+    cover(r, margin_of_all, true);
+    cover(r, margin_of_all + overlap, false);
+  }
+  grid.close_periodic();
+  grid.finish();
+  shared.resize(grid.blocks.size(), 0);
+  const bool *const periodic = lattice.periodic;
+  if (std::any_of(periodic, periodic + lattice.dim, [](bool is) {
+        return is;
+      }))
+    std::fill(shared.begin(), shared.end(), ~uint64_t(0));
+  if (comm->nprocs > 1) comm->coord2proc_setup();
+  halo.setup(grid, shared, [this](int number) {
+    return rank_around(number);
+  });
+  borrowed.clear();
+  for (int p = 0; p < halo.sharers(); p++)
+    for (const int number : halo.shared_with(p))
+      if (!grid.owns(number)) borrowed.push_back(number);
+  list_cells();
+  list_images();
+  valid = true;
+  nbuild++;
+}
+
+/** Rank whose part of the box has the middle of a cell: ranks then own about equally many of the cells that
+ *  several reach. */
+int MPMFlowLattice::rank_around(int number) const
+{
+  int index[3], unused[3];
+  double x[3];
+  grid.node_index(number, index);
+  lattice.node_position(index, x);
+  for (int d = 0; d < lattice.dim; d++) x[d] += 0.5 * lattice.h;
+  return comm->coord2proc(x, unused[0], unused[1], unused[2]);
+}
+
+bool MPMFlowLattice::is_inside(int64_t number) const
+{
+  int index[3];
+  grid.node_index(number, index);
+  for (int d = 0; d < lattice.dim; d++)
+    if (!lattice.periodic[d] && (index[d] < 0 || index[d] >= lattice.ncell[d])) return false;
+  return true;
+}
+
+bool MPMFlowLattice::visitors_in_reach() const
+{
+  bool in = true;
+  for (std::size_t k = 0; k < visitors.size(); k++) {
+    int base[3];
+    base_of(atom->x[visitors[k]], base);
+    for (int d = 0; d < lattice.dim; d++)
+      in = in && std::abs(base[d] - of_visitors[k].low[d]) <= DRIFT;
+  }
+  return in;
+}
+
+int MPMFlowLattice::find_block(const double *x, int base[3]) const
+{
+  base_of(x, base);
+  const int64_t number = grid.locate(base);
+  return number < 0 ? -1 : (int) (number / NODES_PER_BLOCK);
+}
+
+/** Number of a cell, or of the cell of which it is a periodic image; the block must exist. */
+int MPMFlowLattice::canonical(const int index[3]) const
+{
+  int wrapped[3] = {0, 0, 0};
+  for (int d = 0; d < lattice.dim; d++) wrapped[d] = lattice.wrap(d, index[d]);
+  return (int) grid.locate(wrapped);
+}
+
+void MPMFlowLattice::list_cells()
+{
+  cells.clear();
+  around.clear();
+  const int dim = lattice.dim;
+  for (int slot = 0; slot < (int) grid.blocks.size(); slot++) {
+    const auto &block = grid.blocks[slot];
+    for (uint64_t left = block.owned & block.reached; left; left &= left - 1) {
+      Cell cell;
+      const int n = __builtin_ctzll(left);
+      cell.number = slot * NODES_PER_BLOCK + n;
+      cell.walls = 0;
+      grid.node_index(block, n, cell.index);
+      bool inside = true;
+      for (int d = 0; d < dim; d++) {
+        if (lattice.periodic[d]) continue;
+        inside = inside && cell.index[d] >= 0 && cell.index[d] < lattice.ncell[d];
+        if (cell.index[d] == 0) cell.walls |= 1 << 2 * d;
+        if (cell.index[d] == lattice.ncell[d] - 1) cell.walls |= 2 << 2 * d;
+      }
+      if (!inside) continue;
+      for (int d = 0; d < dim; d++)
+        for (int s = 0; s < 2; s++) {
+          int other[3] = {cell.index[0], cell.index[1], cell.index[2]};
+          other[d] += 2 * s - 1;
+          cell.near[2 * d + s] = canonical(other);
+        }
+      cells.push_back(cell);
+      if (!wants_around) continue;
+      for (int a = -1; a <= 1; a++)
+        for (int b = -1; b <= 1; b++)
+          for (int c = dim == 3 ? -1 : 0; c <= (dim == 3 ? 1 : 0); c++) {
+            const int other[3] = {cell.index[0] + a, cell.index[1] + b, cell.index[2] + c};
+            around.push_back(canonical(other));
+          }
+    }
+  }
+}
+
+/** Lists the images of each axis: of all cells that exist along the other axes, including those beyond
+ *  walls. */
+void MPMFlowLattice::list_images()
+{
+  images.clear();
+  at_walls.clear();
+  for (int d = 0; d < lattice.dim; d++) {
+    if (lattice.periodic[d]) continue;
+    for (int slot = 0; slot < (int) grid.blocks.size(); slot++)
+      for (int n = 0; n < NODES_PER_BLOCK; n++) {
+        int index[3];
+        grid.node_index(grid.blocks[slot], n, index);
+        const int i = index[d], last = lattice.ncell[d], number = slot * NODES_PER_BLOCK + n;
+        if (i == 0 || i == last) {
+          int next[3] = {index[0], index[1], index[2]};
+          next[d] += i == 0 ? 1 : -1;
+          at_walls.push_back({number, d, i == 0 ? 0 : 1, (int) grid.locate(next)});
+        }
+        if (i < -1 || i > last + 1 || (i >= 0 && i < last)) continue;
+        const int side = i < 0 ? 0 : 1, wall = side ? last : 0;
+        index[d] = std::max(0, std::min(2 * wall - i, last));
+        const int of_face = (int) grid.locate(index);
+        index[d] = std::max(0, std::min(2 * wall - 1 - i, last - 1));
+        const int of_cell = (int) grid.locate(index);
+        index[d] += side ? -1 : 1;
+        const int of_next = (int) grid.locate(index);
+        if (of_face >= 0 && of_cell >= 0)
+          images.push_back({number, of_face, of_cell, of_next < 0 ? of_cell : of_next, d, side});
+      }
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMFlowLattice::sum(double *values, int width, bool moving) const
+{
+  const int dim = lattice.dim;
+  for (const auto &image : images) {
+    double *const from = values + (int64_t) image.number * width;
+    const auto &wall = walls[image.axis][image.side];
+    for (int k = 0; k < width; k++) {
+      const bool normal = k % dim == image.axis && k < 3 * dim;
+      double *const to = values + (int64_t) (normal ? image.of_face : image.of_cell) * width;
+      if (to == from) continue;    // the face in the wall itself
+      if (k < dim && normal)
+        to[k] -= from[k];
+      else if (k < dim && wall.sticks)
+        to[k] += (moving ? 2.0 * wall.v[k] * from[dim + k] : 0.0) - from[k];
+      else
+        to[k] += from[k];
+    }
+    for (int k = 0; k < width; k++)
+      if (k % dim != image.axis || k >= 3 * dim || image.of_face != image.number) from[k] = 0.0;
+  }
+  sum_freely(values, width);
+}
+
+void MPMFlowLattice::sum_freely(double *values, int width) const
+{
+  grid.fold_aliases(values, width, 0, width);
+  halo.sum(values, width, 0, width);
+  grid.copy_aliases(values, width);
+}
+
+void MPMFlowLattice::publish(double *values, int width) const
+{
+  halo.sum(values, width, 0, width);
+  grid.copy_aliases(values, width);
+}
+
+void MPMFlowLattice::renew(double *values, int width) const
+{
+  for (const int number : borrowed) std::fill_n(values + (int64_t) number * width, width, 0.0);
+  publish(values, width);
+}
+
+void MPMFlowLattice::keep_owned(double *values, int width) const
+{
+  kept.clear();
+  for (const auto &cell : cells)
+    kept.insert(kept.end(), values + (int64_t) cell.number * width,
+                values + ((int64_t) cell.number + 1) * width);
+  std::fill_n(values, size() * width, 0.0);
+  const double *from = kept.data();
+  for (const auto &cell : cells) {
+    std::copy_n(from, width, values + (int64_t) cell.number * width);
+    from += width;
+  }
+}
+
+void MPMFlowLattice::reflect_velocities(double *values, bool moving) const
+{
+  const int dim = lattice.dim;
+  for (const auto &at : at_walls) values[(int64_t) at.number * dim + at.axis] = 0.0;
+  for (auto image = images.rbegin(); image != images.rend(); ++image) {
+    double *const to = values + (int64_t) image->number * dim;
+    const auto &wall = walls[image->axis][image->side];
+    for (int c = 0; c < dim; c++) {
+      const bool normal = c == image->axis;
+      const double from = values[(int64_t) (normal ? image->of_face : image->of_cell) * dim + c];
+      if (normal)
+        to[c] = image->of_face == image->number ? 0.0 : -from;
+      else
+        to[c] = wall.sticks && moving ? 2.0 * wall.v[c] - from : from;
+    }
+  }
+}
+
+void MPMFlowLattice::reflect_paths(double *values) const
+{
+  const int dim = lattice.dim;
+  for (const auto &at : at_walls) {
+    const bool even = walls[at.axis][at.side].sticks && at.inner >= 0;
+    values[(int64_t) at.number * dim + at.axis] =
+        even ? -values[(int64_t) at.inner * dim + at.axis] / 3.0 : 0.0;
+  }
+  for (auto image = images.rbegin(); image != images.rend(); ++image) {
+    double *const to = values + (int64_t) image->number * dim;
+    const auto &wall = walls[image->axis][image->side];
+    for (int c = 0; c < dim; c++) {
+      const bool normal = c == image->axis;
+      if (normal && image->of_face == image->number) continue;
+      const double from = values[(int64_t) (normal ? image->of_face : image->of_cell) * dim + c];
+      if (normal)
+        to[c] = wall.sticks ? from : -from;
+      else
+        to[c] = wall.sticks ? 2.0 * wall.v[c] - from : from;
+    }
+  }
+}
+
+void MPMFlowLattice::reflect_cells(double *values) const
+{
+  for (auto image = images.rbegin(); image != images.rend(); ++image)
+    values[image->number] = values[image->of_cell];
+}
+
+double MPMFlowLattice::memory_usage() const
+{
+  return grid.memory_usage() + halo.memory_usage() + runs.capacity() * sizeof(Run) +
+      kept.capacity() * sizeof(double) + cells.capacity() * sizeof(Cell) +
+      around.capacity() * sizeof(int) +
+      (ranges.capacity() + of_visitors.capacity()) * sizeof(Range) +
+      visitors.capacity() * sizeof(int) + images.capacity() * sizeof(Image) +
+      at_walls.capacity() * sizeof(AtWall);
+}

@@ -1,0 +1,119 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_SOLIDS_H
+#define LMP_MPM_FLOW_SOLIDS_H
+
+#include "atom.h"
+#include "base/mpm_rows.h"
+#include "flow/mpm_flow_lattice.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace MPM_NS {
+struct Batch;
+struct BatchKernels;
+}    // namespace MPM_NS
+
+namespace LAMMPS_NS {
+class FixMPMMaterial;
+
+/** Elastic solids in an incompressible flow: points that move with the velocity of the flow, and whose law adds a stress.
+ *
+ *  The pressure of the flow keeps their volume, so that their law only gives a deviator. Its forces act on the faces of the
+ *  staggered lattice, and the strain follows from the same gradients of the velocity. These are constant in boxes of one
+ *  spacing. Points have a width, so that nothing jumps when they pass from one box to the next (S.G. Bardenhagen, E.M. Kober,
+ *  Comput. Model. Eng. Sci. 5 (2004) 477). */
+class MPMFlowSolids : protected Pointers {
+ public:
+  /** bits: of the groups of their points. */
+  MPMFlowSolids(class LAMMPS *, const MPMFlowLattice &, int bits);
+  ~MPMFlowSolids() override;
+
+  /** Start of a run: finds the laws. who: name of the fix, for errors. */
+  void init(const std::string &who);
+  /** Stops with an error if a point of the groups has no law of an elastic solid. */
+  void check_points() const;
+  /** Is atom i a point of a solid? */
+  bool holds(int i) const { return (atom->mask[i] & bits) && atom->vfrac[i] > 0.0; }
+  /** Density of the law of point i. */
+  double density_of(int i) const;
+
+  /** Forces of the present stress at faces: [cell][dim] in force units. */
+  void give_forces(std::vector<double> &forces);
+  /** Updates deformation and stress of the points to the end of a step of duration dt with these velocities [cell][dim]; to
+   *  be called before the points move. Stops with an error if a point is turned inside out. */
+  void deform(const double *velocity, double dt, double viscosity);
+  /** Replaces the pressure in the stress [6] of a law by the pressure p of the flow. In 2d, where the solid is held at
+   *  constant thickness, the pressure of the flow is minus the mean of the two normal stresses in the plane. */
+  void set_pressure(double *stress, double p) const
+  {
+    const int dim = cells.lattice.dim;
+    double mean = 0.0;
+    for (int d = 0; d < dim; d++) mean += stress[d] / dim;
+    for (int d = 0; d < 3; d++) stress[d] -= mean + p;
+  }
+
+  /** Largest stable time step for shear waves of the shortest wave length, in which neighboring nodes move against each other,
+   *  over sqrt(2), to leave room for a viscosity. tag: of the point that limits it on this rank. */
+  double stable_dt(tagint &tag);
+
+  /** Calls the function with the present state of the points of a group, see visit_point_batches(). */
+  void visit_batches(
+      int groupbit,
+      const std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)> &);
+
+  double memory_usage() const;
+
+ private:
+  struct Pending;
+
+  const MPMFlowLattice &cells;
+  const int bits;
+  std::string who;
+  std::vector<FixMPMMaterial *> materials;
+  std::vector<std::unique_ptr<Pending>> pending;    // points of each material
+  const MPM_NS::BatchKernels *kernels;
+  std::vector<double> history;
+  std::vector<double> shares;         // [cell][kind of box][2] volume of solids and of all points
+  std::vector<double> solid_share;    // [cell]
+
+  int material_of(int i) const;
+  template <int dim> void give(std::vector<double> &forces);
+  template <int dim> void strain(const double *velocity, double dt, double viscosity);
+  template <int dim> void find_shares();
+  /** Fluid around a point: its share in boxes of each kind, the largest of these shares, and the normal n of the solid. */
+  struct Interface {
+    double fluid[4], most, n[3];
+  };
+  template <int dim>
+  bool find_interface(const MPM_NS::Grid::Block &, const double *t, double width,
+                      Interface &) const;
+  template <int dim>
+  void leave_to_fluid(int i, const Interface &, double stiffness, double viscosity, double dt,
+                      double A[3][3]) const;
+  /** Function of the number of a cell: share of solid in the box of gradients along d of velocities along c. */
+  template <int dim> auto weight_of(int c, int d) const
+  {
+    return [this, kind = c == d ? 0 : c + d](int64_t number) {
+      constexpr int KINDS = dim == 2 ? 2 : 4;
+      const double *const s = shares.data() + 2 * KINDS * number + 2 * kind;
+      return s[1] > 0.0 ? s[0] / s[1] : 0.0;
+    };
+  }
+  void load(int material, double dt);
+  void update_points(int material, double dt);
+  void probe(int material);
+  double stiffness_at_rest(int material, double dt);
+};
+
+}    // namespace LAMMPS_NS
+#endif

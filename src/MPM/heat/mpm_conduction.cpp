@@ -1,0 +1,1073 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   With the capacities C_p = m_p c_p and volumes V_p of points, and N_ip, grad N_ip where they are,
+
+     C_i = sum_p C_p N_ip,  T_i = sum_p C_p N_ip [T_p + g_p (x_i - x_p)]/C_i,
+     C_i dT_i/dt = - sum_p V_p k_p (sum_j T_j grad N_jp) . grad N_ip + sum_p V_p s_p N_ip + faces,
+
+   with the gradient g_p of each point, except for the transfers pic and xpic, and sources s_p. Then points
+   get
+
+     T_p = sum_i N_ip T_i                                                  (pic, affine)
+     T_p = sum_i N_ip T_i + e (T_p - sum_i N_ip T_i of the start)          (relax)
+     T_p = sum_i N_ip (T_i - T_i of the start + u_i)                       (xpic)
+     g_p = D^-1 sum_i N_ip T_i (x_i - x_p),  D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T
+
+   with the terms u of MPMNodeScalar::add_terms() for the temperatures of nodes that would give points theirs
+   (XPIC, C.C. Hammerquist, J.A. Nairn, Comput. Methods Appl. Mech. Eng. 318 (2017) 724, where it is for
+   momentum). All transfers keep sum_p C_p T_p, because the sum of weights is one, and sum_i N_ip (x_i - x_p)
+   = 0.
+
+   Without g_p, nodes at faces, whose points are all on one side, would have the temperature of another place:
+   an error of first order in the heat that flows. Each step smoothes temperatures, with pic as a conductivity
+   of the order of h^2/dt does, and with affine as one of the order of h^4 k^2/dt for a wave number k. This is
+   too much in many short steps: a bar with 20 cells that is heated from one end was 8 % too warm with steps
+   of 1/100 of the explicit limit. The part of the temperatures of points that nodes do not see decays by
+   conduction in about the time h^2 rho c/k in which heat crosses a cell. With relax, a share 1 - e of it goes
+   in a step, with e = exp(-R dt k/(rho c h^2)), so that this smoothing does not depend on the time step and
+   is of second order. e is that of the material that conducts least, because heat is kept only if e is the
+   same for all points. Nodes next to an interface have the temperature of the points with much capacity.
+   Others would be pulled to it at a rate that is not that of their conduction: with 100 times the capacity on
+   one side, 30 % more heat went through a layer of 3 cells. Therefore R is reduced by the ratio of the
+   capacities.
+
+   Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, and the matrix of
+   capacities one of C_p diag(N). The greatest eigenvalue of the sum is not above the greatest one of the
+   parts,
+
+     V_p k_p/C_p max_d sum_i (dN_ip/dx_d)^2/N_ip,
+
+   as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The sum
+   is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever points
+   are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. With a tensor k it is the
+   greatest eigenvalue that counts. A function of GIMP of a point with the half size s (in cells, at most 1/2)
+   has at most 2/s + 1/(1 - s), and with domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip = sum_c
+   g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N grad N^T/N <= sum_c g_c g_c^T/w_c.
+
+   Linear functions and Bernstein polynomials have no such bound: a node that a point hardly reaches has next
+   to no capacity, while the gradient there is not small. For them the greatest rate is at most the greatest
+   sum of absolute values of a row of C^-1 K, which is not above
+
+     sum_p V_p sum_d |dN_ip/dx_d| sum_e |k_de| (2/h)/C_i,
+
+   as sum_j |dN_jp/dx_d| is at most 2/h. Inside of a body this is 4 d k/(rho c h^2) in d dimensions. At its
+   surface, nodes with next to no capacity can have any rate, up to 1e16 times as much. To limit it, points
+   that reach such a node conduct less, by the factor that makes the sum of the node four times the usual one:
+   the matrix stays symmetric, and heat is kept.
+
+   Bernstein polynomials: a point whose room is divided by a side of cells conducts with its parts in each
+   cell (mpm_cut_rooms.cpp), by which the sums are integrals wherever points are. Parts with a node whose rate
+   is more than 1.4 times what is allowed conduct nothing, because a little conduction would make an
+   insulating layer at a surface. These nodes, and those with less than a quarter of their conduction left,
+   are idle: no heat comes in there, so that the body ends at the side of the cell.
+
+   Melting. Where the conductivity jumps at the temperature of melting, partly molten points have that
+   temperature, and with it the conductivity of one phase. If that was not the phase that grows, the front was
+   up to 0.8 node spacings off. Heat flows along the gradient of the integral of k over the temperature, and
+   the mean of k over the temperatures around a point is its difference over a distance (V.R. Voller, C.R.
+   Swaminathan, Numer. Heat Transfer B 24 (1993) 161, at faces of cells). The temperatures are those of the
+   nodes, which have no plateau at a front. With a quarter of a node spacing on either side, results are the
+   same for all tables of a jump; with twice that, fronts are off by 0.1 cells more.
+
+   Total frame. Nodes are places X of the reference configuration, where the conductivity is J F^-1 k F^-T and
+   the volume V_p/J: the same sums with V_p F^-1 k F^-T. Around an axis of symmetry, points are rings with
+   their whole volume and capacity; nothing flows around the axis, so that there is no other term.
+
+   Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so
+   that it is that of the points to round-off.
+------------------------------------------------------------------------- */
+
+#include "heat/mpm_conduction.h"
+
+#include "atom.h"
+#include "base/mpm_clear.h"
+#include "base/mpm_points.h"
+#include "comm.h"
+#include "error.h"
+#include "field/mpm_cpdi.h"
+#include "field/mpm_field.h"
+#include "field/mpm_frame.h"
+#include "field/mpm_passes.h"
+#include "field/mpm_stencil.h"
+#include "heat/mpm_heat_body.h"
+#include "material/mean_conduction.h"
+#include "math_extra.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// greatest rate of nodes that points barely reach, over the bound of rates inside of a body
+static constexpr double MOST_AT_LIGHT_NODES = 4.0;
+// half of the range over which a conductivity that jumps at melting is averaged, in node spacings
+static constexpr double HALF_RANGE = 0.25;
+// Bernstein polynomials: points with less than this share of their conductivity left do not conduct
+static constexpr double TOO_LITTLE = 0.7;
+// nodes that have less than this share of the conduction around them get no heat through surfaces
+static constexpr double LEAST_LEFT = 0.25;
+// distance from a side of cells, in cells, within which a point is on both sides
+static constexpr double ON_SIDE = 1.0e-9;
+// ratio of conductivities for which means across interfaces matter little
+static constexpr double SAME = 2.0;
+
+/* ---------------------------------------------------------------------- */
+
+MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
+                             const MPMHeatCondition *conditions) :
+    Pointers(lmp),
+    field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer), cuts(field)
+{
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMConduction::init(double sigma, bool surfaces, bool &told_of_layers)
+{
+  told = &told_of_layers;
+  thermals.clear();
+  for (const auto *fix : field.materials) {
+    const auto &material = *fix->material;
+    if (!material.conducts()) continue;
+    const int T = fix->find_history("temperature"), molten = fix->find_history("molten");
+    thermals.push_back({fix, T, molten, material.conduction_varies(),
+                        molten >= 0 && conductivity_varies_with_temperature(material),
+                        material.conduction(nullptr)});
+  }
+  active = !thermals.empty();
+  total = field.frame->is_total();
+  steepest = 0.0;
+  if (field.options.shape == QUADRATIC || field.options.shape == CUBIC) {
+    const MPMStencil stencil(field);
+    constexpr int SAMPLES = 4096;
+    for (int k = 0; k < SAMPLES; k++) {
+      int node;
+      double w[4], slope[4], sum = 0.0;
+      const int n = stencil.weights((k + 1.0e-3) / SAMPLES, node, w, slope);
+      for (int j = 0; j < n; j++)
+        if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
+      steepest = std::max(steepest, sum / (field.lattice.h * field.lattice.h));
+    }
+  }
+  conducted = 0.0;
+  present.clear();
+  std::vector<signed char> mine(field.materials.size(), 0);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const auto *const fix = field.is_point(i) ? field.material_of(i) : nullptr)
+      mine[index_of(fix)] = 1;
+  keep_present(mine);
+  faces.init(sigma);
+  wants_volumes = faces.any() || (surfaces && thermals.size() < field.materials.size());
+  scalar.init(transfer.has_slopes(), wants_volumes);
+}
+
+std::size_t MPMConduction::index_of(const FixMPMMaterial *fix) const
+{
+  return std::find(field.materials.begin(), field.materials.end(), fix) - field.materials.begin();
+}
+
+bool MPMConduction::is_present(const Thermal &t) const
+{
+  return present[index_of(t.fix)];
+}
+
+/** Updates what depends on the materials of which any rank has points; mine: those of this rank. Materials of
+ *  other fields, and unused ones, change nothing. Collective. */
+void MPMConduction::keep_present(const std::vector<signed char> &mine)
+{
+  std::vector<signed char> all(mine.size());
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
+  if (all == present) return;
+  present = all;
+  slowest = std::numeric_limits<double>::max();
+  least_capacity = 0.0;
+  double greatest_capacity = 0.0;
+  for (const auto &t : thermals) {
+    if (!is_present(t)) continue;
+    const double least = t.all.orthotropic
+        ? std::min(t.all.conductivity, std::min(t.all.across[0], t.all.across[1]))
+        : t.all.conductivity;
+    const double capacity = t.fix->material->density() * t.all.capacity;
+    slowest = std::min(slowest, least / capacity);
+    least_capacity = greatest_capacity > 0.0 ? std::min(least_capacity, capacity) : capacity;
+    greatest_capacity = std::max(greatest_capacity, capacity);
+  }
+  if (greatest_capacity > 0.0) slowest *= least_capacity / greatest_capacity;
+  init_layers();
+}
+
+bool MPMConduction::conducts_in_part() const
+{
+  if (!conducts()) return false;
+  for (std::size_t k = 0; k < present.size(); k++)
+    if (present[k] && !thermal(field.materials[k])) return true;
+  return false;
+}
+
+void MPMConduction::find_points(bool may_rest)
+{
+  if (thermals.empty()) return;
+  int any = 0, all = 1;
+  std::vector<signed char> mine(field.materials.size(), 0);
+  for (const auto &run : field.map->runs) {
+    any |= thermal(run.material) != nullptr;
+    if (run.material) mine[index_of(run.material)] = 1;
+  }
+  if (field.materials.size() > 1) keep_present(mine);
+  if (any) field.jacobians.ask();
+  if (all && may_rest) MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
+  active = all;
+  if (active) return;
+  temperature.clear();
+  rate.clear();
+}
+
+/* ---------------------------------------------------------------------- */
+
+const MPMConduction::Thermal *MPMConduction::thermal(const FixMPMMaterial *fix) const
+{
+  for (const auto &t : thermals)
+    if (t.fix == fix) return &t;
+  return nullptr;
+}
+
+double MPMConduction::capacity_of(int i) const
+{
+  const Thermal *const t = thermal(field.material_of(i));
+  Conduction room;
+  return t ? atom->rmass[i] * t->at(i, room).capacity : 0.0;
+}
+
+double MPMConduction::heat_of_points() const
+{
+  double heat = 0.0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    const Thermal *const t = thermal(field.material_of(i));
+    if (t) heat += capacity_of(i) * fabs(t->fix->history[i][t->temperature]);
+  }
+  return heat;
+}
+
+bool MPMConduction::melts() const
+{
+  return std::any_of(thermals.begin(), thermals.end(), [](const Thermal &t) {
+    return t.molten >= 0;
+  });
+}
+
+bool MPMConduction::has_front() const
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    const Thermal *const t = field.is_point(i) ? thermal(field.material_of(i)) : nullptr;
+    if (!t || t->molten < 0) continue;
+    const double f = t->fix->history[i][t->molten];
+    if (f > 0.0 && f < 1.0) return true;
+  }
+  return false;
+}
+
+double MPMConduction::crossing_rate() const
+{
+  return slowest / (field.lattice.h * field.lattice.h);
+}
+
+double MPMConduction::volume_of(int i) const
+{
+  return atom->vfrac[i] * field.points->jacobian(i);
+}
+
+/** Materials of different conductivity in one field get means next to their interfaces, if conductivities are
+ *  numbers and functions are smooth. */
+void MPMConduction::init_layers()
+{
+  layers.reset();
+  greatest = 0.0;
+  const bool can = !total && steepest != 0.0;
+  bool differ = false, orthotropic = false;
+  double fastest = 0.0, least = 0.0;
+  const Thermal *first = nullptr;
+  for (const auto &t : thermals) {
+    if (!is_present(t)) continue;
+    orthotropic = orthotropic || t.all.orthotropic;
+    if (!first)
+      first = &t;
+    else
+      differ = differ || t.varies || first->varies || t.all.orthotropic != first->all.orthotropic ||
+          t.all.conductivity != first->all.conductivity;
+    const double capacity = t.fix->material->density() * t.all.capacity;
+    greatest = std::max(greatest, t.all.conductivity);
+    least = &t == first ? t.all.conductivity : std::min(least, t.all.conductivity);
+    fastest = std::max(fastest, t.all.conductivity / capacity);
+  }
+  if (!can && differ && greatest > SAME * least && !*told) {
+    *told = true;
+    if (comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix mpm/heat: conductivities of materials in fix mpm {} are {:.3g} to {:.3g}, "
+          "and with {} there are no means across their interfaces, through which too "
+          "much heat goes{}: use shape quadratic or cubic{}",
+          field.id(), least, greatest, total ? "frame total" : "this shape",
+          steepest == 0.0 ? " unless they are in planes of nodes" : "",
+          total ? " with frame updated" : "");
+  }
+  if (!can) {
+    greatest = 0.0;
+    return;
+  }
+  if (orthotropic && differ && !*told) {
+    *told = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/heat: materials of different conductivity share fix mpm {}, and one "
+                     "of them is orthotropic: there are no means across their interfaces, and with "
+                     "few cells too little or too much heat goes through",
+                     field.id());
+  }
+  if (orthotropic) return;
+  if (!differ) return;
+  const bool along = greatest <= MPMLayerMean::MOST * fastest * least_capacity;
+  layers = std::make_unique<MPMLayerMean>(field, along);
+  layers->init();
+}
+
+/** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160). */
+static void rotation(const double *F, double R[3][3])
+{
+  static constexpr int MOST = 30;
+  memcpy(R, F, 9 * sizeof(double));
+  for (int k = 0; k < MOST; k++) {
+    double inverse[3][3], change = 0.0;
+    MathExtra::invert3(R, inverse);
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) {
+        const double next = 0.5 * (R[a][b] + inverse[b][a]);
+        change = std::max(change, fabs(next - R[a][b]));
+        inverse[b][a] = next;
+      }
+    MathExtra::transpose3(inverse, R);
+    if (change < 1.0e-14) return;
+  }
+}
+
+void LAMMPS_NS::principal_conductivities(const Conduction &c, const double *F, double k[3],
+                                         double n[3][3])
+{
+  k[0] = c.conductivity;
+  for (int a = 1; a < 3; a++) k[a] = c.orthotropic ? c.across[a - 1] : c.conductivity;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) n[a][b] = a == b;
+  if (!c.orthotropic) return;
+  double R[3][3];
+  rotation(F, R);
+  MathExtra::times3_transpose(c.axis, R, n);
+}
+
+/** As Thermal::at(), with the mean of conductivities that jump. */
+const Conduction &MPMConduction::conduction_of(const Thermal &t, int i, Conduction &room) const
+{
+  if (!t.jumps || ranges.empty()) return t.at(i, room);
+  return room = mean_conduction(*t.fix->material, t.fix->history[i], ranges[i].low, ranges[i].high);
+}
+
+/** Finds the ranges of the means of conductivities that jump, from the temperatures of nodes. Raises the rate
+ *  of the fastest point by these means. */
+void MPMConduction::find_ranges()
+{
+  if (std::none_of(thermals.begin(), thermals.end(), [](const Thermal &t) {
+        return t.jumps;
+      }))
+    return;
+  ranges.resize(atom->nmax);
+  const int dim = field.lattice.dim;
+  const double half = HALF_RANGE * field.lattice.h;
+  scalar.gradients_to_points(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+        const Thermal &t = *thermal(run.material);
+        for (int p = 0; t.jumps && p < n; p++) {
+          double reach = 0.0;
+          for (int d = 0; d < dim; d++) reach = std::max(reach, half * fabs(q[p][d]));
+          ranges[first + p] = {q[p][3] - reach, q[p][3] + reach};
+        }
+      });
+  for (const auto &run : field.map->runs) {
+    const Thermal *const t = thermal(run.material);
+    for (int i = run.first; t && t->jumps && i < run.last; i++) {
+      Conduction room;
+      const double own = t->at(i, room).most(), mean = conduction_of(*t, i, room).most();
+      if (!(mean > own)) continue;
+      const double rate = simple ? mean * volumes[i] / (atom->rmass[i] * room.capacity)
+                                 : bound(*t, i, volumes[i]);
+      const double layer = layers ? layers->most(i) / own : 1.0;
+      fastest_point = std::max(fastest_point, layer * rate);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   Conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
+------------------------------------------------------------------------- */
+
+void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
+{
+  Conduction room;
+  const Conduction &c = conduction_of(t, i, room);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) k[a][b] = a == b ? c.conductivity : 0.0;
+  if (c.orthotropic) {
+    double along[3], n[3][3];
+    principal_conductivities(c, field.points->F[i], along, n);
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++)
+        k[a][b] = along[0] * n[0][a] * n[0][b] + along[1] * n[1][a] * n[1][b] +
+            along[2] * n[2][a] * n[2][b];
+  }
+  if (!total) return;
+  double F[3][3], inverse[3][3], half[3][3];
+  field.frame->lattice_F(i, F);
+  MathExtra::invert3(F, inverse);
+  MathExtra::times3(inverse, k, half);
+  MathExtra::times3_transpose(half, inverse, k);
+}
+
+/** Upper bound of the greatest eigenvalue of a symmetric matrix: the greatest sum of absolute values of a
+ *  row. */
+static double greatest_row(int dim, const double k[3][3])
+{
+  double most = 0.0;
+  for (int a = 0; a < dim; a++) {
+    double row = 0.0;
+    for (int b = 0; b < dim; b++) row += fabs(k[a][b]);
+    most = std::max(most, row);
+  }
+  return most;
+}
+
+/** Bound of sum_i grad N grad N^T/N of a point [1/area]; 0 if there is none. */
+double MPMConduction::steepness(int i) const
+{
+  const double h = field.lattice.h;
+  const int dim = field.lattice.dim;
+  if (field.boxes) {
+    double size[3], least = 0.5;
+    field.boxes->size_of(i, size);
+    for (int d = 0; d < dim; d++) least = std::min(least, size[d]);
+    return (2.0 / least + 1.0 / (1.0 - least)) / (h * h);
+  }
+  if (!field.domains) return steepest;
+  double x[24], w[8], g[24], sum[3][3] = {};
+  field.domains->corners_of(i, x, w, g);
+  for (int c = 0; c < 1 << dim; c++)
+    for (int a = 0; a < dim; a++)
+      for (int b = 0; b < dim; b++) sum[a][b] += g[dim * c + a] * g[dim * c + b] / w[c];
+  return greatest_row(dim, sum);
+}
+
+/** Bound of the rate of a point with this volume, or its largest diffusivity for functions that points do not
+ *  bound. */
+double MPMConduction::bound(const Thermal &t, int i, double volume) const
+{
+  Conduction room;
+  const Conduction &c = conduction_of(t, i, room);
+  double most = c.most();
+  if (total) {
+    double k[3][3];
+    tensor(t, i, k);
+    most = greatest_row(field.lattice.dim, k);
+  }
+  const double steep = steepness(i);
+  return most * volume / (atom->rmass[i] * c.capacity) * (steep > 0.0 ? steep : 1.0);
+}
+
+bool MPMConduction::is_bounded_by_rows() const
+{
+  return !field.boxes && !field.domains && steepest == 0.0;
+}
+
+bool MPMConduction::looks_beyond_points() const
+{
+  return field.options.shape == BERNSTEIN;
+}
+
+void MPMConduction::extend_topology()
+{
+  faces.extend_topology();
+  if (!looks_beyond_points() || !has_materials()) return;
+  const auto nblocks = (int) field.grid.blocks.size();
+  for (int ib = 0; ib < nblocks; ib++) {
+    const auto &block = field.grid.blocks[ib];
+    const int b[3] = {block.b[0], block.b[1], block.b[2]};
+    activate_blocks_around(field, b);
+  }
+}
+
+/** Adds the rows of the matrix of rates, for functions that points alone do not bound. */
+void MPMConduction::add_rows(Left left)
+{
+  scalar.add_rows([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+    const Thermal *const t = thermal(run.material);
+    for (int p = 0; p < n; p++) {
+      double k[3][3];
+      tensor(*t, first + p, k);
+      double V = volumes[first + p];
+      if (cuts.any() && cuts.is_cut[first + p]) V = 0.0;
+      if (left == AS_SHARES) V *= shares[first + p];
+      for (int a = 0; a < 3; a++) q[p][a] = V * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+    }
+  });
+  for (const auto &part : cuts.parts) {
+    double k[3][3];
+    tensor(*thermal(field.material_of(part.point)), part.point, k);
+    const double times = 2.0 / field.lattice.h * part.volume * volumes[part.point] *
+        (left == AS_SHARES ? part.share : 1.0);
+    cuts.each_node(part, [&](int node, const double *slope) {
+      for (int a = 0; a < 3; a++)
+        rate[node] += times * fabs(slope[a]) * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
+    });
+  }
+}
+
+/** Reduces the conduction of points at nodes with a much greater rate than inside of a body, which have next
+ *  to no capacity. */
+double MPMConduction::bound_by_rows(double greatest_of_rank)
+{
+  const double usual = 4.0 * field.lattice.dim / (field.lattice.h * field.lattice.h);
+  double mine[2] = {usual * fastest_point, greatest_of_rank}, all[2];
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  shares.clear();
+  idle.clear();
+  usual_rate = all[0];
+  if (cuts.any()) {
+    shares.assign(atom->nmax, 1.0);
+    for (const auto &part : cuts.parts) shares[part.point] = 0.0;
+  }
+  const double limit = MOST_AT_LIGHT_NODES * all[0];
+  if (all[1] <= limit) return mine[1];
+
+  field.nodes.complete(rate.data(), 1, 1);
+  shares.resize(atom->nmax, 1.0);
+  if (looks_beyond_points()) {
+    idle.resize(rate.size());
+    for (std::size_t k = 0; k < rate.size(); k++) idle[k] = rate[k] * TOO_LITTLE > limit;
+  }
+  for (auto &part : cuts.parts)
+    for (int k = 0; k < (field.lattice.dim == 3 ? 27 : 9); k++)
+      if (is_idle(part.node[k]))
+        part.share = 0.0;
+      else if (part.share * rate[part.node[k]] > limit)
+        part.share = limit / rate[part.node[k]];
+  MPMStencil stencil(field);
+  const double width = shape_constants[field.options.shape].cell, h = field.lattice.h;
+  const int dim = field.lattice.dim;
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; thermal(run.material) && i < run.last; i++) {
+      // on a side of cells, round-off decides in which of them the kernels see the point
+      const double *const place = field.frame->places()[i];
+      bool on_side[3] = {false, false, false};
+      for (int d = 0; d < dim; d++) {
+        const double cells = (place[d] - field.lattice.origin[d]) / (width * h);
+        on_side[d] = std::fabs(cells - std::round(cells)) < ON_SIDE;
+      }
+      for (int k = 0; k < 1 << dim; k++) {
+        double x[3] = {place[0], place[1], place[2]};
+        bool again = false;
+        for (int d = 0; d < dim; d++) {
+          if (on_side[d]) x[d] += (k >> d & 1 ? 2.0 : -2.0) * ON_SIDE * width * h;
+          again = again || (!on_side[d] && (k >> d & 1));
+        }
+        if (again) continue;
+        stencil.visit_around(x, [&](int64_t node, double, const double *) {
+          if (is_idle(node))
+            shares[i] = 0.0;
+          else if (shares[i] * rate[node] > limit)
+            shares[i] = limit / rate[node];
+        });
+      }
+    }
+  if (looks_beyond_points()) {
+    const std::vector<double> whole = rate;
+    add_rows(AS_SHARES);
+    scalar.greatest_row();
+    field.nodes.complete(rate.data(), 1, 1);
+    for (std::size_t k = 0; k < rate.size(); k++)
+      if (rate[k] < LEAST_LEFT * whole[k]) idle[k] = 1;
+  }
+  return limit;
+}
+
+const std::vector<double> &MPMConduction::face_capacity()
+{
+  if (idle.empty()) return scalar.capacity;
+  capacity_at_faces = scalar.capacity;
+  for (std::size_t k = 0; k < idle.size(); k++)
+    if (idle[k]) capacity_at_faces[k] = 0.0;
+  return capacity_at_faces;
+}
+
+/** Calls loop(plain) with plain as a constant: loops over points then have neither branches nor calls for
+ *  what is the same for all points. */
+template <class Loop> static void if_plain(bool plain, const Loop &loop)
+{
+  if (plain)
+    loop(std::true_type());
+  else
+    loop(std::false_type());
+}
+
+/** Copies the first DIM reals of n rows of four. */
+template <int DIM> static void copy_rows(int n, const double *from, double *to)
+{
+  for (int p = 0; p < n; p++)
+    for (int d = 0; d < DIM; d++) to[DIM * p + d] = from[4 * p + d];
+}
+
+/* ----------------------------------------------------------------------
+   temperatures of the nodes
+------------------------------------------------------------------------- */
+
+double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
+{
+  add_points(gradients, starts);
+  const double most = end_nodes();
+  if (!is_bounded_by_rows()) return most;
+  if (looks_beyond_points())
+    cuts.find([this](const MPMPointMap::Run &run) {
+      return thermal(run.material) != nullptr;
+    });
+  add_rows();
+  const double most_by_rows = bound_by_rows(most_of_rows());
+  if (looks_beyond_points() && faces.any()) find_ends();
+  return most_by_rows;
+}
+
+/** Finds where material ends at faces. A last cell with a single layer of points conducts only along one
+ *  combination of its nodes, that of the functions at the end of the layer. Heat with other weights, as at a
+ *  face some way off, would stay in these nodes. */
+void MPMConduction::find_ends()
+{
+  static constexpr double REACH = 5.0;    // node spacings: the cell of a face and the next one
+  const MPMFrame &frame = *field.frame;
+  const double reach = REACH * field.lattice.h;
+  const auto add = [&](const MPMCutRooms::Part &part) {
+    const int i = part.point;
+    const double V = part.volume * atom->vfrac[i] * frame.lattice_jacobian(i) /
+        frame.circle(frame.places()[i][0]);
+    cuts.each_node(part, [&](int node, const double *slope) {
+      for (int d = 0; d < 3; d++) ends[3 * node + d] += V * slope[d];
+    });
+  };
+  ends.assign(3 * field.grid.nnodes(), 0.0);
+  for (const auto &part : cuts.parts)
+    if (faces.is_near(frame.places()[part.point], reach)) add(part);
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; thermal(run.material) && i < run.last; i++) {
+      MPMCutRooms::Part whole;
+      if (!cuts.is_cut[i] && faces.is_near(frame.places()[i], reach) &&
+          cuts.make_whole(i, run, whole))
+        add(whole);
+    }
+  field.nodes.sum(ends.data(), 3, 0, 3);
+  field.nodes.complete(ends.data(), 3, 3);
+}
+
+void MPMConduction::add_points(const MPMRows &gradients, bool starts)
+{
+  const int dim = field.lattice.dim;
+  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
+  ranges.clear();
+  at_start = relaxes && starts && !faces.any() ? TO_BE_SEEN : OF_NODES;
+  if (at_start == TO_BE_SEEN) seen.resize(atom->nmax);
+  simple = !total && steepest > 0.0;
+  keeps = relaxes && at_start == OF_NODES;
+  double most = 0.0;
+  volumes.resize(atom->nmax);
+  if (layers)
+    layers->find([&](const MPMPointMap::Run &run, int first, int n, double *k, double *V) {
+      const Thermal *const t = thermal(run.material);
+      if (!t) return false;
+      Conduction room;
+      for (int p = 0; p < n; p++) {
+        k[p] = t->at(first + p, room).conductivity;
+        V[p] = volume_of(first + p);
+      }
+      return true;
+    });
+  scalar.points_to_nodes(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Points &points) {
+        const Thermal *const t = thermal(run.material);
+        if (!t) return false;
+        const double *const rmass = atom->rmass + first, *const vfrac = atom->vfrac + first;
+        double *const V = volumes.data() + first;
+        double room[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, room);
+        for (int p = 0; p < n; p++) V[p] = vfrac[p] * J[p];
+        Conduction c = t->all;
+        double greatest = c.most();
+        const double *const history = t->fix->history[first];
+        const int width = t->fix->nhistory;
+        points.at.values = history + t->temperature;
+        points.at.value_width = width;
+        if (gradients) {
+          points.at.slopes = gradients[first];
+          points.at.slope_width = dim;
+        }
+        if (simple && !t->varies && !layers) {
+          for (int p = 0; p < n; p++) points.capacity[p] = rmass[p] * c.capacity;
+          for (int p = 0; p < n; p++) room[p] = greatest * V[p];
+        } else {
+          for (int p = 0; p < n; p++) {
+            if (t->varies) {
+              c = t->fix->material->conduction(history + width * p);
+              greatest = c.most();
+            }
+            if (layers) greatest = layers->most(first + p);
+            if (!simple) most = std::max(most, bound(*t, first + p, V[p]));
+            points.capacity[p] = rmass[p] * c.capacity;
+            room[p] = greatest * V[p];
+          }
+        }
+        if (simple) raise_ratio(most, n, room, points.capacity);
+        for (int p = 0; wants_volumes && p < n; p++)
+          points.volume[p] = total ? vfrac[p] * field.frame->lattice_jacobian(first + p) : V[p];
+        return true;
+      },
+      false);
+  fastest_point = most;
+}
+
+double MPMConduction::end_nodes()
+{
+  if (keeps) scalar.keep();
+  if (transfer.kind == MPMHeatTransfer::XPIC) find_unseen();
+  find_ranges();
+  return simple ? fastest_point * steepest : fastest_point;
+}
+
+/** XPIC: before becomes the difference of the temperatures from those of the series, so that points get the
+ *  new temperature less this difference. */
+void MPMConduction::find_unseen()
+{
+  std::vector<double> &unseen = scalar.before;
+  unseen = temperature;
+  scalar.add_terms(
+      transfer.order,
+      [this](const MPMPointMap::Run &run, int first, int n, double *C) {
+        const Thermal *const t = thermal(run.material);
+        Conduction room;
+        for (int p = 0; p < n; p++) C[p] = atom->rmass[first + p] * t->at(first + p, room).capacity;
+      },
+      unseen);
+  for (std::size_t k = 0; k < unseen.size(); k++) unseen[k] = temperature[k] - unseen[k];
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Are fluxes along gradients, with one number for each material? */
+bool MPMConduction::is_plain() const
+{
+  return !total && !layers && shares.empty() &&
+      std::none_of(thermals.begin(), thermals.end(), [](const Thermal &t) {
+        return t.varies || t.all.orthotropic;
+      });
+}
+
+/** Turns gradients of n points into fluxes times volumes, and values into 0. */
+void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q,
+                            Left left) const
+{
+  const double *const V = volumes.data() + first;
+  const double *const share = shares.empty() || left == ALL ? nullptr : shares.data() + first;
+  Conduction room;
+  for (int p = 0; p < n; p++) {
+    const double conducting = share ? V[p] * share[p] : V[p];
+    if (total || t.all.orthotropic) {
+      double k[3][3], flux[3];
+      tensor(t, first + p, k);
+      MathExtra::matvec(k, q[p], flux);
+      for (int d = 0; d < 3; d++) q[p][d] = -conducting * flux[d];
+    } else if (layers) {
+      double times = -conducting;
+      if (t.jumps && !ranges.empty()) {
+        const double mean = conduction_of(t, first + p, room).conductivity;
+        times *= mean / t.at(first + p, room).conductivity;
+      }
+      layers->multiply(first + p, q[p]);
+      for (int d = 0; d < 3; d++) q[p][d] *= times;
+    } else {
+      const double factor = -conducting * conduction_of(t, first + p, room).conductivity;
+      for (int d = 0; d < 3; d++) q[p][d] *= factor;
+    }
+    q[p][3] = 0.0;
+  }
+}
+
+/** Factors that turn gradients of n points into fluxes times volumes. */
+void MPMConduction::conduct_plainly(const Thermal &t, int first, int n, double *factors) const
+{
+  const double *const V = volumes.data() + first;
+  for (int p = 0; p < n; p++) factors[p] = -t.all.conductivity * V[p];
+}
+
+void MPMConduction::find_changes()
+{
+  if (is_plain()) {
+    scalar.find_rates_along([&](const MPMPointMap::Run &run, int first, int n,
+                                const MPMNodeScalar::Rows, double *factors) {
+      conduct_plainly(*thermal(run.material), first, n, factors);
+    });
+    return;
+  }
+  scalar.find_rates(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+        conduct(*thermal(run.material), first, n, q);
+      },
+      [this]() {
+        conduct_parts();
+      });
+}
+
+/** Adds the conduction of points whose rooms are in several cells. */
+void MPMConduction::conduct_parts()
+{
+  for (const auto &part : cuts.parts) {
+    double q[1][4] = {};
+    cuts.gradient(part, temperature, q[0]);
+    conduct(*thermal(field.material_of(part.point)), part.point, 1, q, ALL);
+    for (int d = 0; d < 3; d++) q[0][d] *= part.volume * part.share;
+    cuts.add(part, q[0], rate);
+  }
+}
+
+/** Visits the terms of points. A node that a point sees from several corners of its domain counts once. */
+void MPMConduction::each_term(const MPMDiffusion::Term &use) const
+{
+  const MPMStencil stencil(field);
+  const int dim = field.lattice.dim;
+  std::vector<int64_t> nodes;
+  std::vector<double> gradients;
+  for (const auto &run : field.map->runs) {
+    const Thermal *const t = thermal(run.material);
+    for (int i = run.first; t && i < run.last; i++) {
+      if (cuts.any() && cuts.is_cut[i]) continue;
+      nodes.clear();
+      gradients.clear();
+      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+        std::size_t k = nodes.size();
+        if (field.domains) k = std::find(nodes.begin(), nodes.end(), node.number) - nodes.begin();
+        if (k == nodes.size()) {
+          nodes.push_back(node.number);
+          gradients.resize(gradients.size() + dim, 0.0);
+        }
+        for (int d = 0; d < dim; d++) gradients[dim * k + d] += node.gradient[d];
+      });
+      double stiffness[9];
+      for (int column = 0; column < dim; column++) {
+        double q[1][4] = {};
+        q[0][column] = -1.0;
+        conduct(*t, i, 1, q);
+        for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
+      }
+      use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
+    }
+  }
+  for (const auto &part : cuts.parts) {
+    nodes.clear();
+    gradients.clear();
+    cuts.each_node(part, [&](int node, const double *slope) {
+      nodes.push_back(node);
+      gradients.insert(gradients.end(), slope, slope + dim);
+    });
+    double stiffness[9];
+    for (int column = 0; column < dim; column++) {
+      double q[1][4] = {};
+      q[0][column] = -part.volume * part.share;
+      conduct(*thermal(field.material_of(part.point)), part.point, 1, q, ALL);
+      for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
+    }
+    use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
+  }
+}
+
+void MPMConduction::find_rates(const double *source, Heats &power)
+{
+  const auto see = [&](int first, int n, const MPMNodeScalar::Rows q) {
+    for (int p = 0; at_start == TO_BE_SEEN && p < n; p++) seen[first + p] = q[p][3];
+  };
+  if (!source && is_plain())
+    scalar.find_rates_along([&](const MPMPointMap::Run &run, int first, int n,
+                                const MPMNodeScalar::Rows q, double *factors) {
+      see(first, n, q);
+      conduct_plainly(*thermal(run.material), first, n, factors);
+    });
+  else
+    scalar.find_rates(
+        [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
+          see(first, n, q);
+          conduct(*thermal(run.material), first, n, q);
+          if (!source) return;
+          const double *const V = volumes.data() + first;
+          double sum = 0.0;
+          for (int p = 0; p < n; p++) sum += q[p][3] = V[p] * source[first + p];
+          power[SOURCES] += sum;
+        },
+        [this]() {
+          conduct_parts();
+        });
+  if (at_start == TO_BE_SEEN) at_start = SEEN;
+}
+
+void MPMConduction::add_given()
+{
+  for (std::size_t k = 0; k < given.size(); k++)
+    if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (duration * scalar.capacity[k]);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMConduction::give(std::vector<double> &energy)
+{
+  const auto &pic = field.pic;
+  clear_points(at_rest, atom, 3);
+  const PointRows r = field.rows_at_rest(at_rest.data(), energy.data());
+  const TransferStep still = field.step_data(0.0);
+  auto &nodes = field.work.nodes;
+  points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
+    if (std::any_of(energy.begin() + run.first, energy.begin() + run.last, [](double e) {
+          return e != 0.0;
+        }))
+      pic.p2g_momentum(r, still, run.first, run.last, base, field.map->tile, box);
+  });
+  field.nodes.sum(nodes.data(), pic.nreal, 3, 1);
+  given.resize(field.grid.nnodes(), 0.0);
+  for (std::size_t n = 0; n < given.size(); n++) given[n] += nodes[n * pic.nreal + 3];
+}
+
+/* ----------------------------------------------------------------------
+   temperatures of points
+------------------------------------------------------------------------- */
+
+double MPMConduction::nodes_to_points(const MPMRows &gradients)
+{
+  const int dim = field.lattice.dim;
+  const double crossings = duration * (slowest_crossing > 0.0 ? slowest_crossing : crossing_rate());
+  const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX,
+             xpic = transfer.kind == MPMHeatTransfer::XPIC;
+  const double keep = relaxes ? exp(-transfer.relax * crossings) : 0.0;
+  double got = 0.0;
+  change = 0.0;
+  scalar.nodes_to_points(
+      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q,
+          const double *before) {
+        if (at_start == SEEN) before = seen.data() + first;
+        const Thermal *const t = thermal(run.material);
+        Conduction c = t->all;
+        double sum = 0.0, most = change, *const rows = t->fix->history[first];
+        const double *const rmass = atom->rmass + first;
+        const int width = t->fix->nhistory;
+        if_plain(relaxes && !t->varies && !c.by_enthalpy && t->molten < 0, [&](auto plain) {
+          for (int p = 0; p < n; p++) {
+            double *const history = rows + width * p, &T = history[t->temperature];
+            if (!plain && t->varies) c = t->fix->material->conduction(history);
+            double now = q[p][3];
+            if (plain || relaxes) now += keep * (T - before[p]);
+            if (!plain && xpic) now -= before[p];
+            sum += rmass[p] * c.capacity * (now - T);
+            most = std::max(most, fabs(now - T));
+            if (!plain && c.by_enthalpy) {
+              t->fix->material->warm(history, c.capacity * (now - T));
+            } else {
+              T = now;
+              if (!plain && t->molten >= 0) c.melting.settle(T, history[t->molten]);
+            }
+          }
+        });
+        if (gradients && dim == 3)
+          copy_rows<3>(n, q[0], gradients[first]);
+        else if (gradients)
+          copy_rows<2>(n, q[0], gradients[first]);
+        got += sum;
+        change = most;
+      },
+      (relaxes && at_start == OF_NODES) || xpic);
+  ranges.clear();
+  return got;
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Greatest of all conductivities, including those that points have at present by their temperature or a
+ *  random field. */
+double MPMConduction::greatest_possible() const
+{
+  if (std::none_of(thermals.begin(), thermals.end(), [this](const Thermal &t) {
+        return t.varies && is_present(t);
+      }))
+    return greatest;
+  double mine = greatest, all;
+  Conduction room;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (const Thermal *const t = field.is_point(i) ? thermal(field.material_of(i)) : nullptr)
+      mine = std::max(mine, t->at(i, room).conductivity);
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+  return all;
+}
+
+/** Points with domains have the bound of the last step and, before the first step, that inside of an
+ *  undeformed body. Functions that points alone do not bound have the rate of light nodes, which appear as
+ *  soon as a point comes to another cell. */
+double MPMConduction::greatest_rate_of_points(tagint &tag) const
+{
+  if (!active) return 0.0;
+  const double h = field.lattice.h;
+  const int dim = field.lattice.dim;
+  const bool bounded = steepest > 0.0 || field.boxes;
+  double most = 0.0;
+  const double possible = layers ? greatest_possible() : 0.0;
+  Conduction room;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    const Thermal *const t = thermal(field.material_of(i));
+    if (!t) continue;
+    double here = 0.0;
+    if (bounded) {
+      here = bound(*t, i, volume_of(i));
+      // at interfaces what is possible counts, not what is there at
+      // present, so that it is the same after a restart
+      if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
+    } else if (!field.domains || conducted == 0.0) {
+      double k[3][3], x[24], least = 1.0;
+      tensor(*t, i, k);
+      if (field.domains) field.domains->corners_of_box(i, x);
+      for (int d = 0; field.domains && d < dim; d++)
+        for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
+      const double steep = field.domains ? 1.0 / (least * least) : MOST_AT_LIGHT_NODES * 4.0 * dim;
+      here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
+          (atom->rmass[i] * t->at(i, room).capacity);
+    }
+    if (here <= most) continue;
+    most = here;
+    tag = atom->tag[i];
+  }
+  return field.domains && conducted > 0.0 ? conducted : most;
+}
+
+double MPMConduction::memory_usage() const
+{
+  return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
+      cuts.memory_usage() + idle.capacity() + ends.capacity() * sizeof(double) +
+      capacity_at_faces.capacity() * sizeof(double) +
+      (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
+      sizeof(double);
+}

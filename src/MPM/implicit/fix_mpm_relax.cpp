@@ -1,0 +1,326 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   A body that is released from a state out of equilibrium turns the energy that it has too much into
+   motion. Where this is greatest it passes through equilibrium of its slowest mode; taking the motion away
+   there takes that energy out, and what is left is that of the other modes. No coefficient has to be
+   chosen, and where the energy does not fall nothing is done.
+
+   Velocities belong to the middle of steps. A mode of angular frequency omega that starts at u is at u cos((n + 1/2) theta)/cos(theta/2) n
+   steps after a rest, with 2 sin(theta/2) = omega dt. Where its maximum is passed within three steps, that is for omega dt from
+   0.77 to 1.41, this is further away than it began, by up to a quarter each time, and the mode grows without end when no other
+   one is left. From rest, however, forces have half a step to the middle of the next one only: where nodes get half of the
+   change of their velocities there, the mode is at u cos(n theta). As that makes way more slowly, it is done once the
+   energies at rests that come so soon have grown.
+
+   Forces on a node are balanced if its velocity does not change: m dv/dt, with the reactions of walls and
+   contacts, which have changed velocities in the same step. They are compared with the forces that the
+   stress of points brings to nodes, sum_p V_p |sigma_p|/h, which cancel in equilibrium.
+------------------------------------------------------------------------- */
+
+#include "implicit/fix_mpm_relax.h"
+
+#include "base/mpm_options.h"
+#include "base/mpm_points.h"
+#include "base/mpm_state.h"
+#include "contact/fix_mpm_contact.h"
+#include "field/mpm_field.h"
+#include "field/mpm_frame.h"
+#include "field/mpm_rest.h"
+#include "heat/fix_mpm_heat.h"
+#include "implicit/mpm_mls_turn.h"
+#include "pore/fix_mpm_pore.h"
+#include "refine/fix_mpm_refine.h"
+#include "walls/fix_mpm_boundary.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "output.h"
+#include "timer.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double SOON = 3.0;    // steps between two rests
+static constexpr double GROWN =
+    100.0;    // largest kinetic energy before a rest over the least one so far
+static constexpr double UNKNOWN = std::numeric_limits<double>::infinity();
+
+/* ----------------------------------------------------------------------
+   fix ID all mpm/relax TOLERANCE keyword value ...
+------------------------------------------------------------------------- */
+
+Options MPMRelaxOptions::declare()
+{
+  using namespace option;
+  Options o("fix mpm/relax");
+  o.argument(number(tolerance, "largest ratio of forces", POSITIVE));
+  o.add("every", {integer(look_every, "N", POSITIVE, "check the forces every this many steps")});
+  o.add("stop", {yes_no(stops)}, "end the run when forces are balanced");
+  return o;
+}
+
+FixMPMRelax::FixMPMRelax(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  if (igroup != 0)
+    error->all(FLERR, 1, "Fix mpm/relax brings the points of all fix mpm to rest: use group all");
+  Options options = declare();
+  read_options(lmp, options, narg, arg, 3);
+  ratio = least = UNKNOWN;
+  nevery = 1;
+  scalar_flag = vector_flag = 1;
+  size_vector = 4;
+  global_freq = 1;
+  extscalar = extvector = 0;
+  restart_global = 1;
+  dynamic_group_allow = 1;
+}
+
+void FixMPMRelax::init()
+{
+  require_field(lmp, *this);
+  refuse_second(lmp, *this);
+}
+
+void FixMPMRelax::init_physics(MPMPlan &plan)
+{
+  fields = plan.fields;
+  for (const auto *pore : find_fixes<FixMPMPore>(lmp))
+    if (pore->moves())
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/relax cannot bring water with inertia to rest: use formulation u-p of fix "
+          "{} {} until bodies are at rest",
+          pore->style, pore->id);
+  for (auto *field : fields) field->keep_old = true;
+  may_start_by_half = can_start_by_half(plan);
+}
+
+/** Half of the velocities is what holds at nodes, too, where walls are at rest and other physics does not look at these. */
+bool FixMPMRelax::can_start_by_half(const MPMPlan &plan) const
+{
+  const bool simple_fields = std::none_of(fields.begin(), fields.end(), [](const MPMField *field) {
+    return field->options.has_fmpm() || field->options.has_xpic();
+  });
+  const bool at_rest = std::all_of(plan.actions.begin(), plan.actions.end(), [](auto *action) {
+    const auto *wall = dynamic_cast<FixMPMBoundary *>(action);
+    return wall ? !wall->moves()
+                : dynamic_cast<FixMPMContact *>(action) || dynamic_cast<FixMPMRefine *>(action);
+  });
+  const bool alone = std::all_of(plan.physics.begin(), plan.physics.end(), [this](auto *other) {
+    return other == this || other->only_loads() || dynamic_cast<FixMPMRefine *>(other) ||
+        dynamic_cast<FixMPMHeat *>(other);
+  });
+  return simple_fields && at_rest && alone;
+}
+
+void FixMPMRelax::add_stages(MPMPlan &plan, MPMPlan::Place place)
+{
+  if (place == MPMPlan::AFTER_SOLVE)
+    plan.together("relaxation", [this]() {
+      look();
+    });
+  if (place == MPMPlan::AFTER_MOTION)
+    plan.together("relaxation", [this]() {
+      if (falls) rest();
+    });
+}
+
+void FixMPMRelax::setup(int)
+{
+  state = RUNNING;
+  ratio = UNKNOWN;    // loads can be others
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Half a step from rest to the middle of this one: walls and contacts have had the forces of all of it. Of this, the ledger has the energy
+ *  that nodes lose; the watch, which has the work of forces at the mean velocities of points, the rest. */
+void FixMPMRelax::start_by_half()
+{
+  for (auto *field : fields) {
+    Grid &grid = field->grid;
+    double before, after, unused;
+    field->ledger.nodal_kinetic_energies(unused, before);
+    for (int64_t node = 0; node < grid.nnodes(); node++) {
+      double *const record = grid.record(node);
+      if (!(record[3] > 0.0)) continue;
+      for (int d = 0; d < 3; d++) record[d] -= 0.5 * (record[d] - record[4 + d]);
+    }
+    field->ledger.nodal_kinetic_energies(unused, after);
+    field->ledger.take(before - after);
+    taken[0] += before - after;
+    taken[1] -= before - 2.0 * after;
+  }
+  kinetic *= 0.25;
+}
+
+void FixMPMRelax::look()
+{
+  const bool starts = may_start_by_half && grows > 0.0 && kinetic == 0.0 && interval <= SOON;
+  const bool looks = std::fmod(nsteps++, look_every) == 0.0;
+  double mine[3] = {0.0, 0.0, 0.0}, all[3];    // energy, forces, forces of stress
+  for (auto *field : fields) {
+    Grid &grid = field->grid;
+    const double *record = grid.nodes();
+    double energy = 0.0, forces = 0.0;
+    for (const auto &block : grid.blocks)
+      for (int n = 0; n < NODES_PER_BLOCK; n++, record += 8) {
+        if (!(block.owned >> n & 1) || !(record[3] > 0.0)) continue;
+        double square = 0.0;
+        for (int d = 0; d < 3; d++) {
+          const double change = record[d] - record[4 + d];
+          energy += 0.5 * record[3] * record[d] * record[d];
+          square += change * change;
+        }
+        forces += record[3] * sqrt(square);
+      }
+    mine[0] += energy * force->mvv2e;
+    mine[1] += forces / (field->step_dt() * force->ftm2v);
+  }
+  if (looks) mine[2] = force_of_stress();
+  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  peak = all[0] < kinetic ? kinetic : 0.0;
+  falls = all[0] < kinetic || state == LAST_STEP;
+  kinetic = all[0];
+  unbalanced = all[1];
+  if (starts) start_by_half();
+  if (!looks) return;
+  carried = all[2];
+  ratio = unbalanced == 0.0 ? 0.0 : unbalanced / carried;
+  // forces that this brings are not there yet
+  for (const auto *field : fields)
+    if (field->frame->strains_on_average()) ratio = UNKNOWN;
+  if (ratio <= tolerance) falls = true;
+}
+
+/** Of the points of this rank. */
+double FixMPMRelax::force_of_stress() const
+{
+  double sum = 0.0;
+  for (auto *field : fields) {
+    double mine = 0.0;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i)) continue;
+      const double *const s = field->points->tau[i];
+      mine += atom->vfrac[i] *
+          sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2] +
+               2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+    }
+    sum += mine / (field->lattice.h * force->nktv2p);
+  }
+  return sum;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRelax::rest()
+{
+  if (!told_of_turns) tell_of_turns();
+  for (auto *field : fields) put_to_rest(*field, taken);
+  kinetic = 0.0;
+  nrests++;
+  interval = nsteps - rested;
+  rested = nsteps;
+  if (interval > SOON || peak == 0.0) return;
+  if (peak > GROWN * least) grows = 1.0;
+  least = std::min(least, peak);
+}
+
+/** Once. */
+void FixMPMRelax::tell_of_turns()
+{
+  for (const auto *field : fields) {
+    const double turn = turn_with_mls(*field);
+    if (!is_turned(turn)) continue;
+    told_of_turns = true;
+    if (comm->me == 0)
+      error->warning(FLERR, "Fix mpm/relax {}: {}", id, about_turn_with_mls(turn, field->id()));
+    return;
+  }
+}
+
+/* ----------------------------------------------------------------------
+   the run ends as with fix halt, a step after it is known that it does, so that there is thermodynamic
+   output of the last one
+------------------------------------------------------------------------- */
+
+void FixMPMRelax::end_of_step()
+{
+  if (!stops) return;
+  if (state == LAST_STEP) {
+    state = ENDED;
+    timer->force_timeout();
+  } else if (state == RUNNING && ratio <= tolerance) {
+    state = LAST_STEP;
+    const bigint last = update->ntimestep + 1;
+    output->next_thermo = std::min(output->next_thermo, last);
+    output->next = std::min(output->next, last);
+    modify->addstep_compute_all(last);
+  }
+}
+
+void FixMPMRelax::post_run()
+{
+  if (state == ENDED) {
+    timer->reset_timeout();
+    if (comm->me == 0)
+      utils::logmesg(lmp, "Fix mpm/relax {}: forces are balanced to {:.3g} after {:.0f} rests\n",
+                     id, ratio, nrests);
+  } else if (comm->me == 0 && update->nsteps > 0 && stops) {
+    const bool nearly = state == LAST_STEP;
+    error->warning(
+        FLERR,
+        "Fix mpm/relax {}: the run has ended {} (ratio of forces {:.3g}, tolerance {:.3g}): "
+        "run more steps",
+        id, nearly ? "just before the last rest" : "before forces are balanced", ratio, tolerance);
+  }
+}
+
+double FixMPMRelax::compute_vector(int k)
+{
+  const double values[4] = {unbalanced, carried, kinetic, nrests};
+  return values[k];
+}
+
+/* ---------------------------------------------------------------------- */
+
+void FixMPMRelax::write_restart(FILE *fp)
+{
+  keep_totals(world, taken, 2);
+  if (comm->me) return;
+  const double list[] = {kinetic,  unbalanced, carried, ratio,    nrests, nsteps,
+                         taken[0], taken[1],   rested,  interval, least,  grows};
+  const int size = sizeof(list);
+  fwrite(&size, sizeof(int), 1, fp);
+  fwrite(list, size, 1, fp);
+}
+
+void FixMPMRelax::restart(char *buf)
+{
+  const auto *const list = (const double *) buf;
+  kinetic = list[0];
+  unbalanced = list[1];
+  carried = list[2];
+  ratio = list[3];
+  nrests = list[4];
+  nsteps = list[5];
+  if (comm->me == 0) std::copy_n(list + 6, 2, taken);
+  rested = list[8];
+  interval = list[9];
+  least = list[10];
+  grows = list[11];
+}

@@ -1,0 +1,94 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_IMPLICIT_PRESSURE_H
+#define LMP_MPM_IMPLICIT_PRESSURE_H
+
+#include "implicit/mpm_implicit.h"
+
+#include <memory>
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMNodePressure;
+
+/** The part of implicit steps that belongs to a pressure of nodes: its values p, the residual of its equations,
+ *  and the joint linear system with the motion. Vectors of that system are [node][dim] displacements, followed
+ *  by [node] pressures. */
+class MPMImplicit::Joint : public MPM_NS::LinearSystem {
+ public:
+  Joint(MPMImplicit &motion, MPMNodePressure &water);
+
+  /** Start and end of a step. */
+  void begin_step();
+  void end_step();
+
+  /** Gives points the present pressure in their forces. */
+  void set_pressure();
+  /** Finds the residual of the equations at p and the motion u. forces: sum of forces by stress
+   *  (MPMTangent::forces()). Returns the ratio of the residual to all volumes in the equations. */
+  double find_residual(const std::vector<double> &u, double forces);
+  /** excess(): the larger of the residuals of forces and of volumes, each relative to the residual allowed.
+   *  enough(): the residual of volumes that is allowed. */
+  double excess() const;
+  double enough() const;
+  /** Sum of unbalanced forces that is allowed however small all forces are. */
+  double negligible_forces() const;
+  /** Moves the nodes that walls hold first, and finds the change of forces and volumes that this causes. */
+  void move_walls(const std::vector<double> &u, double *forces);
+  /** Solves for the corrections of both at the motion u; the correction of the motion is stored in
+   *  motion.change. */
+  MPM_NS::SolveReport solve(const std::vector<double> &u, const MPM_NS::SolveGoal &);
+  /** p <- p + s times its correction. */
+  void move(double s);
+
+  // parts of a step, see MPMImplicit::approach(): values at the start of the next part, and the initial residual
+
+  void keep() { kept = p; }
+  void go_back() { p = kept; }
+  void set_first() { first = left; }
+  void set_part(double aim) { part_left = 1.0 - aim; }
+
+  double memory_usage() const;
+
+ private:
+  class Flow;    // the pressure alone, for its multigrid levels
+
+  MPMImplicit &motion;
+  MPMNodePressure &water;
+  MPM_NS::FlexibleGMRES solver{60};
+  MPM_NS::SplineMultigrid levels;
+  bool prepared = false;    // are the levels up to date in this step?
+  // does the motion in the preconditioner ignore the pressure in this step?
+  bool stress_alone = false;
+  const std::vector<double> *at = nullptr;    // motion at which the system is linearized
+  double response = 0.0, volume = 0.0;    // response to a unit of pressure; volume of all points
+  double round_off = 0.0;                 // volumes below which pressures are not resolved
+  double part_left = 0.0;                 // remaining share of the initial residual
+  double sum = 0.0, carried = 0.0;        // sum of the residual, and of all volumes
+  double weight = 1.0;                    // weight of volumes in products of vectors
+  std::vector<double> p, kept, left, first, correction;    // [node]
+  std::vector<double> rhs, solution, room, none;
+  std::vector<double> of_points, dp, dV;    // [n]
+  std::vector<double> softness;             // [n] softness of the soil, for the levels
+  std::vector<double> of_ranks;
+  // [node][dim] motions of the whole body that nothing resists
+  std::vector<std::vector<double>> free_axes;
+
+  int64_t size() const override { return motion.nreals() + (int64_t) motion.mass.size(); }
+  void apply(const double *x, double *y) override;
+  void precondition(const double *r, double *z) override;
+  void products(int n, const double *const *a, const double *const *b, double *value) override;
+  void find_free_axes();
+  void take_means(double *x);
+  void prepare();
+  MPM_NS::SolveReport move_alone(const double *forces, double *z, const MPM_NS::SolveGoal &);
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,132 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(mpm/mesh/heat,FixMPMMeshHeat);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_MPM_MESH_HEAT_H
+#define LMP_FIX_MPM_MESH_HEAT_H
+
+#include "base/mpm_state.h"
+#include "declare/option.h"
+#include "material/material.h"
+#include "mesh/background_mesh.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+class FixMPMMaterial;
+struct MPMMeshBodies;
+struct MPMPoints;
+
+/** Thermal condition at the nodes of a physical group of a mesh. */
+struct MPMMeshHeatCondition {
+  enum Kind {
+    TEMPERATURE,    ///< prescribed temperature of its nodes
+    FLUX,           ///< power per area of its sides, into the body
+    CONVECTION      ///< coefficient; temperature outside
+  } kind = TEMPERATURE;
+  std::string group;
+  MPM_NS::NumberOrVariable value[2];
+};
+
+/** Keywords of fix mpm/mesh/heat. */
+struct MPMMeshHeatOptions {
+  std::vector<MPMMeshHeatCondition> conditions;
+
+  MPM_NS::Options declare();
+
+ private:
+  MPMMeshHeatCondition next;    // being read
+};
+
+/** Conduction of heat between points on a mesh (fix mpm/mesh, frame total), with conditions at its physical groups. */
+class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
+ public:
+  FixMPMMeshHeat(class LAMMPS *, int, char **);
+  int setmask() override { return 0; }    // called by fix mpm/mesh
+  void init() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  /** ID of its fix mpm/mesh. */
+  const std::string &of_mesh() const { return mesh_id; }
+  /** Prepares a run. Throws std::runtime_error if the mesh lacks a group of a condition. */
+  void begin_run(const MPM_NS::BackgroundMesh &);
+  /** Conducts heat for a time step. Collective. */
+  void conduct(const MPMMeshBodies &, double dt);
+
+ private:
+  /** A conducting material, with the history columns of its points. */
+  struct Thermal {
+    const FixMPMMaterial *fix;
+    int temperature, molten;    // columns of history
+    bool varies;
+    bool jumps;                // its conductivity depends on the temperature, and it melts
+    MPM_NS::Conduction all;    // conduction of all points, or its mean
+  };
+  struct Point {
+    int i;
+    const Thermal *thermal;
+    double capacity;
+    double k
+        [9];    // conductivity for gradients in the reference configuration, times the volume, row-major
+  };
+  /** A condition at a node, with its area. */
+  struct OfNode {
+    int node, condition;
+    double area;
+  };
+  /** Means of the conductivities in a cell that an interface of materials cuts. */
+  struct Cut {
+    double across, along;
+    double normal[3];    // of the interface, in the reference configuration, of any length
+  };
+
+  std::string mesh_id;
+  MPMRows gradients;    // [n][3] of the temperature at points, in the reference configuration
+  MPMPoints *points = nullptr;
+  std::vector<Thermal> thermals;
+  std::vector<OfNode> of_nodes;
+  double largest = 0.0;    // largest height of a cell
+  double relaxed = 0.0;    // diffusivity with which points relax to the temperature of the nodes
+  std::vector<Point> conducting;
+  std::vector<double> capacity, value, before, rate, sums;    // of nodes
+  std::vector<char> held;         // [node] is the temperature prescribed?
+  std::vector<double> present;    // [condition][2] values of this step
+  double got = 0.0;               // heat that points have taken so far, this rank's share
+  std::vector<double> heat;       // [condition] heat through it so far, this rank's share
+  std::vector<double> power;      // [condition] power in the last step
+
+  std::vector<Cut> cuts;
+  std::vector<int> cut_of;        // [cell] index in cuts; -1: none
+  bool layers_known = false;      // were the cuts found in this run?
+  bool told_of_layers = false;    // was a warning printed about interfaces without means?
+
+  const Thermal *thermal(int i) const;
+  void find_layers(const MPMMeshBodies &);
+  static void set_layers(const Cut &, const double *cofactors, double J, double V, double *k);
+  MPM_NS::Conduction conduction_of(const MPMMeshBodies &, const Thermal &, int i,
+                                   bool nodes_known) const;
+  void find_points(const MPMMeshBodies &, bool nodes_known);
+  double fill_nodes(const MPMMeshBodies &);
+  void hold(const MPMMeshBodies &);
+  void advance(const MPMMeshBodies &, double dt);
+  void take(const MPMMeshBodies &, double dt);
+};
+
+}    // namespace LAMMPS_NS
+#endif
+#endif

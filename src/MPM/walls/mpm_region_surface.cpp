@@ -1,0 +1,242 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Region::surface() answers for one side of the surface, and tells places on it. There is more that LAMMPS does not tell:
+
+   Unions, asked from outside (RegUnion::surface_exterior()): a place on a part is kept when it is inside of all others, as is
+   right for intersections, and not when it is outside of them, so that LAMMPS finds none. Hence the parts are
+   asked here. Outside of all parts of a union, the distance is the least of theirs. Inside of all parts of an
+   intersection, it is the least of theirs, too. Inside of a union, and outside of an intersection, a part counts
+   whose own side this is, with those of its places that are not hidden by others.
+
+   Cones: on the axis the side is not seen, or zero is divided by zero, so that a place next to the axis is taken. From
+   outside, an end with a radius of zero gives not-a-number (a point is projected on a line without length), which hides
+   the other places: this end is declared open, as its only point belongs to the side.
+------------------------------------------------------------------------- */
+
+#include "walls/mpm_region_surface.h"
+
+#include "domain.h"
+#include "math_extra.h"
+#include "region.h"
+#include "walls/region_mpm_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+
+MPMRegionSurface::MPMRegionSurface(Region *region, int dim) :
+    region(region), mesh(dynamic_cast<RegMPMMesh *>(region)), dim(dim),
+    is_cone(strcmp(region->style, "cone") == 0), is_union(strcmp(region->style, "union") == 0)
+{
+  if (mesh) mesh->need_distance();
+  if (is_union || strcmp(region->style, "intersect") == 0)
+    for (int k = 0; k < region->nregion; k++) parts.emplace_back(region->reglist[k], dim);
+  left_out = {-1};
+  if (is_cone) find_sharp_end();
+}
+
+bool MPMRegionSurface::is_open() const
+{
+  return region->openflag || std::any_of(parts.begin(), parts.end(), [](const auto &part) {
+           return part.is_open();
+         });
+}
+
+bool MPMRegionSurface::match(const double *x) const
+{
+  return region->match(x[0], x[1], x[2]);
+}
+
+/* ----------------------------------------------------------------------
+   An end is sharp when LAMMPS does not find it alone. When radii are variables, there can be one later: then both
+   ends are left out, one after the other, which finds all that there is
+------------------------------------------------------------------------- */
+
+void MPMRegionSurface::find_sharp_end()
+{
+  constexpr int SIDE = 2;
+  left_out = {0, 1};
+  if (region->varshape) return;
+  // a place outside, far away and on no axis; cones can be infinite, but not in all directions
+  double x[3] = {1.1, 1.2, 1.3};
+  for (int k = 0; k < 9 && region->inside(x[0], x[1], x[2]); k++)
+    for (double &coordinate : x) coordinate *= 10.0;
+  if (region->inside(x[0], x[1], x[2])) return;
+  int *const open = region->open_faces;
+  int blunt = 0;
+  for (const int end : {0, 1}) {
+    const int was[3] = {open[0], open[1], open[SIDE]};
+    open[1 - end] = open[SIDE] = 1;
+    if (region->surface_exterior(x, 1.0e10) > 0) {
+      left_out.erase(std::find(left_out.begin(), left_out.end(), end));
+      blunt++;
+    }
+    std::copy_n(was, 3, open);
+  }
+  if (blunt == 2) left_out = {-1};
+}
+
+/* ----------------------------------------------------------------------
+   what LAMMPS tells of a simple region: calls f(distance, vector from the surface to x)
+------------------------------------------------------------------------- */
+
+template <class F>
+void MPMRegionSurface::each_contact(const double *x, double far, bool inside, const F &f) const
+{
+  const auto each = [&](const double *place) {
+    const int n = region->surface(place[0], place[1], place[2], far);
+    for (int i = 0; i < n; i++) {
+      const auto &c = region->contact[i];
+      if (dim == 3 || !(fabs(c.delz) > 0.5 * c.r)) f(c.r, c.delx, c.dely, c.delz);
+    }
+    return n > 0;
+  };
+  const int interior = region->interior;
+  if (!inside) region->interior = !interior;
+  if (is_cone) {
+    const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
+    const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
+    for (const int end : left_out) {
+      const bool leave_out = end >= 0 && !region->interior;
+      if (leave_out) region->open_faces[end] = 1;
+      if (!each(next)) each(x);
+      if (leave_out) region->open_faces[end] = 0;
+      if (!leave_out) break;
+    }
+  } else
+    each(x);
+  region->interior = interior;
+}
+
+/* ---------------------------------------------------------------------- */
+
+double MPMRegionSurface::find(const double *x, double far, double h) const
+{
+  double d, up;
+  if (h > 0.0 && mesh && mesh->distance_by_cells(x, far, h, 0.25 * h, d)) return d;
+  if (mesh) {
+    d = mesh->distance(x, far, up);
+    // in 2d the section has another closest point
+    if (dim == 3 || up <= 0.5 * fabs(d)) return d;
+  }
+  const bool inside = match(x);
+  d = far;
+  if (parts.empty()) {
+    each_contact(x, far, inside, [&](double r, double, double, double) {
+      d = std::min(d, r);
+    });
+  } else if ((inside == (region->interior != 0)) != is_union) {
+    for (const auto &part : parts) d = std::min(d, fabs(part.find(x, far, h)));
+  } else {
+    find_places(x, far);
+    for (const auto &place : places) d = std::min(d, place.distance);
+  }
+  return inside ? -d : d;
+}
+
+/* ----------------------------------------------------------------------
+   places on the surface that are nearest to x, each on its own smooth part of it
+------------------------------------------------------------------------- */
+
+void MPMRegionSurface::find_places(const double *x, double far) const
+{
+  places.clear();
+  if (!parts.empty()) return find_places_of_parts(x, far);
+  each_contact(x, far, match(x), [&](double r, double dx, double dy, double dz) {
+    places.push_back({{x[0] - dx, x[1] - dy, x[2] - dz}, r});
+  });
+}
+
+void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
+{
+  const bool in_body = match(x) == (region->interior != 0);
+  for (const auto &part : parts) {
+    // of a union inside of it, and of an intersection outside: parts whose side this is
+    if (in_body == is_union && part.match(x) != in_body) continue;
+    part.find_places(x, far);
+    for (const auto &place : part.places) {
+      const bool hidden = std::any_of(parts.begin(), parts.end(), [&](const auto &other) {
+        return &other != &part && other.match(place.x) == is_union;
+      });
+      if (!hidden) places.push_back(place);
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   The direction to the nearest place on the surface is the gradient, unless x is on the surface, or about as far from
+   another place, as at an edge inside. At centers and axes LAMMPS tells one place of many: further in there the distance
+   does not grow
+------------------------------------------------------------------------- */
+
+bool MPMRegionSurface::find_normal_at_once(const double *x, double far, double step,
+                                           double *normal) const
+{
+  if (mesh) return false;
+  const bool inside = match(x), in_body = inside == (region->interior != 0);
+  double nearest = far, next = far;
+  find_places(x, far);
+  for (const auto &place : places) {
+    next = std::min(next, std::max(place.distance, nearest));
+    if (place.distance >= nearest) continue;
+    nearest = place.distance;
+    MathExtra::sub3(x, place.x, normal);
+  }
+  if (nearest >= far || nearest < 100.0 * step || next - nearest < 4.0 * step) return false;
+  if (dim == 2) normal[2] = 0.0;
+  const double length = MathExtra::len3(normal);
+  if (!(fabs(length - nearest) < 1.0e-6 * nearest)) return false;
+  MathExtra::scale3((inside ? -1.0 : 1.0) / length, normal);
+  if (!in_body) return true;
+  double further[3];
+  for (int d = 0; d < 3; d++) further[d] = x[d] - (inside ? 1.0 : -1.0) * step * normal[d];
+  return fabs(distance(further, far)) - nearest > 0.99 * step;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMRegionSurface::normal(const double *x, double far, double step, double *normal) const
+{
+  if (find_normal_at_once(x, far, step, normal)) return;
+  const double here = distance(x, far);
+  MathExtra::zero3(normal);
+  for (int d = 0; d < dim; d++) {
+    double y[3] = {x[0], x[1], x[2]};
+    y[d] = x[d] + step;
+    const double up = distance(y, far);
+    y[d] = x[d] - step;
+    const double down = distance(y, far);
+    const bool knows_up = fabs(up) < far, knows_down = fabs(down) < far;
+    if (knows_up && knows_down)
+      normal[d] = up - down;
+    else if (knows_up && fabs(here) < far)
+      normal[d] = 2.0 * (up - here);
+    else if (knows_down && fabs(here) < far)
+      normal[d] = 2.0 * (here - down);
+  }
+  const double length = MathExtra::len3(normal);
+  for (int d = 0; d < 3; d++) normal[d] = length > 0.2 * step ? normal[d] / length : 0.0;
+}
+
+const Region &MPMRegionSurface::part_near(const double *x, double far) const
+{
+  if (!is_union || !region->interior) return *region;
+  const MPMRegionSurface *nearest = &parts[0];
+  double least = nearest->distance(x, far);
+  for (const auto &part : parts) {
+    const double d = part.distance(x, far);
+    if (d >= least) continue;
+    least = d;
+    nearest = &part;
+  }
+  return nearest->part_near(x, far);
+}

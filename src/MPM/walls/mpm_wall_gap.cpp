@@ -1,0 +1,213 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   The mean distance of the points that a node at the wall sees, with the weights of its function, is
+   known for material that fills the space in front of a plane wall:
+
+     d_0 = int_0^inf x M(x) dx / int_0^inf M(x) dx     (0.406 h, quadratic, node in the wall)
+
+   and greater when there is a gap, by about 0.6 of its width. Unlike the volume that fills the cell of
+   a node, it is the same at the end of a block as in its middle, and it gets small for a single grain
+   that arrives at the wall, too. Points at the centers of cells of size s stand for the integrals as the
+   midpoint rule does, whose error at the wall is (Euler and Maclaurin)
+
+     sum_p s f(x_p) - int_0^inf f dx = s^2/24 f'(0) + O(s^4)
+
+   which is .016 h for two points per cell, and .06 h for one, and taken into account. Points with a
+   size (GIMP, CPDI) integrate M exactly, but x is that of their center: - s^2/12 M' in place of it.
+
+   The mean alone would let points of a surface that is curved, or a few grains in front of many, cross
+   the wall. Those that are about to cross it count as deep inside of it: what they belong to touches.
+------------------------------------------------------------------------- */
+
+#include "walls/mpm_wall_gap.h"
+
+#include "atom.h"
+#include "base/mpm_points.h"
+#include "field/mpm_frame.h"
+#include "field/mpm_passes.h"
+#include "field/mpm_stencil.h"
+#include "math_extra.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int REACH = 3, SAMPLES = 64;    // cells from the wall, places per cell
+static constexpr double FARTHEST = 4.0;          // more than a node at the wall sees
+
+// what the positions of points do not tell about the surface of a body, in node spacings
+
+static constexpr double TOLERANCE = 0.01;
+
+// points nearer to the wall than this part of their spacing (undeformed: 0.5) are about to cross it: they
+// count as this many cells behind it when they are right at it, and more beyond
+
+static constexpr double NEAR = 0.25, BEHIND = 100.0;
+
+/* ---------------------------------------------------------------------- */
+
+MPMWallContact::MPMWallContact(const MPMField &field, const double *positions,
+                               const double *weights, int n) :
+    sized(field.options.has_size())
+{
+  const MPMStencil stencil(field);
+  constexpr double origin = 16.0;    // of the wall, away from zero
+  const auto M = [&](double x) {
+    double sum = 0.0;
+    for (int k = 0; k < n; k++) {
+      // N_k depends on the distance from the node: here node 16, and the place is shifted
+      int first;
+      double w[4];
+      const int m = stencil.weights(origin + x - positions[k], first, w);
+      const int node = (int) origin - first;
+      if (node >= 0 && node < m) sum += weights[k] * w[node];
+    }
+    return sum;
+  };
+  for (int k = 0; k < REACH * SAMPLES; k++) {
+    const double x = (k + 0.5) / SAMPLES, m = M(x);
+    volume += m / SAMPLES;
+    moment += m * x / SAMPLES;
+  }
+  const double step = 0.5 / SAMPLES;
+  at_wall = M(0.0);
+  slope = (M(step) - M(0.0)) / step;
+}
+
+double MPMWallContact::distance(double size2) const
+{
+  if (volume <= 0.0) return 0.0;
+  const double all = volume + (sized ? 0.0 : size2 / 24.0 * slope);
+  return (moment + size2 / (sized ? 12.0 : 24.0) * at_wall) / std::max(all, 0.5 * volume);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMWallGap::Sums::add(double weight, const Sums &other)
+{
+  volume += weight * other.volume;
+  distance += weight * other.distance;
+  size2 += weight * other.size2;
+}
+
+bool MPMWallGap::Sums::touches(const MPMWallContact &full, double near) const
+{
+  return volume > 0.0 &&
+      distance <= (full.distance(size2 / volume) + std::max(near, TOLERANCE)) * volume;
+}
+
+double MPMWallGap::Sums::beyond(const MPMWallContact &full) const
+{
+  if (!(volume > 0.0)) return std::numeric_limits<double>::infinity();
+  return distance / volume - full.distance(size2 / volume);
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Of the middle of a block whose points are out of reach. */
+double MPMWallGap::farthest(const MPMField &field, double more)
+{
+  const auto &lattice = field.lattice;
+  const double radius = (0.5 * field.grid.side + 1.0) * sqrt((double) lattice.dim);
+  return (FARTHEST + more + radius) * lattice.h;
+}
+
+/* ----------------------------------------------------------------------
+   Points that no node at the wall sees are left out, most of them by the distance of the middle of their
+   block: the distance of another place is less by no more than their distance from each other. The domains
+   of points with a size can reach far.
+------------------------------------------------------------------------- */
+
+void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth, double reach,
+                     const std::function<double(const double *)> &away, double more)
+{
+  constexpr int CHUNK = 8;
+  const auto &pic = field.pic;
+  const auto &lattice = field.lattice;
+  const auto nmax = (std::size_t) field.atom->nmax;
+  const double h = lattice.h;
+  const bool sized = field.options.has_size(), cubes = lattice.dim == 3;
+  const double limit = FARTHEST + more;
+  const double far = farthest(field, more), seen_from = std::min(reach, limit) + 0.01;
+  if (volumes.size() < nmax) {
+    volumes.resize(nmax);
+    values.resize(3 * nmax);
+  }
+  const PointRows r = field.rows_at_rest(values.data(), volumes.data());
+  const TransferStep s = field.step_data(0.0);
+  const MPMRows x = field.frame->places();
+
+  // no place in this ball is seen
+
+  double center[3] = {0.0, 0.0, 0.0}, free = -1.0;
+  const auto look = [&](const double *place) {
+    const double d = away(place);
+    if (!smooth || d - seen_from * h <= free) return d;
+    MathExtra::copy3(place, center);
+    free = d - seen_from * h;
+    return d;
+  };
+  const auto out_of_sight = [&](const double *place) {
+    double r[3];
+    MathExtra::sub3(place, center, r);
+    return free > 0.0 && MathExtra::lensq3(r) < free * free;
+  };
+
+  points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
+    const auto &block = field.grid.blocks[run.slot];
+    if (std::none_of(block.slot, block.slot + 27, [&](int slot) {
+          return slot >= 0 && near[slot];
+        }))
+      return;
+    free = -1.0;
+    if (smooth && !sized) {
+      double middle[3];
+      const int first[3] = {block.b[0] * field.grid.side, block.b[1] * field.grid.side,
+                            cubes ? block.b[2] * field.grid.side : 0};
+      lattice.node_position(first, middle);
+      for (int d = 0; d < lattice.dim; d++) middle[d] += 0.5 * field.grid.side * h;
+      if (std::fabs(look(middle)) >= far) return;
+    }
+    for (int begin = run.first; begin < run.last; begin += CHUNK) {
+      const int end = std::min(begin + CHUNK, run.last);
+      double distance[CHUNK];
+      bool seen = sized;
+      for (int i = begin; i < end; i++) {
+        double &d = distance[i - begin];
+        d = !sized && out_of_sight(x[i]) ? limit : look(x[i]) / h;
+        seen = seen || d < seen_from;
+      }
+      if (!seen) continue;
+      for (int i = begin; i < end; i++) {
+        const double d = distance[i - begin];
+        const double volume = r.vol0[i] * field.points->jacobian(i) / field.frame->circle(x[i][0]);
+        const double size = (cubes ? std::cbrt(volume) : sqrt(volume)) / h;
+        double *const value = &values[3 * (std::size_t) i];
+        volumes[i] = volume;
+        const double crossing = std::max(0.0, 1.0 - d / (NEAR * size));
+        value[0] = std::min(d, limit) - BEHIND * crossing * crossing;
+        value[1] = size * size;
+        value[2] = 0.0;    // in 2d there is no third one
+      }
+      pic.p2g_momentum(r, s, begin, end, base, field.map->tile, box);
+    }
+  });
+  nreal = pic.nreal;
+  field.nodes.sum(nodes.data(), nreal, 0, 4);
+}
+
+MPMWallGap::Sums MPMWallGap::at(int64_t node) const
+{
+  const double *const n = nodes.data() + node * nreal;
+  return {n[3], n[0], n[1]};
+}

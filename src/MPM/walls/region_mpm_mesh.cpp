@@ -1,0 +1,300 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "walls/region_mpm_mesh.h"
+
+#include "base/mpm_options.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "math_const.h"
+#include "math_extra.h"
+#include "mesh/surface_mesh.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <utility>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr int MAX_TOUCHES = 6;
+
+Options MPMRegionMeshOptions::declare()
+{
+  using namespace option;
+  Options o("region mpm/mesh");
+  o.add("surface",
+        {word(leaky,
+              {{"closed", false, "each edge belongs to two triangles with the same orientation"},
+               {"leaky", true, "fill holes: the inside is what the surface winds around"}})});
+  o.add("turn",
+        {number(angle, "angle", ANY_NUMBER, "", "rotation of the file about its origin (degrees)"),
+         numbers(axis, 3, "Rx Ry Rz", ANY_NUMBER, "", "axis of this rotation")})
+      .standard("none");
+  o.refuse([=] {
+    return OptionRules{{axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0, "turn",
+                        "needs an axis that is not zero"}};
+  });
+  return o;
+}
+
+/* ----------------------------------------------------------------------
+   The bytes of a file, which one rank reads, in pieces that a count of MPI can have
+------------------------------------------------------------------------- */
+
+static std::string read_bytes(LAMMPS *lmp, const char *file)
+{
+  constexpr std::size_t PIECE = 1 << 28;
+  std::string bytes, problem;
+  bigint size = 0;
+  if (lmp->comm->me == 0) {
+    FILE *fp = fopen(file, "rb");
+    if (fp) {
+      char buffer[65536];
+      for (std::size_t n; (n = fread(buffer, 1, sizeof(buffer), fp)) > 0;) bytes.append(buffer, n);
+      if (ferror(fp)) problem = utils::getsyserror();
+      fclose(fp);
+    } else
+      problem = utils::getsyserror();
+    size = problem.empty() ? (bigint) bytes.size() : -1;
+  }
+  MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, lmp->world);
+  if (size < 0)
+    lmp->error->all(FLERR, 2, "Cannot open file {} of region mpm/mesh: {}", file, problem);
+  bytes.resize(size);
+  for (std::size_t at = 0; at < bytes.size(); at += PIECE)
+    MPI_Bcast(&bytes[at], (int) std::min(PIECE, bytes.size() - at), MPI_CHAR, 0, lmp->world);
+  return bytes;
+}
+
+/* ----------------------------------------------------------------------
+   region ID mpm/mesh file scale x y z keyword value ...
+   keywords of this style come before those of all regions
+------------------------------------------------------------------------- */
+
+RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
+{
+  if (narg < 7) utils::missing_cmd_args(FLERR, "region mpm/mesh", error);
+  int own = 7;
+  const auto is_of_all = [](const char *word) {
+    for (const char *keyword : {"side", "units", "move", "rotate", "open"})
+      if (strcmp(word, keyword) == 0) return true;
+    return false;
+  };
+  while (own < narg && !is_of_all(arg[own])) own++;
+  MPMRegionMeshOptions given;
+  Options keywords = given.declare();
+  read_options(lmp, keywords, own, arg, 7);
+  for (int i = own; i < narg; i++)
+    if (keywords.has(arg[i]))
+      error->all(FLERR, i, "Region mpm/mesh keyword {} must come before the keyword {}", arg[i],
+                 arg[own]);
+  options(narg - own, &arg[own]);
+  const double scale = utils::numeric(FLERR, arg[3], false, lmp);
+  if (!(scale > 0.0) || !std::isfinite(scale))
+    error->all(FLERR, 3, "Region mpm/mesh scale must be positive: {}", arg[3]);
+  const double unit[3] = {xscale, yscale, zscale};
+  SurfaceMesh::Point shift;
+  for (int d = 0; d < 3; d++) shift[d] = unit[d] * utils::numeric(FLERR, arg[4 + d], false, lmp);
+
+  SurfaceOptions how;
+  how.leaky = leaky = given.leaky;
+  if (keywords.given("turn")) {
+    double axis[3] = {given.axis[0], given.axis[1], given.axis[2]}, quat[4];
+    MathExtra::norm3(axis);
+    MathExtra::axisangle_to_quat(axis, given.angle * MathConst::DEG2RAD, quat);
+    MathExtra::quat_to_mat(quat, how.turn);
+  }
+  const std::string bytes = read_bytes(lmp, arg[2]);
+  try {
+    mesh = std::make_unique<SurfaceMesh>(bytes, arg[2], scale, shift, how);
+  } catch (const std::exception &problem) {
+    error->all(FLERR, 2, std::string(problem.what()));
+  }
+
+  if (interior && !dynamic) {
+    bboxflag = 1;
+    extent_xlo = mesh->lo[0];
+    extent_xhi = mesh->hi[0];
+    extent_ylo = mesh->lo[1];
+    extent_yhi = mesh->hi[1];
+    extent_zlo = mesh->lo[2];
+    extent_zhi = mesh->hi[2];
+  } else
+    bboxflag = 0;
+
+  cmax = tmax = std::min(mesh->nparts, MAX_TOUCHES);
+  contact = new Contact[cmax];
+  if (comm->me == 0)
+    utils::logmesg(lmp, "Region {}: {} triangles, volume {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id,
+                   mesh->size(), mesh->volume, mesh->center[0], mesh->center[1], mesh->center[2]);
+  if (leaky && comm->me == 0) report(arg[2]);
+}
+
+/* ----------------------------------------------------------------------
+   What is wrong with a leaky surface
+------------------------------------------------------------------------- */
+
+void RegMPMMesh::report(const char *file) const
+{
+  const SurfaceHoles &found = mesh->holes;
+  if (found.none() && !mesh->overlaps) {
+    utils::logmesg(lmp, "  its surface is closed\n");
+    return;
+  }
+  if (found.turned + found.repeated)
+    utils::logmesg(lmp, "  {} triangles turned, {} left out that were there twice\n", found.turned,
+                   found.repeated);
+  if (found.edges) {
+    const double size = std::sqrt(MathExtra::distsq3(mesh->lo.data(), mesh->hi.data()));
+    utils::logmesg(
+        lmp,
+        "  {} open edges around {} hole{}, the widest with {:.4g} ({:.3g} % of the body) "
+        "at {:.6g} {:.6g} {:.6g}, patches with {:.3g} % of the area of the surface\n",
+        found.edges, found.holes, found.holes > 1 ? "s" : "", found.widest,
+        100.0 * found.widest / size, found.at[0], found.at[1], found.at[2], 100.0 * found.area);
+  }
+  if (mesh->overlaps)
+    utils::logmesg(lmp, "  parts overlap: the volume above has what they share several times\n");
+  error->warning(FLERR,
+                 "The surface of file {} is leaky: look at the region that it fills before you "
+                 "trust it",
+                 file);
+}
+
+void RegMPMMesh::need_distance() const
+{
+  if (leaky)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Region {} has surface leaky, so that only what is inside of it is known and it cannot "
+        "be a wall or a rigid body: repair its mesh and use surface closed",
+        id);
+}
+
+RegMPMMesh::~RegMPMMesh()
+{
+  if (!copymode) delete[] contact;
+}
+
+/* ---------------------------------------------------------------------- */
+
+int RegMPMMesh::inside(double x, double y, double z)
+{
+  if (placing) {
+    place[0] = x;
+    place[1] = y;
+    place[2] = z;
+    return 0;
+  }
+  return mesh->inside({x, y, z});
+}
+
+/* ---------------------------------------------------------------------- */
+
+/** Where x is in the coordinates of the mesh: match() takes it back to where the surface was read. */
+void RegMPMMesh::find_place(const double *x)
+{
+  placing = true;
+  match(x[0], x[1], x[2]);
+  placing = false;
+}
+
+double RegMPMMesh::distance(const double *x, double cutoff, double &along_z)
+{
+  find_place(x);
+  SurfaceMesh::Point closest = {place[0], place[1], place[2]};
+  const double d =
+      mesh->distance_within({place[0], place[1], place[2]}, cutoff, closest, last_closest);
+  along_z = std::fabs(place[2] - closest[2]);
+  return interior ? d : -d;
+}
+
+/* ----------------------------------------------------------------------
+   In 2d cells are columns at the z of the places, which is the same for all
+------------------------------------------------------------------------- */
+
+bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact, double size,
+                                   double &distance)
+{
+  constexpr std::size_t MOST = 1 << 20;    // cells in memory
+  constexpr int BITS = 21;                 // of an index
+  const bool flat = domain->dimension == 2;
+  find_place(x);
+  SurfaceMesh::Point center = {0.0, 0.0, place[2]}, closest = center;
+  uint64_t key = 0;
+  bool in_range = true;
+  for (int d = 0; d < (flat ? 2 : 3); d++) {
+    const double index = std::floor((place[d] - mesh->lo[d]) / size) + (1 << (BITS - 1));
+    in_range = in_range && index >= 0.0 && index < (1 << BITS);
+    if (!in_range) break;
+    key = key << BITS | (uint64_t) index;
+    center[d] = mesh->lo[d] + (index - (1 << (BITS - 1)) + 0.5) * size;
+  }
+  if (in_range) {
+    auto &known = cells[size];
+    auto found = known.find(key);
+    if (found == known.end()) {
+      if (known.size() >= MOST) known.clear();
+      Linear linear = {};
+      linear.value = mesh->distance_within(center, cutoff, closest, last_closest);
+      for (int d = 0; d < 3 && std::fabs(linear.value) < cutoff && linear.value != 0.0; d++)
+        linear.gradient[d] = (center[d] - closest[d]) / linear.value;
+      found = known.emplace(key, linear).first;
+    }
+    const Linear &linear = found->second;
+    distance = linear.value;
+    for (int d = 0; d < 3; d++) distance += linear.gradient[d] * (place[d] - center[d]);
+    if (!interior) distance = -distance;
+    if (flat && std::fabs(linear.gradient[2]) > 0.5) return false;
+    if (std::fabs(distance) > exact) return true;
+  }
+  double along_z;
+  distance = RegMPMMesh::distance(x, cutoff, along_z);
+  return !flat || along_z <= 0.5 * std::fabs(distance);
+}
+
+/* ----------------------------------------------------------------------
+   the closest point of each part of the surface, if x is on the given side and it is within the cutoff
+------------------------------------------------------------------------- */
+
+int RegMPMMesh::touch(const double *x, double cutoff, double side)
+{
+  if (leaky)
+    error->one(
+        FLERR, Error::NOLASTLINE,
+        "Region {} has surface leaky, so that only what is inside of it is known and it cannot "
+        "be a wall: repair its mesh and use surface closed",
+        id);
+  const SurfaceMesh::Point here = {x[0], x[1], x[2]};
+  const double known = mesh->bound(here);
+  if (known * side < 0.0 || std::fabs(known) >= cutoff) return 0;
+  SurfaceMesh::Touch touches[MAX_TOUCHES];
+  const int n = mesh->touches(here, cutoff, touches, tmax);
+  if (n == 0 || side * touches[0].distance < 0.0) return 0;
+  // the same order in every step, as other regions have it
+  for (int i = 1; i < n; i++)
+    for (int j = i; j > 0 && touches[j].part < touches[j - 1].part; j--)
+      std::swap(touches[j], touches[j - 1]);
+  for (int i = 0; i < n; i++) {
+    const auto &touch = touches[i];
+    contact[i].r = std::fabs(touch.distance);
+    contact[i].delx = x[0] - touch.point[0];
+    contact[i].dely = x[1] - touch.point[1];
+    contact[i].delz = x[2] - touch.point[2];
+    contact[i].radius = 0.0;
+    contact[i].iwall = touch.part;
+    contact[i].varflag = 0;
+  }
+  return n;
+}

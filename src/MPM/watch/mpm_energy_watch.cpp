@@ -1,0 +1,306 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "watch/mpm_energy_watch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "elements/fix_mpm_elements.h"
+#include "error.h"
+#include "field/mpm_every.h"
+#include "field/mpm_field.h"
+#include "field/mpm_guard.h"
+#include "field/mpm_physics.h"
+#include "field/mpm_plan.h"
+#include "force.h"
+#include "math/matrix.h"
+#include "neighbor.h"
+#include "update.h"
+#include "watch/mpm_point_energies.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// Each step looks at the forces on a part of the points, others in the next step. Whose turn it is follows from the ID
+// alone: with parts by the place in memory, points would be looked at twice or not at all when their order changes, and
+// in water at rest forces are so large that this is as much as the energy in play
+static constexpr int SAME_TURN = 16;    // consecutive IDs, which are mostly neighbors
+static constexpr int MOST_BITS = 7,
+                     PAIR_BITS = 4;    // one in 128, of those with contacts one in 16
+static constexpr int ENOUGH = 512;     // points in a step
+// steps between looks at all energies: then all had their turn
+static constexpr int CHECK_EVERY = 7 << MOST_BITS;
+static constexpr int SHORTEST = 200;    // run in which the work is known well enough
+static constexpr double AT_REST =
+    1.0e-9;    // cells per step: with less than that nothing is in play
+static constexpr double UNSTRAINED = 1.0e-6;    // stored energy over that after the first step
+static constexpr double ROUND_OFF = 1.0e-13;    // of a sum of the heat of all points in a step
+
+/** The step of 2^bits in which a point is looked at. Multiples of the golden ratio are spread evenly for any range of
+ *  IDs, and are no wave through a lattice of points. */
+static int turn_of(tagint tag, int bits)
+{
+  const auto number = (uint32_t) (tag / SAME_TURN);
+  return (int) ((uint64_t) (uint32_t) (number * UINT32_C(2654435769)) >> (32 - bits));
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMEnergyWatch::step()
+{
+  const bool centers = strain_follows();
+  if (run.steps == 1 && centers) center_start();
+  if (run.steps % CHECK_EVERY == 0) check();
+  if (centers && ((run.steps + 1) % CHECK_EVERY == 0 || is_last_step())) {
+    run.elastic = sums().elastic;
+    run.noted = run.steps + 1;
+  }
+  seen.clear();
+  const int met = number_met();
+  note_points(parts[0], 0, met);
+  note_points(parts[1], met, atom->nlocal);
+}
+
+/* ----------------------------------------------------------------------
+   Work of forces in this step, at the mean of the velocities of nodes before and after it, to which these forces have led: that is the
+   way that points went, less half of what the step has changed. Points' own velocities would do where forces belong to masses, as gravity
+   does. Those of flip and aflip differ from point to point from what moves them, however, and a load on the last layers of a
+   body does no work on the difference. With the velocities before the step alone, a load of N steps would have 1/N too little work. To
+   take all points in some steps costs the same, but is wrong where a body of a few cells vibrates: its period is a few of these
+   steps. Forces that elements have added are internal
+------------------------------------------------------------------------- */
+
+void MPMEnergyWatch::moved()
+{
+  const double half = 0.5 * fields[0]->step_dt();
+  const int dim = fields[0]->lattice.dim;
+  forces.clear();
+  for (const auto *field : fields) forces.push_back(field->rows().f);
+  const double *const places = seen.empty() ? nullptr : atom->x[0],
+                      *const velocities = seen.empty() ? nullptr : atom->v[0];
+  for (const auto &[field, i, turns, x, v] : seen) {
+    const bigint row = 3 * (bigint) i;
+    const double *const f = forces[field] + row, *const x_now = places + row,
+                        *const v_now = velocities + row;
+    double now[3] = {f[0], f[1], f[2]}, work = 0.0;
+    for (const auto *ifix : fields[field]->elements)
+      for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[row + d];
+    for (int d = 0; d < dim; d++) work += now[d] * (x_now[d] - x[d] - half * (v_now[d] - v[d]));
+    if (dim < 3) work += now[2] * half * (v_now[2] + v[2]);    // around an axis of symmetry
+    run.force_work += turns * work;
+  }
+  run.steps++;
+}
+
+void MPMEnergyWatch::finish()
+{
+  if (run.steps >= SHORTEST) check();
+  for (auto &part : parts) part.list = -1;    // commands may move atoms before the run goes on
+}
+
+/** Pair styles act on atoms in neighbor lists, which may be those of a group that is first in memory; with every, on
+ *  those of several lists. */
+int MPMEnergyWatch::number_met() const
+{
+  const bool first_met = neighbor->includegroup && !fields[0]->every;
+  return !force->pair ? 0 : first_met ? atom->nfirst : atom->nlocal;
+}
+
+void MPMEnergyWatch::note_points(Part &part, int begin, int end)
+{
+  const int turns = 1 << part.bits, turn = (int) (run.steps % turns);
+  const auto ahead = [&]() {
+    return (turn - part.first) & (turns - 1);
+  };
+  // atoms change their places when lists are made
+  if (part.begin != begin || part.end != end || part.list != neighbor->lastcall ||
+      ahead() >= AHEAD) {
+    part.begin = begin;
+    part.end = end;
+    part.list = neighbor->lastcall;
+    part.first = turn;
+    find_places(part);
+  }
+
+  const double *const places = end > begin ? atom->x[0] : nullptr,
+                      *const velocities = end > begin ? atom->v[0]
+                                                      : nullptr;    // without pointers to rows
+  for (const auto &[field, i] : part.places[ahead()]) {
+    const double *const x = places + 3 * (bigint) i, *const v = velocities + 3 * (bigint) i;
+    seen.push_back({field, i, turns, {x[0], x[1], x[2]}, {v[0], v[1], v[2]}});
+  }
+}
+
+void MPMEnergyWatch::find_places(Part &part) const
+{
+  const int turns = 1 << part.bits;
+  for (auto &places : part.places) places.clear();
+  for (int i = part.begin; i < part.end; i++) {
+    const int ahead = (turn_of(atom->tag[i], part.bits) - part.first) & (turns - 1);
+    if (ahead >= AHEAD) continue;
+    for (std::size_t k = 0; k < fields.size(); k++)
+      if (fields[k]->is_point(i)) part.places[ahead].push_back({(int) k, i});
+  }
+}
+
+/** Enough points in each step, of all ranks. */
+void MPMEnergyWatch::choose_turns(const Sums &now)
+{
+  const double npoints[2] = {now.met, now.points - now.met};
+  const int most[2] = {PAIR_BITS, MOST_BITS};
+  for (int k = 0; k < 2; k++) {
+    parts[k] = Part();
+    while (parts[k].bits < most[k] && npoints[k] >= 2.0 * ENOUGH * (1 << parts[k].bits))
+      parts[k].bits++;
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
+{
+  const MPMPointEnergies points = point_energies(lmp);
+  Sums mine = {};
+  mine.kinetic = points.kinetic;
+  mine.stored = mine.elastic = points.stored;
+  mine.spent = points.taken() - points.stored;
+  mine.work = run.force_work;
+  const int met = number_met();
+  for (const auto *field : fields) {
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i)) continue;
+      mine.points++;
+      mine.met += i < met;
+      mine.mass += atom->rmass[i];
+    }
+    const auto &ledger = field->ledger;
+    mine.work += ledger.driven + ledger.deleted_kinetic + ledger.deleted_stored;
+  }
+
+  std::vector<double> values;
+  for (const auto *other : fields[0]->plan->physics) {
+    const auto accounts = other->accounts();
+    values.assign(accounts.size(), 0.0);
+    other->account(values.data());
+    for (std::size_t k = 0; k < accounts.size(); k++)
+      (accounts[k].stored ? mine.stored : mine.work) += values[k];
+  }
+  Sums all;
+  MPI_Allreduce(&mine, &all, sizeof(Sums) / sizeof(double), MPI_DOUBLE, MPI_SUM, world);
+  for (const auto *field : fields)
+    all.points += field->guard->deleted.points - field->guard->brought;
+  return all;
+}
+
+/* ---------------------------------------------------------------------- */
+
+/* ----------------------------------------------------------------------
+   Velocities that steps have led to belong to the middle of the last step, as their work does, see moved(). With usl and musl
+   stored energy belongs to its end, where points are, and their sum would vary with each vibration by omega dt of its energy: by 4 % for a
+   block of 4 by 6 cells. The mean of stored energies before and after the step belongs to its middle, and with it the sum is
+   that of a leapfrog, which is constant: with forces f and ways s of steps, half of the sum of f_k (s_k + s_k+1) is half of that of
+   (f_k-1 + f_k) s_k, but for its ends. With usf stress is a step behind, with usavg in the middle
+------------------------------------------------------------------------- */
+
+bool MPMEnergyWatch::strain_follows() const
+{
+  return std::none_of(fields.begin(), fields.end(), [](const MPMField *field) {
+    return field->options.stress_before();
+  });
+}
+
+/** Of a run or of its part; with every, of the cycle that has it. */
+bool MPMEnergyWatch::is_last_step() const
+{
+  return update->ntimestep + fields[0]->options.every > update->laststep;
+}
+
+/** A run may begin in the middle of a vibration: the step before it had about as much as the first one, in proportion to the
+ *  velocities. What was at rest is strained by a first step that has a jump of strain or load, and was not before. Bodies that
+ *  start with velocities and without strain are in the middle of their vibration, where stored energy is least: it was as
+ *  much a step before as it is a step later. */
+void MPMEnergyWatch::center_start()
+{
+  const Sums now = sums();
+  const bool least = fabs(run.start.elastic) < UNSTRAINED * fabs(now.elastic);
+  const double share = now.kinetic > 0.0 ? sqrt(std::min(1.0, run.start.kinetic / now.kinetic))
+                                         : 0.0,
+               change = (least ? -0.5 : 0.5) * share * (now.elastic - run.start.elastic);
+  run.start.stored -= change;
+  run.lowest -= change;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMEnergyWatch::begin(const Sums &now)
+{
+  run.start = now;
+  run.lowest = now.unexplained();
+  run.in_play = 0.0;
+}
+
+/** Heat that goes through a body at rest is in accounts as changes of all the heat that it has, whose round-off adds up over
+ *  steps; nothing else may be in play. Collective. */
+bool MPMEnergyWatch::is_round_off(double energy) const
+{
+  double mine = 0.0, all;
+  for (const auto *other : fields[0]->plan->physics) mine += other->energy_at_hand();
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return energy < ROUND_OFF * sqrt((double) run.steps + 1.0) * all;
+}
+
+/* ----------------------------------------------------------------------
+   points that other commands have added or removed bring or take energy that is in no account; that of points which fixes of this
+   package emit and absorb is in the ledger
+------------------------------------------------------------------------- */
+
+void MPMEnergyWatch::check()
+{
+  const Sums now = sums();
+  if (run.steps == 0 || now.points != run.start.points) begin(now);
+  if (run.steps % CHECK_EVERY == 0) choose_turns(now);
+  const double ahead = run.noted > 0 && run.noted == run.steps ? 0.5 * (now.elastic - run.elastic)
+                                                               : 0.0,
+               spent = now.spent - run.start.spent, unexplained = now.unexplained() - ahead;
+  run.last = now;
+  run.lowest = std::min(run.lowest, unexplained);
+  run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + fabs(spent));
+  const double gained = run.gained = unexplained - run.lowest;
+  const double speed = AT_REST * fields[0]->lattice.h / update->dt;
+  const auto &options = fields[0]->options;
+  if (run.told || !(gained > options.most_gain * run.in_play) ||
+      !(run.in_play > 0.5 * force->mvv2e * now.mass * speed * speed) || is_round_off(gained))
+    return;
+  run.told = true;
+  const std::string text =
+      fmt::format("Numerical errors have added the energy {:.4g} to the material points by step {} "
+                  "of this run, {:.3g} % of the energy in play ({:.4g}): results are not to be "
+                  "trusted. Try a smaller time step (fix mpm/dt), shape quadratic or cubic, "
+                  "transfer apic, more points per cell; compute mpm/energy tells where energy goes",
+                  gained, update->ntimestep, 100.0 * gained / run.in_play, run.in_play);
+  if (options.gain == MPMFieldOptions::GAIN_ERROR)
+    error->all(FLERR, Error::NOLASTLINE, "{}; fix mpm ... gain warn|ignore goes on", text);
+  if (comm->me == 0)
+    error->warning(FLERR, "{}; fix mpm ... gain sets what is done, and from which share on", text);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::string MPMEnergyWatch::report() const
+{
+  if (run.steps < SHORTEST) return "";
+  const double took = run.start.unexplained() - run.lowest;
+  return fmt::format("  energy {}at the end: kinetic {:.6g}, stored {:.6g}; since the start "
+                     "transfers and friction took {:.3g} ({:.3g} % of the energy in play), and "
+                     "numerical errors added {:.3g}\n",
+                     fields.size() > 1 ? "of all fields " : "", run.last.kinetic, run.last.stored,
+                     took, run.in_play > 0.0 ? 100.0 * took / run.in_play : 0.0, run.gained);
+}

@@ -1,0 +1,265 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi
+// mpi: 1 4
+// timeout: 200
+
+// Fix mpm/heat in materials of different conductivity that share a lattice.
+
+#include "heat/heat_testing.h"
+
+using namespace MPM_TEST;
+
+namespace {
+
+struct Layer {
+  std::string region;
+  double k, capacity = 1.0;
+};
+
+/** A plate of length 1 along x between faces of the box at 1 and 0, whose parts have these conductivities, n cells
+ *  long; offset: of its faces from nodes, in cells. */
+std::string plate(int n, const std::vector<Layer> &layers, double width, double offset,
+                  const std::string &heat = "xlo temperature 1.0 xhi temperature 0.0 stages 100")
+{
+  const double h = 1.0 / n;
+  std::string text =
+      plane("lj", "f p", strprintf("0 1 0 %.17g", width), (int) layers.size(), 0.1 * h);
+  std::string materials;
+  for (std::size_t k = 0; k < layers.size(); k++) {
+    const int type = (int) k + 1;
+    text +=
+        strprintf("region r%d %s\ncreate_points %d region r%d spacing %.17g\ngroup g%d type %d\n",
+                  type, layers[k].region.c_str(), type, type, 0.5 * h, type, type);
+    materials +=
+        strprintf("fix m%d g%d mpm/material density 1.0 eos linear 1e-6 thermal conducting "
+                  "%g 0.5 %g\n",
+                  type, type, layers[k].capacity, layers[k].k);
+  }
+  return text + strprintf("fix grid all mpm %.17g origin %.17g 0\n", h, -offset * h) + materials +
+      "fix heat all mpm/heat " + heat + "\n";
+}
+
+/** Power through the plate in its steady state. */
+double power(Scene &run, double dt, double end)
+{
+  run_to(run, end, dt);
+  const double *const flows = run.fix_vector("heat", 9);
+  EXPECT_NEAR(flows[0] / flows[1], -1.0, 1e-4);
+  return flows[0];
+}
+
+}    // namespace
+
+// three layers one behind the other: the resistance is that of all
+SERIAL_TEST(Layers, InSeries)
+{
+  for (const double offset : {0.0, 0.25, 0.5}) {
+    double error[2];
+    for (const int n : {12, 24}) {
+      Scene run(plate(n,
+                      {{"block 0 0.25 INF INF INF INF", 1.0},
+                       {"block 0.25 0.5 INF INF INF INF", 0.2},
+                       {"block 0.5 1 INF INF INF INF", 4.0}},
+                      4.0 / n, offset));
+      const double q = power(run, 5.0 / (n * n), 6.0) * n / 4.0 * (0.25 + 0.25 / 0.2 + 0.5 / 4.0);
+      error[n == 24] = std::fabs(measured(strprintf("offset %g, %d cells", offset, n), q) - 1.0);
+    }
+    EXPECT_LT(error[0], 0.01);
+    EXPECT_LT(error[1], 0.005);
+    EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 0.9);
+  }
+}
+
+// also if one of them is a single cell thick
+SERIAL_TEST(Layers, ThinOneInSeries)
+{
+  for (const int n : {12, 24})
+    for (const double offset : {0.0, 0.3, 0.5}) {
+      const double h = 1.0 / n;
+      Scene run(plate(n,
+                      {{"block 0 0.25 INF INF INF INF", 1.0},
+                       {strprintf("block 0.25 %.17g INF INF INF INF", 0.25 + h), 0.2},
+                       {strprintf("block %.17g 1 INF INF INF INF", 0.25 + h), 4.0}},
+                      4.0 * h, offset));
+      const double q =
+          power(run, 5.0 * h * h, 4.0) / (4.0 * h) * (0.25 + 5.0 * h + (0.75 - h) / 4.0);
+      EXPECT_NEAR(measured(strprintf("offset %g, %d cells", offset, n), q), 1.0, 0.02);
+    }
+}
+
+// the steady state does not depend on capacities
+SERIAL_TEST(Layers, OfDifferentCapacity)
+{
+  for (const int n : {12, 24}) {
+    Scene run(plate(n,
+                    {{"block 0 0.25 INF INF INF INF", 100.0, 100.0},
+                     {"block 0.25 0.5 INF INF INF INF", 1.0, 1.0},
+                     {"block 0.5 1 INF INF INF INF", 100.0, 100.0}},
+                    4.0 / n, 0.0));
+    const double q = power(run, 5.0 / (n * n), 60.0) * n / 4.0 * (0.75 / 100.0 + 0.25);
+    EXPECT_NEAR(measured(strprintf("%d cells", n), q), 1.0, 0.03);
+  }
+}
+
+// layers beside each other let through what each of them does, also those that have so little capacity that the mean
+// of conductivities would be too fast for them
+SERIAL_TEST(Layers, InParallel)
+{
+  for (const double capacity : {1.0, 0.05}) {
+    Scene run(plate(
+        12, {{"block INF INF 0 0.5 INF INF", 10.0}, {"block INF INF 0.5 1 INF INF", 1.0, capacity}},
+        1.0, 0.25));
+    EXPECT_NEAR(measured(strprintf("capacity %g", capacity), power(run, 0.005, 2.0)) / 5.5, 1.0,
+                1e-3);
+  }
+}
+
+// a checkerboard of conductivities 1 and 10 conducts as the root of 10 (J. B. Keller, J. Math. Phys. 5 (1964) 548)
+SERIAL_TEST(Layers, Checkerboard)
+{
+  double error[2];
+  for (const int n : {16, 32}) {
+    // the faces go through the middle of tiles
+    Scene run(plate(n,
+                    {{"block 0 0.25 0 0.5 INF INF", 1.0},
+                     {"block 0.25 0.75 0 0.5 INF INF", 10.0},
+                     {"block 0.75 1 0 0.5 INF INF", 1.0},
+                     {"block 0 0.25 0.5 1 INF INF", 10.0},
+                     {"block 0.25 0.75 0.5 1 INF INF", 1.0},
+                     {"block 0.75 1 0.5 1 INF INF", 10.0}},
+                    1.0, 0.0));
+    error[n == 32] = std::fabs(
+        measured(strprintf("%d cells", n), power(run, 10.0 / (n * n), 1.0) / std::sqrt(10.0)) -
+        1.0);
+  }
+  EXPECT_LT(error[1], 0.02);
+  EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 0.6);
+}
+
+// a disk in a closed body that conducts less: heat is kept, and nothing becomes warmer or colder than it was
+SERIAL_TEST(Layers, KeepHeat)
+{
+  for (const double capacity : {1.0, 1e-3}) {
+    Scene run(replaced(
+        plate(16, {{"sphere 0.5 1 0 0.4", 50.0}, {"intersect 2 whole around", 0.5, capacity}}, 2.0,
+              0.2, ""),
+        "region r1 sphere",
+        "region whole block 0 1 0 2 INF INF\nregion around sphere 0.5 1 0 0.4 side out\n"
+        "region r1 sphere"));
+    for (const char *id : {"m1", "m2"})
+      Warm(run, id).set([](const double *x) {
+        return x[0] < 0.4 ? 1.0 : 0.0;
+      });
+    const auto heat = [&]() {
+      return Warm(run, "m1").heat() + Warm(run, "m2").heat();
+    };
+    const double before = heat();
+    run.commands("timestep 1e-6\nrun 200\n");
+    EXPECT_NEAR(heat() / before, 1.0, 1e-13);
+    double most = 0.0, least = 1.0;
+    for (const char *id : {"m1", "m2"}) {
+      Warm warm(run, id);
+      for (int i = 0; i < run.n(); i++) {
+        if (!warm.has(i)) continue;
+        most = std::max(most, warm.T(i));
+        least = std::min(least, warm.T(i));
+      }
+    }
+    EXPECT_LT(measured(strprintf("capacity %g, most", capacity), most), 1.1);
+    EXPECT_GT(measured("least", least), -0.1);
+  }
+}
+
+// a material without points in this field changes no bit, and no time step; here it is that of another field, whose conductivities
+// would need 100 times shorter steps, differ along axes, or are not there
+TEST(Unused, ChangesNothing)
+{
+  const std::string scene =
+      replaced(plate(12,
+                     {{"block 0 0.5 INF INF INF INF", 1.0}, {"block 0.5 1 INF INF INF INF", 0.1}},
+                     4.0 / 12, 0.3, "xlo temperature 1.0 xhi convection 2.0 0.0 stages 5"),
+               "fix grid all", "group points type 1 2\ngroup none empty\nfix grid points") +
+      "fix dt all mpm/dt 0.9\n";
+  Scene plain(scene + "run 30\n");
+  for (const std::string other :
+       {"conducting 1.0 0.5 100.0", "conducting 1.0 0.5 1.0 orthotropic 2.0 3.0", ""}) {
+    Scene run(replaced(scene, "fix heat all",
+                       "fix m3 none mpm/material density 0.1 eos linear 1e-6 " +
+                           (other.empty() ? "" : "thermal " + other) + "\nfix heat all") +
+              "run 30\n");
+    EXPECT_EQ(run.lmp->update->dt, plain.lmp->update->dt) << other;
+    ASSERT_EQ(run.n(), plain.n());
+    for (const char *m : {"m1", "m2"}) {
+      Warm a(plain, m), b(run, m);
+      for (int i = 0; i < run.n(); i++)
+        if (b.has(i)) ASSERT_EQ(b.T(i), a.T(i)) << other;
+    }
+  }
+}
+
+// fix mpm/dt knows conductivities that temperatures have raised far above those of the input, also in what is next to them
+SERIAL_TEST(Vary, HasATimeStep)
+{
+  for (const double capacity : {0.25, 1.0}) {
+    Scene run(replaced(plate(12,
+                             {{"block 0 0.5 INF INF INF INF", 1.0, capacity},
+                              {"block 0.5 1 INF INF INF INF", 1.0}},
+                             4.0 / 12, 0.3, "stages 1"),
+                       "1 0.5 1\nfix heat",
+                       "1 0.5 1 vary thermal.K table 0.0 1.0 0.4 20.0\nfix heat") +
+              "fix dt all mpm/dt 0.9\nrun 20\n");
+    // not far below the limit of quadratic functions, 0.33 h^2 rho c/K
+    EXPECT_GT(measured("dt", run.lmp->update->dt), 0.9 * 0.1 * capacity / (20.0 * 144.0));
+  }
+}
+
+// no means across interfaces of orthotropic materials: this is said where conductivities differ
+SERIAL_TEST(Orthotropic, IsWarnedOf)
+{
+  for (const bool orthotropic : {false, true}) {
+    const std::string scene = replaced(
+        plate(12, {{"block 0 0.5 INF INF INF INF", 1.0}, {"block 0.5 1 INF INF INF INF", 0.1}},
+              4.0 / 12, 0.0),
+        "0.5 0.1\n", orthotropic ? "0.5 0.1 orthotropic 0.2 0.3\n" : "0.5 0.1\n");
+    EXPECT_EQ(lines_that_say(scene + "timestep 1e-3\nrun 1\n", "one of them is orthotropic").size(),
+              orthotropic ? 1u : 0u);
+  }
+}
+
+// nor with functions that are not smooth, or in the total frame, for any pair of materials in one field
+SERIAL_TEST(Shapes, WithoutMeansAreWarnedOf)
+{
+  const std::string scene =
+      plate(12, {{"block 0 0.5 INF INF INF INF", 1.0}, {"block 0.5 1 INF INF INF INF", 0.1}},
+            4.0 / 12, 0.0) +
+      "timestep 1e-3\nrun 1\nrun 1\n";
+  for (const std::string options :
+       {"", " shape cubic", " shape linear", " shape gimp", " frame total"}) {
+    const auto warnings = lines_that_say(replaced(scene, " 0\nfix m1", " 0" + options + "\nfix m1"),
+                                         "no means across");
+    EXPECT_EQ(warnings.size(), options.empty() || options == " shape cubic" ? 0u : 1u) << options;
+    for (const auto &line : warnings)    // with functions that end at faces of cells
+      EXPECT_EQ(line.find("unless they are in planes of nodes") != std::string::npos,
+                options.find("shape") != std::string::npos)
+          << options;
+    EXPECT_EQ(lines_that_say(replaced(replaced(scene, " 0\nfix m1", " 0" + options + "\nfix m1"),
+                                      "0.5 0.1\n", "0.5 0.7\n"),
+                             "no means across")
+                  .size(),
+              0u);
+  }
+}
+
+TEST(Ranks, Agree)
+{
+  const std::string scene =
+      plate(16, {{"block 0 0.3 0 1 INF INF", 1.0}, {"sphere 0.6 0.5 0 0.25", 20.0}}, 1.0, 0.3,
+            "xlo temperature 1.0 xhi convection 2.0 0.0") +
+      "velocity g2 set -0.4 0.1 0\ntimestep 1e-3\n";
+  OnRanks run(scene, "run 60\n");
+  EXPECT_LT(run.difference(), 1e-12);
+  EXPECT_NEAR(run.parallel.fix("heat")->compute_scalar() / run.serial.fix("heat")->compute_scalar(),
+              1.0, 1e-11);
+}

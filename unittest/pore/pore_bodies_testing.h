@@ -1,0 +1,102 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+#ifndef MPM_PORE_BODIES_TESTING_H
+#define MPM_PORE_BODIES_TESTING_H
+
+// Bodies with pore water that collide, for tests of fix mpm/pore on several ranks and after restarts.
+
+#include "mpm_lammps.h"
+
+#include "output/compute_mpm_atom.h"
+
+namespace MPM_TEST {
+
+/** Input of a disk and a block of soils and a dry block, which collide across ranks and periodic faces.
+ *  water: arguments of fix mpm/pore; variables: input lines that define the variables in them. */
+inline std::string colliding(const std::string &variables, const std::string &water)
+{
+  return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
+      bodies({{"one", "sphere 3 4 0 1.6 side in"},
+              {"two", "block 5 6.6 3 5 -0.5 0.5"},
+              {"dry", "block 3 5 0.8 2 -0.5 0.5"}}) +
+      "fix m one mpm/material density 1.0 eos linear 20.0 strength j2 8.0 0.4\n"
+      "fix n two mpm/material density 2.0 eos linear 30.0 strength j2 8.0 0.4\n"
+      "fix o dry mpm/material density 1.0 neohookean 10.0 0.3\n"
+      "velocity all set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n" +
+      variables + "fix water all mpm/pore " + water + "\ntimestep 0.005\n";
+}
+/** The same scene between walls at all faces along x and y. kind: options of these walls. */
+inline std::string between_walls(const std::string &scene, const std::string &kind = "slip")
+{
+  return replaced(scene, "boundary p p p", "boundary f f p") +
+      "fix b all mpm/boundary xlo xhi ylo yhi " + kind + "\n";
+}
+
+/** Pressure p and saturation S of the water of a point. */
+struct PointWater {
+  double tag, p, S;
+};
+/** Water of all points on all ranks, in order of tags. The scene must have the computes of PORE. */
+inline std::vector<PointWater> water_of_points(Scene &run)
+{
+  const auto values = [&](const char *id) {
+    auto *compute = run.lmp->modify->get_compute_by_id(id);
+    compute->compute_peratom();
+    return compute->vector_atom;
+  };
+  const double *const p = values("pore"), *const S = values("saturation");
+  std::vector<PointWater> mine;
+  for (int i = 0; i < run.n(); i++) mine.push_back({(double) run.lmp->atom->tag[i], p[i], S[i]});
+  return all_by_tag(mine, run.lmp->world);
+}
+constexpr const char *PORE = "compute pore all mpm/atom pore\n"
+                             "compute saturation all mpm/atom saturation\n";
+
+/** Largest difference between the pressures and between the saturations of the same points of two scenes.
+ *  It is 1e300 if there are no points, or not the same number of them. */
+inline double water_difference(Scene &a, Scene &b)
+{
+  const auto one = water_of_points(a), other = water_of_points(b);
+  if (one.empty() || one.size() != other.size()) return 1.0e300;
+  double most[2] = {0.0, 0.0};
+  for (std::size_t k = 0; k < one.size(); k++) {
+    most[0] = std::max(most[0], std::fabs(one[k].p - other[k].p));
+    most[1] = std::max(most[1], std::fabs(one[k].S - other[k].S));
+  }
+  return std::max(measured("difference of pressures", most[0]),
+                  measured("of saturations", most[1]));
+}
+
+/** Expects the same results on one rank and on all: states of points, volume of the water that came in,
+ *  and pressures and saturations within this difference. */
+inline void expect_same_on_ranks(const std::string &scene, double difference)
+{
+  OnRanks run(scene + PORE, "run 300\n");
+  EXPECT_LT(run.difference(), 1e-11);
+  EXPECT_LT(water_difference(run.serial, run.parallel), difference);
+  EXPECT_NEAR(run.serial.fix("water")->compute_scalar(),
+              run.parallel.fix("water")->compute_scalar(), 1e-12);
+}
+
+/** Expects that a scene of colliding() gives the same bits with a restart in the middle as without it.
+ *  variables: as for colliding(). */
+inline void expect_continues(const std::string &scene, const std::string &variables)
+{
+  const std::string tail = scene.substr(scene.find("fix m one"));
+  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n" + variables;
+  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
+    end = tail.find('\n', at);
+    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
+  }
+  Continued run(scene + PORE, 60, fixes + PORE + "timestep 0.005\n", 60);
+  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
+  const auto one = water_of_points(run.whole), two = water_of_points(run.again);
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(PointWater)), 0);
+  EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+}
+
+}    // namespace MPM_TEST
+
+#endif

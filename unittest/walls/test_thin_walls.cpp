@@ -1,0 +1,646 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
+// version 2; see the file LICENSE.
+
+// labels: physics mpi
+// mpi: 1 2
+// timeout: 600
+
+// Regions as walls where their other faces are near: plates that are thinner than what nodes see, narrow and
+// short tools; the warning where nodes cannot tell the shape; unions, intersections, and cones with a sharp end; walls
+// that move.
+
+#include "mpm_lammps.h"
+
+#include "walls/mpm_region_surface.h"
+
+using namespace MPM_TEST;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+namespace {
+constexpr double g = 9.81, E = 1.0e6, NU = 0.3;
+
+std::string elastic_block(double h, const std::string &extent, const std::string &region)
+{
+  return plane("si", "f f", extent, 1, 0.5 * h) +
+      strprintf("fix grid all mpm %.15g origin 0 0\n", h) + "region body block " + region +
+      " INF INF\ncreate_points 1 region body ppc 2\n" +
+      strprintf("fix m all mpm/material density 1000 neohookean %g %g\n", E, NU) +
+      "fix damp all viscous $(30*mass(all)/count(all))\n";
+}
+
+std::string run_until(double time)
+{
+  return strprintf("fix dt all mpm/dt 0.5 until %.15g\nrun 100000\n", time);
+}
+
+struct Rest {
+  double settled, weight;    // mean over the block; of the force on the plate
+};
+
+/** A block, 1 wide and 0.5 high, at rest on a plate of this thickness, whose upper face is at top, and which reaches
+ *  this far beyond the block; in node spacings. The wall: made of the plate by these commands. */
+Rest rest(double h, double thickness, double top, double beyond, const std::string &kind,
+          const std::string &wall = "", bool moves = false)
+{
+  const double y = 0.4 + top * h;
+  Scene run(elastic_block(h, "0 2 0 1.2", strprintf("0.5 1.5 %.15g %.15g", y, y + 0.5)) +
+            "variable still equal 0.0\n" +
+            strprintf("region plate block %.15g %.15g %.15g %.15g INF INF %s\n", 0.5 - beyond * h,
+                      1.5 + beyond * h, y - thickness * h, y,
+                      moves ? "move NULL v_still NULL" : "") +
+            wall + "fix w all mpm/boundary region " + (wall.empty() ? "plate " : "wall ") + kind +
+            strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) +
+            strprintf("variable settled equal %.15g-xcm(all,y)\n", y + 0.25) +
+            strprintf("variable weight equal -f_w[2]/(%g*mass(all))\nrun 0\n", g) + run_until(0.5));
+  return {run.variable("settled"), run.variable("weight")};
+}
+}    // namespace
+
+// A block carries its weight, and settles by rho g H^2/3 (1 - nu^2)/E in the mean when it is wide; the thickness of the plate does
+// not matter. Plates thinner than a spacing held nothing when they had no node inside (the block fell), and one of a
+// spacing let it settle by a third more.
+TEST(ThinPlate, CarriesABlock)
+{
+  const double exact = 1000 * g * 0.25 / 3.0 * (1.0 - NU * NU) / E;
+  struct Plate {
+    double thickness, top, beyond;    // in node spacings
+    const char *kind = "separate";
+    bool moves = false;
+  };
+  const Plate plates[] = {{1, 0, 4},
+                          {0.8, 0.5, 4},
+                          {0.3, 0.6, 2},
+                          {1.5, 0.3, 1},
+                          {2.2, 0.5, 4},
+                          {0.8, 0.5, 3, "slip friction 0.0001"},
+                          {0.3, 0.6, 2, "slip"},
+                          {0.8, 0.5, 3, "slip"},
+                          {1, 0, 4, "slip"},
+                          {2.2, 0.5, 4, "slip"},
+                          {0.3, 0.6, 2, "slip", true},
+                          {0.8, 0.5, 3, "slip", true},
+                          {0.3, 0.6, 2, "stick"},
+                          {0.8, 0.5, 3, "stick"},
+                          {2.2, 0.5, 4, "stick", true}};
+  for (const double h : {0.05, 0.025})
+    for (const auto &plate : plates) {
+      if (h < 0.05 && plate.thickness != 0.8) continue;
+      const auto thin =
+                     rest(h, plate.thickness, plate.top, plate.beyond, plate.kind, "", plate.moves),
+                 thick = rest(h, 6.0, plate.top, plate.beyond, plate.kind);
+      const auto name = strprintf("%s, h %g, thickness %g h, at %g h: ", plate.kind, h,
+                                  plate.thickness, plate.top);
+      EXPECT_NEAR(measured(name + "settlement", thin.settled / exact), thick.settled / exact,
+                  0.005);
+      EXPECT_NEAR(measured(name + "weight", thin.weight), 1.0, 0.005);
+      // there the points of create_points begin at the plate
+      if ((plate.top == 0.0 || plate.top == 0.5) && plate.kind != std::string("stick"))
+        EXPECT_NEAR(thick.settled / exact, 1.0, 0.03);
+    }
+}
+
+// What is added far away changes nothing. LAMMPS does not tell the distance from a union: the block fell through
+// the thinnest plate, and settled 20 times as far on the thickest.
+TEST(ThinPlate, IsTheSameInAUnion)
+{
+  const std::string far = "region far block -9 -8 -9 -8 INF INF\n";
+  for (const char *kind : {"separate", "slip friction 0.3", "separate friction 0.3"})
+    for (const double thickness : {0.8, 4.0}) {
+      const auto alone = rest(0.05, thickness, 0.5, 4, kind);
+      EXPECT_NEAR(alone.weight, 1.0, 0.005);
+      for (const char *wall :
+           {"region wall union 2 plate far\n", "region wall union 2 far plate\n",
+            "region both union 2 plate far\nregion wall union 2 far both\n",
+            "region not block -9 -8 -9 -8 INF INF side out\nregion wall intersect 2 plate not\n"}) {
+        const auto in_union = rest(0.05, thickness, 0.5, 4, kind, far + wall);
+        EXPECT_NEAR(in_union.settled, alone.settled, 1.0e-12) << kind << " " << thickness << wall;
+        EXPECT_NEAR(in_union.weight, alone.weight, 1.0e-12) << kind << " " << thickness << wall;
+      }
+    }
+}
+
+// A block that is thrown up leaves the plate freely: its other face, with the material behind it, does not act.
+TEST(ThinPlate, LetsGo)
+{
+  constexpr double h = 0.05;
+  for (const double thickness : {0.5, 1.0, 1.5, 2.0, 3.0})
+    for (const double top : {0.0, 0.3, 0.6}) {
+      const double y = 0.4 + top * h;
+      Scene run(elastic_block(h, "0 2 0 1.5", strprintf("0.5 1.5 %.15g %.15g", y, y + 0.5)) +
+                strprintf("region plate block 0 2 %.15g %.15g INF INF\n", y - thickness * h, y) +
+                "unfix damp\nvelocity all set 0 2 0\nfix w all mpm/boundary region plate separate\n"
+                "variable v equal vcm(all,y)\n" +
+                run_until(0.05));
+      EXPECT_NEAR(run.variable("v"), 2.0, 1.0e-12) << thickness << " " << top;
+    }
+}
+
+namespace {
+/** The force on a punch, 0.2 wide, that is pressed by 0.03 into a block of 2 x 0.5 on a smooth floor: height in node
+ *  spacings, where its sides are between nodes, and the place of the surface between nodes. */
+double punch(double h, double height, double side, double surface, const std::string &more = "")
+{
+  const double top = 0.5 + surface * h, x = 1.0 + side * h;
+  Scene run(elastic_block(h, "0 2 0 1.1", strprintf("0 2 0 %.15g", top)) +
+            "variable d equal -0.03*time/0.3\n" +
+            strprintf("region punch block %.15g %.15g %.15g %.15g INF INF move NULL v_d NULL\n",
+                      x - 0.1, x + 0.1, top, top + height * h) +
+            "fix w all mpm/boundary region punch separate friction 0.3\n"
+            "fix f all mpm/boundary ylo xlo xhi slip\n" +
+            "variable force equal f_w[2]\nrun 0\n" + more + run_until(0.3));
+  return run.variable("force");
+}
+}    // namespace
+
+// How high the punch is does not matter, and not much where it is between the nodes. Before, these had 19 to -1 % of the
+// force of a high one, which itself had 80 % of it.
+TEST(Punch, HeightDoesNotMatter)
+{
+  const double high = measured("punch, high", punch(0.05, 10, 0, 0));
+  EXPECT_NEAR(measured("punch, 1.5 h high", punch(0.05, 1.5, 0, 0)) / high, 1.0, 0.01);
+  EXPECT_NEAR(measured("punch, 0.8 h high", punch(0.05, 0.8, 0.5, 0.5)) / high, 1.0, 0.05);
+  EXPECT_NEAR(measured("punch, h/2, 1.5 h high", punch(0.025, 1.5, 0, 0.5)) / high, 1.0, 0.1);
+}
+
+/* ---------------------------------------------------------------------- what nodes cannot tell is told */
+
+TEST(ThinRegions, AreReported)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  constexpr double h = 0.05;
+  const auto text = [](const std::string &body, const std::string &tool, const std::string &kind,
+                       const std::string &parts = "") {
+    const ScratchFile log("log");
+    {
+      Scene run("log " + log.name + "\n" + elastic_block(h, "0 2 0 1.2", body) + parts +
+                "region tool " + tool + "\nfix w all mpm/boundary region tool " + kind +
+                strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) + run_until(0.03));
+    }
+    return file_text(log.name);
+  };
+  const auto told =
+      HasSubstr("Fix mpm/boundary w: its region tool is thinner than 1.5 node spacings");
+  const std::string lower = "0.5 1.5 0.4 0.7", both = "0.5 1.5 0.2 0.8";
+  for (const char *kind : {"separate", "slip friction 0.1", "slip", "stick"}) {
+    // blades on which the block stands: between nodes, with nodes, and one that is wide enough
+    EXPECT_THAT(text(lower, "block 1.01 1.04 0 0.4 INF INF", kind), told) << kind;
+    EXPECT_THAT(text(lower, "block 0.99 1.02 0 0.4 INF INF", kind), told) << kind;
+    EXPECT_THAT(text(lower, "block 0.9 1.1 0 0.4 INF INF", kind), Not(told)) << kind;
+    // a wire
+    EXPECT_THAT(text(lower, "cylinder z 1.01 0.38 0.02 INF INF", kind), told) << kind;
+    EXPECT_THAT(text(lower, "union 2 far wire", kind,
+                     "region wire cylinder z 1.01 0.38 0.02 INF INF\n"
+                     "region far block -9 -8 -9 -8 INF INF\n"),
+                told)
+        << kind;
+    // a plate within the block, one below it, and one that is thick
+    EXPECT_THAT(text(both, "block 0 2 0.51 0.54 INF INF", kind), told) << kind;
+    EXPECT_THAT(text(lower, "block 0 2 0.37 0.4 INF INF", kind), Not(told)) << kind;
+    EXPECT_THAT(text(both, "block 0 2 0.5 0.7 INF INF", kind), Not(told)) << kind;
+  }
+  // lines hold what is in front of a plate of any thickness, see ThinPlate.CarriesABlock
+  for (const char *kind : {"slip", "stick"})
+    for (const char *plate : {"block 0 2 0.36 0.39 INF INF", "block 0 2 0.37 0.4 INF INF"})
+      EXPECT_THAT(text(lower, plate, kind), Not(told)) << kind << plate;
+  EXPECT_THAT(text(lower, "block 0.9 1.1 0 0.4 INF INF", "stick"), Not(told));
+  EXPECT_THAT(text(both, "cylinder z 1 0.2 0.3 INF INF side out", "stick"), Not(told));
+  // the ends of plates, and wedges, are sound
+  EXPECT_THAT(text(lower, "block 0.52 1.48 0.3 0.4 INF INF", "separate"), Not(told));
+  EXPECT_THAT(text(lower, "block 0.48 3 0.38 0.4 INF INF", "separate"), Not(told));
+  EXPECT_THAT(text(lower, "prism 0.7 1.3 0.1 0.41 -1 1 0.3 0 0", "separate"), Not(told));
+}
+
+TEST(ThinRegions, AreReportedIn3d)
+{
+  const auto is_told = [](const std::string &tool, const std::string &kind) {
+    const ScratchFile log("log");
+    {
+      Scene run("log " + log.name + "\n" + space("lj", "f f f", "0 10 0 10 0 10") +
+                body("block 2 8 2 8 5 8", "density 1.0 neohookean 10.0 0.3") + "region tool " +
+                tool + "\nfix w all mpm/boundary region tool " + kind + "\ntimestep 0.01\nrun 2\n");
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    return file_text(log.name).find("region tool is thinner than 1.5") != std::string::npos;
+  };
+  for (const char *kind : {"separate", "slip friction 0.1", "slip", "stick"}) {
+    // blades across two axes, with a node and without; wires that lie and stand; a plate
+    EXPECT_TRUE(is_told("block 5.2 5.8 0 10 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("block 0 10 4.8 5.3 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("cylinder y 5.3 4.6 0.4 0 10", kind)) << kind;
+    EXPECT_TRUE(is_told("cylinder z 5.3 4.8 0.5 1 5", kind)) << kind;
+    EXPECT_TRUE(is_told("block 0 10 0 10 6.2 6.8", kind)) << kind;
+    // what is wide enough, and a plate with material on one side
+    EXPECT_FALSE(is_told("block 3.7 6.3 0 10 1 5", kind)) << kind;
+    EXPECT_FALSE(is_told("cylinder y 5.3 2 3 0 10", kind)) << kind;
+    EXPECT_FALSE(is_told("cylinder z 5.3 4.8 1.5 1 5", kind)) << kind;
+    EXPECT_FALSE(is_told("block 0 10 0 10 4.4 5", kind)) << kind;
+  }
+}
+
+namespace {
+struct Warned {
+  std::string run, ranks = "* 1 1", extent = "0 2 0 1.2", body = "0.2 1.8 0.4 0.7", more;
+  int every = 1;
+};
+
+/** Where warnings tell that a region is too thin, for a block at rest. */
+std::vector<std::string> warnings_of(const std::string &region, const std::string &kind,
+                                     const Warned &w)
+{
+  const ScratchFile log("once.log");
+  {
+    const auto block = elastic_block(0.05, w.extent, w.body);
+    Scene scene("log " + log.name + "\nprocessors " + w.ranks + "\n" +
+                replaced(block, "origin 0 0", strprintf("origin 0 0 every %d", w.every)) + w.more +
+                "variable still equal 0.0\nregion tool " + region +
+                "\nfix w all mpm/boundary region tool " + kind +
+                strprintf("\nfix g all gravity %g vector 0 -1 0\ntimestep 2.0e-4\n", g) + w.run);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  std::vector<std::string> lines;
+  std::ifstream file(log.name);
+  for (std::string line; std::getline(file, line);) {
+    const auto near = line.find("near "), end = line.find("):");
+    if (line.find("is thinner than 1.5 node spacings") < near && end != std::string::npos)
+      lines.push_back(line.substr(near, end + 1 - near));
+  }
+  return lines;
+}
+}    // namespace
+
+// Once for all ranks, and with the same place: a blade below the last of two ranks was reported by this one alone, not in
+// the log file, and a plate on two ranks twice
+TEST(ThinRegions, AreReportedOnce)
+{
+  for (const char *ranks : {"* 1 1", "1 * 1"}) {
+    const auto places = [ranks](const std::string &block, const std::string &kind) {
+      const auto lines =
+          warnings_of("block " + block + " INF INF", kind, {"run 3\nrun 3\n", ranks});
+      EXPECT_LE(lines.size(), 1U) << block << kind << ranks;
+      return lines.empty() ? "none" : lines[0].substr(0, lines[0].find(','));
+    };
+    EXPECT_EQ(places("1.51 1.54 0 0.4", "separate"), "near 1.5 0.35 0") << ranks;
+    EXPECT_EQ(places("1.51 1.54 0 0.62", "slip friction 0.1"), "near 1.5 0.35 0") << ranks;
+    EXPECT_EQ(places("0 2 0.51 0.54", "separate"), "near 0.15 0.5 0") << ranks;
+    EXPECT_EQ(places("0 2 0.56 0.59", "separate"), "near 0.15 0.55 0") << ranks;
+    for (const char *kind : {"stick", "slip"}) {
+      EXPECT_EQ(places("1.5 2 0.36 0.39", kind), "none") << ranks << kind;
+      EXPECT_EQ(places("1.51 1.54 0 0.62", kind), "near 1.5 0.35 0") << ranks << kind;
+    }
+    EXPECT_EQ(places("0 2 0.2 0.4", "separate"), "none") << ranks;
+    EXPECT_EQ(places("0 2 0.2 0.4", "slip"), "none") << ranks;
+  }
+}
+
+// Another body is below the plate, next to it: lines hold the body on it, unless they see both bodies
+TEST(ThinRegions, AreReportedWithWhatOtherRanksHave)
+{
+  for (const std::string kind : {"stick", "slip"})
+    for (const bool below : {false, true}) {
+      Warned w = {"run 3\n", "1 * 1", "0 2 -0.4 1.4", "0.2 1.8 0.42 0.8"};
+      if (below)
+        w.more = "region low block 0.2 1.8 0.01 0.31 INF INF\ncreate_points 1 region low ppc 2\n";
+      EXPECT_EQ(warnings_of("block 0 2 0.405 0.42 INF INF", kind, w).size(), below ? 1U : 0U)
+          << kind;
+    }
+}
+
+// Regions that move are looked at in the first step, whatever its number
+TEST(ThinRegions, ThatMoveAreReportedInShortRuns)
+{
+  Warned twice = {"reset_timestep 1\nrun 102\n"};
+  twice.every = 2;
+  const std::string moves = "block 1.51 1.54 0 0.62 INF INF move NULL v_still NULL";
+  for (const char *kind : {"stick", "slip"}) {
+    EXPECT_EQ(warnings_of(moves, kind, {"run 3\n"}).size(), 1U) << kind;
+    EXPECT_EQ(warnings_of(moves, kind, twice).size(), 1U) << kind;
+  }
+}
+
+/* ---------------------------------------------------------------------- unions, intersections, cones */
+
+namespace {
+/** The surface of the region "it" at places in and around a box from -2 to 2. */
+void each_place(const std::string &regions,
+                const std::function<void(const MPMRegionSurface &surface, const double *x)> &f)
+{
+  Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") + regions);
+  Region *const it = run.lmp->domain->get_region_by_id("it");
+  ASSERT_NE(it, nullptr);
+  run.lmp->init();
+  const MPMRegionSurface surface(it, 3);
+  EXPECT_FALSE(surface.is_open());
+  for (int k = 0; k < 2000; k++) {
+    const double x[3] = {std::remainder(0.37 * k, 4.8), std::remainder(0.61803 * k, 4.7),
+                         std::remainder(0.7548 * k, 4.9)};
+    f(surface, x);
+  }
+}
+
+/** Its signed distances there, with far = 100. */
+void each_distance(const std::string &regions,
+                   const std::function<void(const double *x, double distance)> &f)
+{
+  each_place(regions, [&](const MPMRegionSurface &surface, const double *x) {
+    f(x, surface.distance(x, 100.0));
+  });
+}
+
+double ball(const double *x, double at, double radius)
+{
+  return std::hypot(x[0] - at, x[1], x[2]) - radius;
+}
+
+/** Distance from a cone along x, from its tip at -1 to its end at 1 with a radius of 1. */
+double tip(const double *x)
+{
+  const double r = std::hypot(x[1], x[2]), side = (2.0 * r - (x[0] + 1.0)) / std::sqrt(5.0);
+  if (side <= 0.0 && x[0] <= 1.0) return std::max(side, x[0] - 1.0);
+  const auto from = [&](double x0, double r0, double x1, double r1) {
+    const double dx = x1 - x0, dr = r1 - r0;
+    const double t = ((x[0] - x0) * dx + (r - r0) * dr) / (dx * dx + dr * dr);
+    const double s = std::max(0.0, std::min(t, 1.0));
+    return std::hypot(x[0] - x0 - s * dx, r - r0 - s * dr);
+  };
+  return std::min(from(-1.0, 0.0, 1.0, 1.0), from(1.0, 1.0, 1.0, 0.0));
+}
+}    // namespace
+
+// Where the nearest surface is that of one part, and it has nothing to do with others, distances are exact
+TEST(Surfaces, OfUnionsAndIntersections)
+{
+  const std::string balls = "region a sphere -0.5 0 0 1\nregion b sphere 0.5 0 0 1.1\n";
+  const auto a = [](const double *x) {
+    return ball(x, -0.5, 1.0);
+  };
+  const auto b = [](const double *x) {
+    return ball(x, 0.5, 1.1);
+  };
+  for (const int side : {1, -1}) {
+    const char *const out = side < 0 ? " side out\n" : "\n";
+    each_distance(balls + "region it union 2 a b" + out, [&](const double *x, double d) {
+      const double exact = std::min(a(x), b(x));
+      if (exact > 0.0) {
+        EXPECT_NEAR(side * d, exact, 1.0e-13);
+      } else if (a(x) > 0.0 || b(x) > 0.0) {    // a place on the surface, or none
+        EXPECT_LE(side * d, exact + 1.0e-13);
+      } else
+        EXPECT_LT(side * d, 0.0);
+    });
+    each_distance(balls + "region it intersect 2 a b" + out, [&](const double *x, double d) {
+      const double exact = std::max(a(x), b(x));
+      if (exact <= 0.0)
+        EXPECT_NEAR(side * d, exact, 1.0e-13);
+      else
+        EXPECT_GE(side * d, exact - 1.0e-13);
+    });
+    // of the complements, and one in another
+    each_distance("region a sphere -0.5 0 0 1 side out\nregion b sphere 0.5 0 0 1.1 side out\n"
+                  "region it intersect 2 a b" +
+                      std::string(out),
+                  [&](const double *x, double d) {
+                    const double exact = std::min(a(x), b(x));
+                    if (exact > 0.0) EXPECT_NEAR(-side * d, exact, 1.0e-13);
+                  });
+    each_distance(balls +
+                      "region far sphere 3 0 0 0.2\nregion both union 2 a b side out\n"
+                      "region it union 2 both far" +
+                      std::string(out),
+                  [&](const double *x, double d) {
+                    const double exact = std::min(a(x), b(x));
+                    if (exact > 0.0 && ball(x, 3, 0.2) > 0.0 && std::fabs(d) < 100.0)
+                      EXPECT_GE(-side * d, exact - 1.0e-13);
+                    if (exact > 0.0 && ball(x, 3, 0.2) > 2 * exact)
+                      EXPECT_NEAR(-side * d, exact, 1.0e-13);
+                  });
+  }
+}
+
+TEST(Surfaces, OfSharpCones)
+{
+  const std::string cone = "region tip cone x 0 0 0 1 -1 1", far = "\nregion far sphere 9 0 0 1\n";
+  for (const int side : {1, -1}) {
+    const std::string out = side < 0 ? " side out\n" : "\n";
+    const auto exact = [&](const double *x, double d) {
+      EXPECT_NEAR(side * d, tip(x), 1.0e-10) << x[0] << " " << x[1] << " " << x[2];
+    };
+    each_distance(replaced(cone, "tip", "it") + out, exact);
+    each_distance(cone + far + "region it union 2 tip far" + out, exact);
+    each_distance(cone + far + "region u union 2 far tip\nregion it union 2 u far" + out, exact);
+    each_distance(cone + "\nregion all sphere 0 0 0 9\nregion it intersect 2 tip all" + out, exact);
+    each_distance(cone + " side out" + far + "region not sphere 9 0 0 1 side out\n" +
+                      "region it intersect 2 tip not" + out,
+                  [&](const double *x, double d) {
+                    EXPECT_NEAR(-side * d, tip(x), 1.0e-10);
+                  });
+  }
+  // on the axis, and the other way round
+  for (const char *kind : {"it cone z 0 0 0 1 -1 1", "it cone z 0 0 1 0 -1 1"}) {
+    Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") + "region " + kind + "\n");
+    run.lmp->init();
+    const MPMRegionSurface surface(run.lmp->domain->get_region_by_id("it"), 3);
+    const double end = strstr(kind, "0 1 -1") ? 1.0 : -1.0;
+    for (const double z : {-1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5}) {
+      const double at[3] = {0.0, 0.0, z}, same[3] = {end * z, 0.0, 0.0};
+      EXPECT_NEAR(surface.distance(at, 100.0), tip(same), 1.0e-9) << kind << " " << z;
+    }
+  }
+}
+
+// In front of a smooth surface, the normal is the gradient of the distance. Where places on several faces are as near, it
+// points to none of them: on the axis of a cylinder, and at the same distance from two faces inside.
+TEST(Surfaces, Normals)
+{
+  constexpr double STEP = 1.0e-5;
+  for (const std::string kind :
+       {"block -1 1.1 -0.9 0.8 -1.2 0.7", "sphere 0.1 0.2 -0.1 1", "cylinder y 0.1 -0.2 0.9 -1 1.2",
+        "cone z 0.1 0.2 1.1 0.4 -1 1.3", "cone x 0 0 0 1 -1 1", "plane 0.1 0 0.2 1 -2 0.5",
+        "prism -1 1 -1 0.9 -1 1.1 0.2 0.1 -0.1", "ellipsoid 0 0.1 0 1.4 0.8 1.1"})
+    for (const std::string side : {" side in", " side out"}) {
+      int known = 0;
+      each_place("region it " + kind + side + "\n",
+                 [&](const MPMRegionSurface &surface, const double *x) {
+                   double n[3], gradient[3], square = 0.0;
+                   surface.normal(x, 100.0, STEP, n);
+                   for (int d = 0; d < 3; d++) {
+                     double up[3] = {x[0], x[1], x[2]}, down[3] = {x[0], x[1], x[2]};
+                     up[d] += STEP;
+                     down[d] -= STEP;
+                     gradient[d] =
+                         (surface.distance(up, 100.0) - surface.distance(down, 100.0)) / (2 * STEP);
+                     square += gradient[d] * gradient[d];
+                   }
+                   if (std::fabs(square - 1.0) > 1.0e-6) return;    // next to an edge inside
+                   known++;
+                   for (int d = 0; d < 3; d++)
+                     EXPECT_NEAR(n[d], gradient[d], STEP)
+                         << kind << side << " " << x[0] << " " << x[1] << " " << x[2];
+                 });
+      EXPECT_GT(known, 1850) << kind << side;
+    }
+  const auto normal_at = [](const std::string &kind, const std::array<double, 3> &x) {
+    std::array<double, 3> n;
+    Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") + "region it " + kind + "\n");
+    run.lmp->init();
+    MPMRegionSurface(run.lmp->domain->get_region_by_id("it"), 3)
+        .normal(x.data(), 100.0, STEP, n.data());
+    return n;
+  };
+  using Vector = std::array<double, 3>;
+  for (const double off : {0.0, 1.0e-16, 0.05 * STEP})
+    EXPECT_EQ(normal_at("cylinder z 0.1 0.3 0.5 -2 2", {0.1 + off, 0.3, 0.0}), (Vector{0, 0, 0}));
+  const Vector corner = normal_at("block -1 1 -1 1 -2 2", {0.5, 0.5, 0.0});
+  EXPECT_NEAR(corner[0], std::sqrt(0.5), 1.0e-9);
+  EXPECT_NEAR(corner[1], std::sqrt(0.5), 1.0e-9);
+}
+
+// LAMMPS divides zero by zero for a cone with a radius of zero at an end. A cone with a tiny one is the same wall.
+TEST(Cones, SharpEnds)
+{
+  const auto speeds = [](const std::string &cone, const std::string &kind) {
+    Scene run(space("lj", "f f f", "0 10 0 10 0 10") +
+              body("block 2 8 2 8 2 8", "density 1.0 neohookean 10.0 0.3") +
+              "velocity all set 0.3 -0.2 0.15\ntimestep 0.01\nregion cone cone " + cone +
+              "\nfix w all mpm/boundary region cone " + kind + "\nrun 3\n");
+    std::map<std::array<int, 3>, std::array<double, 3>> v;
+    run.each_node([&](const Scene::Node &node) {
+      if (node.mass > 0.0)
+        v[{node.index[0], node.index[1], node.index[2]}] = {node.v[0], node.v[1], node.v[2]};
+    });
+    return v;
+  };
+  for (const char *kind : {"slip", "separate friction 0.3", "slip friction 0.2"})
+    for (const char *cone :
+         {"z 5.1 4.8 RADIUS 3 2.1 7.3", "z 5.1 4.8 3 RADIUS 2.1 7.3 side out",
+          "x 5.1 4.8 3 RADIUS 2.1 7.3", "y 5.1 4.8 RADIUS 3.5 2.1 7.3 side out"}) {
+      const auto sharp = speeds(replaced(cone, "RADIUS", "0"), kind),
+                 blunt = speeds(replaced(cone, "RADIUS", "1e-9"), kind);
+      ASSERT_EQ(sharp.size(), blunt.size());
+      double most = 0.0;
+      for (const auto &node : sharp)
+        for (int d = 0; d < 3; d++)
+          most = std::max(most, std::abs(node.second[d] - blunt.at(node.first)[d]));
+      EXPECT_LT(measured(std::string(kind) + ", " + cone + ": difference", most), 1.0e-5);
+    }
+}
+
+namespace {
+/** Forces on a separating wall "wall" in each second step, when a body of 6 x 6 x 4 cells moves up to it, 0.6 cells in all after
+ *  it touches what begins at z = 5. */
+std::vector<double> forces_of_impact(const std::string &wall)
+{
+  Scene run(space("lj", "f f f", "0 10 0 10 0 10") +
+            body("block 2 8 2 8 0.5 4.5", "density 1.0 neohookean 10.0 0.3") +
+            "velocity all set 0 0 1\ntimestep 0.02\n" + wall +
+            "\nfix w all mpm/boundary region wall separate friction 0.2\n");
+  std::vector<double> forces;
+  for (int k = 0; k < 28; k++) {
+    run.commands("run 2 post no\n");
+    forces.push_back(run.evaluate("f_w[3]"));
+  }
+  return forces;
+}
+
+void expect_same(const std::vector<double> &a, const std::vector<double> &b, double tolerance,
+                 const std::string &name)
+{
+  double most = 0.0;
+  for (std::size_t k = 0; k < b.size(); k++) most = std::max(most, std::fabs(a[k] - b[k]));
+  EXPECT_LE(measured(name + ": difference", most), tolerance);
+}
+
+/** A wall pushes, and does not pull. */
+void expect_push(const std::vector<double> &forces, const std::string &name)
+{
+  EXPECT_EQ(forces.front(), 0.0) << name;
+  EXPECT_GT(measured(name + ": force at the end", forces.back()), 0.0);
+  for (const double f : forces) EXPECT_GE(f, -1.0e-12) << name;
+}
+}    // namespace
+
+// A body moves up to the tip of a cone, and is pressed in
+TEST(Cones, SharpTools)
+{
+  const std::string blunt = "cone z 5.1 4.8 1e-9 3 5 9", sharp = "cone z 5.1 4.8 0 3 5 9",
+                    others = "\nregion far sphere 1 1 9 0.5\nregion all sphere 5 5 5 20\n",
+                    tool = "region tool " + sharp + others;
+  const auto expected = forces_of_impact("region wall " + blunt);
+  expect_push(expected, "blunt");
+  for (const auto &wall : {"region wall " + sharp, tool + "region wall union 2 tool far",
+                           tool + "region wall intersect 2 all tool",
+                           "region tool " + sharp + " side out" + others +
+                               "region wall intersect 2 all tool side out"})
+    expect_same(forces_of_impact(wall), expected, 1.0e-7, wall);
+}
+
+// The same of a plate, and of a tool of two parts that touch
+TEST(Unions, In3d)
+{
+  const std::string far = "\nregion far sphere 1 1 1 0.5\n";
+  for (const char *plate : {"block 0 10 0 10 5 5.8", "block 3 7 3 7 5 9"}) {
+    const auto alone = forces_of_impact(strprintf("region wall %s", plate));
+    expect_push(alone, plate);
+    const auto in_union = forces_of_impact(strprintf("region plate %s", plate) + far +
+                                           "region wall union 2 plate far");
+    expect_push(in_union, plate);
+    expect_same(in_union, alone, 1.0e-12, plate);
+  }
+  const auto whole = forces_of_impact("region wall block 0 10 0 10 5 9"),
+             halves =
+                 forces_of_impact("region a block 0 5.5 0 10 5 9\nregion b block 4.5 10 0 10 5 9\n"
+                                  "region wall union 2 a b");
+  expect_same(halves, whole, 1.0e-10, "two halves that overlap");
+}
+
+/* ---------------------------------------------------------------------- walls that move */
+
+namespace {
+/** The way of a block, 0.8 x 0.3, along a wall with slip and friction 0.3 in 0.3 s, when gravity is at 30 degrees to it;
+ *  the wall moves with this velocity, the block has the velocity of the last one at first. */
+double way(double h, double top, const double *wall, const double *first)
+{
+  const std::string friction = "fix w all mpm/boundary region wall slip friction ";
+  const double settled = 0.2, theta = M_PI / 6;
+  Scene run(plane("si", "f f", "0 3 0 2", 1, 0.5 * h) +
+            strprintf("fix grid all mpm %.15g origin 0 0\n", h) +
+            strprintf("region body block 0.6 1.4 %.15g %.15g INF INF\n", top, top + 0.3) +
+            "create_points 1 region body ppc 2\n"
+            "fix m all mpm/material density 1000 neohookean 4.2e6 0.4 viscosity newtonian 300\n" +
+            strprintf("variable x equal %g*(time>%g)*(time-%g)\n", wall[0], settled, settled) +
+            strprintf("variable y equal %g*(time>%g)*(time-%g)\n", wall[1], settled, settled) +
+            strprintf("region wall block -10 20 -5 %.15g INF INF move v_x v_y NULL\n", top) +
+            friction +
+            strprintf("0\nfix g all gravity %.15g vector 0 -1 0\n", g * std::cos(theta)) +
+            "fix damp all viscous $(100*mass(all)/count(all))\n" + run_until(settled) +
+            "unfix g\nunfix w\nunfix damp\n" +
+            strprintf("velocity all set %g %g 0\n", first[0], first[1]) + friction + "0.3\n" +
+            strprintf("fix g all gravity %g vector %.15g %.15g 0\n", g, std::sin(theta),
+                      -std::cos(theta)) +
+            "variable at equal xcm(all,x)\nrun 0\n");
+  const double x0 = run.variable("at");
+  run.commands(run_until(settled + 0.3));
+  return run.variable("at") - x0 - first[0] * 0.3;
+}
+}    // namespace
+
+// The block starts to slide when the wave of shear has the stress of friction (see test_wall_rolling.cpp); on a belt that is
+// faster than it, friction is along its motion. Where nodes inside acted, the block on the wall that moves with it was 14 %
+// too slow, and that on the belt 6 % too fast.
+TEST(MovingWall, BlocksSlide)
+{
+  const double c = std::sqrt(1.5e6 / 1000), gt = g * 0.5, f = 0.3 * g * std::cos(M_PI / 6),
+               time = 0.3, sticks = f * 0.3 / (c * gt);
+  const double slides =
+      0.5 * (gt - f) * time * time + 0.5 * f * sticks * time - f * sticks * sticks / 6.0;
+  const double rest[2] = {0.0, 0.0}, along[2] = {2.0, 0.0}, belt[2] = {4.0, 0.0},
+               up[2] = {0.0, 1.0};
+  constexpr double h = 0.05;
+  EXPECT_NEAR(measured("wall and block at rest", way(h, 0.42, rest, rest) / slides), 1.0, 0.02);
+  EXPECT_NEAR(measured("both move along it", way(h, 0.42, along, along) / slides), 1.0, 0.02);
+  EXPECT_NEAR(measured("belt", way(h, 0.42, belt, rest) / (0.5 * (gt + f) * time * time)), 1.0,
+              0.02);
+  EXPECT_NEAR(measured("both move upward", way(h, 0.42, up, up) / slides), 1.0, 0.02);
+  EXPECT_NEAR(measured("h/2, both move along it", way(0.5 * h, 0.42, along, along) / slides), 1.0,
+              0.02);
+}
