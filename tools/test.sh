@@ -8,7 +8,7 @@
 #                                    instruction sets; label smoke with the oldest supported LAMMPS, with 64-bit atom IDs
 #   tools/test.sh room heat pore     all tests of these folders of unittest
 #   tools/test.sh changed [COMMIT]   those of the rooms with files that differ from this commit (default: main),
-#                                    or that include one of these files; without the long ones
+#                                    or that include one of these files; without the tests that are long as a whole
 #   tools/test.sh mutants [PATTERN]  all mutants, see tools/mutate.py: hours
 #   tools/test.sh -R topology        the tests that these arguments of ctest choose, with the long ones
 # The last line printed is "N passed, N failed"; failed also when nothing ran.
@@ -40,9 +40,10 @@ case ${1:-} in
     shift
     setup all
     build_project all unittests
-    python3 "$repo/tools/mutate.py" --no-build "$@" && echo "1 passed, 0 failed" || echo "0 passed, 1 failed"
+    python3 "$repo/tools/mutate.py" --no-build "$@" || exit 1
+    echo "1 passed, 0 failed"
     counted=yes
-    exit
+    exit 0
     ;;
   "")
     set -- -LE '^long$'

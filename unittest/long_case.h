@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-/** Begins a case that takes long. */
+/** A case that takes long begins with this. */
 #define LONG_CASE() \
   if (getenv("MPM_QUICK")) GTEST_SKIP() << "a long one: tools/test.sh all"
 
-/** Begins a PARAMETER_TEST of which this many parameters are enough to see most mistakes. */
+/** So does a PARAMETER_TEST of which the first n parameters are enough to see most mistakes. */
 #define LONG_AFTER(n) \
   if (MPM_TEST::parameter_number() >= n) LONG_CASE()
 

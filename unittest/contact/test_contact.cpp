@@ -42,6 +42,7 @@ static std::string two_bars(const std::string &options, const std::string &conta
 // A3(a): interface stress rho c v, contact for 2 L/c, rebound with the same speed; momentum exact
 SERIAL_TEST(Contact, EqualBars)
 {
+  LONG_CASE();
   for (const char *options :
        {"transfer flip 1.0 scheme musl", "transfer apic", "shape cubic transfer flip 1.0"}) {
     SCOPED_TRACE(options);
@@ -145,6 +146,7 @@ SERIAL_TEST(Contact, WithoutTheGapRuleContactIsEarly)
 // as they do where they are continued periodically
 SERIAL_TEST(Contact, BarsBetweenWalls)
 {
+  LONG_CASE();
   for (const char *options :
        {"transfer apic", "shape cubic", "shape gimp", "transfer flip 1.0 scheme musl",
         "transfer flip 1.0 edges modified"}) {
