@@ -15,7 +15,9 @@ FixStyle(mpm,FixMPM);
 #ifndef LMP_FIX_MPM_H
 #define LMP_FIX_MPM_H
 
+#include "base/mpm_cycle.h"
 #include "base/mpm_state.h"
+#include "field/mpm_field.h"
 
 #include <memory>
 
@@ -29,9 +31,8 @@ class MPMPlan;
  *  The whole step is done in initial_integrate(): at this time atom->f is complete for any order of
  *  fixes, and at output all state is on one time level. The first instance drives all of them.
  */
-class FixMPM : public FixMPMState {
+class FixMPM : public FixMPMState, public MPMFieldOwner, public MPMCycle {
  public:
-  std::unique_ptr<MPMField> field;
   bool rests_dry = false;    ///< did mpm_geostatic give points a stress without pore water?
 
   FixMPM(class LAMMPS *, int, char **);
@@ -52,6 +53,7 @@ class FixMPM : public FixMPMState {
   double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+  int steps_to_next() const override { return field->steps_to_next(); }
 
  private:
   std::unique_ptr<MPMPlan> plan;    // only in the driving instance
