@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_FIELD_H
 #define LMP_MPM_FIELD_H
 
+#include "base/mpm_cycle.h"
 #include "field/mpm_field_options.h"
 #include "field/mpm_jacobians.h"
 #include "field/mpm_ledger.h"
@@ -177,12 +178,14 @@ class MPMField : protected Pointers {
 };
 
 /** Owner of a field. Implemented by fix mpm. */
-class MPMFieldOwner {
+class MPMFieldOwner : public MPMCycle {
  public:
   std::unique_ptr<MPMField> field;
 
+  int steps_to_next() const override { return field->steps_to_next(); }
+
  protected:
-  virtual ~MPMFieldOwner() = default;    // owned and deleted as a Fix
+  ~MPMFieldOwner() = default;    // owned and deleted as a Fix
 };
 
 /** Stops with an error if a field violates one of the rules of a fix. In each rule, the keyword is

@@ -24,6 +24,7 @@
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_conductivity.h"
 #include "field/mpm_field.h"
 #include "field/mpm_heat_sink.h"
 #include "field/mpm_passes.h"

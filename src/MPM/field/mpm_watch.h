@@ -16,7 +16,7 @@ namespace LAMMPS_NS {
 /** Looks at a run and changes nothing. */
 class MPMWatch {
  public:
-  virtual ~MPMWatch() = default;
+  virtual ~MPMWatch() noexcept(false) = default;    // as Pointers of LAMMPS
   /** Start of a run. */
   virtual void start() = 0;
   /** Called once in each step of the cycle, by a stage. */

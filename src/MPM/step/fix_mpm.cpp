@@ -14,6 +14,7 @@
 #include "base/mpm_points.h"
 #include "base/mpm_version.h"
 #include "comm.h"
+#include "compute.h"
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"

@@ -15,7 +15,6 @@ FixStyle(mpm,FixMPM);
 #ifndef LMP_FIX_MPM_H
 #define LMP_FIX_MPM_H
 
-#include "base/mpm_cycle.h"
 #include "base/mpm_state.h"
 #include "field/mpm_field.h"
 
@@ -31,7 +30,7 @@ class MPMPlan;
  *  The whole step is done in initial_integrate(): at this time atom->f is complete for any order of
  *  fixes, and at output all state is on one time level. The first instance drives all of them.
  */
-class FixMPM : public FixMPMState, public MPMFieldOwner, public MPMCycle {
+class FixMPM : public FixMPMState, public MPMFieldOwner {
  public:
   bool rests_dry = false;    ///< did mpm_geostatic give points a stress without pore water?
 
@@ -53,7 +52,6 @@ class FixMPM : public FixMPMState, public MPMFieldOwner, public MPMCycle {
   double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  int steps_to_next() const override { return field->steps_to_next(); }
 
  private:
   std::unique_ptr<MPMPlan> plan;    // only in the driving instance
