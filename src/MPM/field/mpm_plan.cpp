@@ -186,7 +186,7 @@ void MPMPlan::start()
   wall_start = platform::walltime();
   cpu_start = platform::cputime();
   for (auto *field : fields) {
-    field->counts = {0, 0.0, field->step_dt(), field->step_dt()};
+    field->start_counting();
     field->nodes.halo->bytes_sent = field->nodes.halo->messages_sent = 0;
     field->map->nbuild = field->map->nsort = 0;
     field->map->sort_time = 0.0;
@@ -245,7 +245,7 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::s
 {
   constexpr double IDLE = 0.9;      // of the time is the processor's, or else others have taken it
   constexpr double SMALL = 0.05;    // share of a stage that is not worth a word
-  const auto &counts = field.counts;
+  const auto &counts = field.counts();
   const double wall = platform::walltime() - wall_start;
   double use = wall > 0.0 ? (platform::cputime() - cpu_start) / wall : 1.0, least_use;
   MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);

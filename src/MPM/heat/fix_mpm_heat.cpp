@@ -405,7 +405,7 @@ void FixMPMHeat::check_temperatures()
   if (!radiates()) return;
   for (const auto &of : fields)
     for (const auto *material : of->field.materials) {
-      const int column = material->find_history("temperature");
+      const int column = material->temperature();
       if (!material->material->conducts()) continue;
       for (int i = 0; i < atom->nlocal; i++)
         if ((atom->mask[i] & material->groupbit) && of->field.is_point(i) &&

@@ -163,7 +163,7 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
   if (!stabilize_is_given) choose_stabilize(plan);
   for (auto *field : fields) check_field(plan, *field);
   for (auto *field : fields) {
-    field->keep_old = true;
+    field->keep_old_velocities();
     field->time_limit->bound = false;
   }
   const MPMImplicitOptions &mine = *this;

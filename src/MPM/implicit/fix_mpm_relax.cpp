@@ -98,7 +98,7 @@ void FixMPMRelax::init()
 void FixMPMRelax::init_physics(MPMPlan &plan)
 {
   fields = plan.fields;
-  for (auto *field : fields) field->keep_old = true;
+  for (auto *field : fields) field->keep_old_velocities();
   may_start_by_half = can_start_by_half(plan);
 }
 

@@ -179,7 +179,7 @@ void FixMPMDashpot::init_physics(MPMPlan &plan)
                   {options.has_fmpm(), "transfer fmpm",
                    "its terms do not have the dashpots: use another transfer"}});
     warn_of_light_nodes(*field);
-    field->keep_old = true;
+    field->keep_old_velocities();
     bodies.emplace_back();
     bodies.back().field = field;
     bodies.back().rates = &field->nodes.add_field("rates of " + std::string(id), 6);

@@ -165,7 +165,7 @@ void FixMPMPML::init_physics(MPMPlan &plan)
                    "Fix mpm/pml {}: the layers at {} and {} are thicker than the box, which has "
                    "{:.6g} cells there",
                    id, FACE[2 * axis], FACE[2 * axis + 1], domain->prd[axis] / field->lattice.h);
-    field->keep_old = true;
+    field->keep_old_velocities();
     field->stretching.push_back(this);
     bodies.push_back({field, &field->nodes.add_field("layers of " + std::string(id), 4), {}});
   }

@@ -442,7 +442,7 @@ void FixMPMPore::init()
                  "The density of fix mpm/material {} is below that of the water in its pores: fix "
                  "mpm/pore takes it for that of the soil with full pores",
                  soil.material);
-    if (soil.warms && fix->find_history("temperature") < 0)
+    if (soil.warms && fix->temperature() < 0)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/pore expansion: soil {} has no temperature: its material needs a thermal "
                  "part",
@@ -701,7 +701,7 @@ void FixMPMPore::init_implicit() const
 /** Checks that the mass that moves by itself is less than all mass, and that nodes have accelerations. */
 void FixMPMPore::init_motion(MPMField &field)
 {
-  field.keep_old = true;
+  field.keep_old_velocities();
   refuse_field(
       lmp, *this, field,
       {{field.options.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",

@@ -93,10 +93,11 @@ void FixMPMRefine::init_action()
   // records of nodes are added
 
   const bool keep = std::any_of(fields.begin(), fields.end(), [&](const auto *field) {
-    return field->keep_old ||
+    return field->keeps_old_velocities() ||
         adds_change(field->options.transfer) != adds_change(fields[0]->options.transfer);
   });
-  for (auto *field : fields) field->keep_old = keep;
+  for (auto *field : fields)
+    if (keep) field->keep_old_velocities();
 }
 
 void FixMPMRefine::check(MPMField &coarse, MPMField &fine) const
@@ -426,13 +427,9 @@ void FixMPMRefine::blocks_found()
     for (auto &neighbor : neighbors) neighbor.reach.find(neighbor.field->grid, world);
   }
   const bool keep = std::any_of(fields.begin(), fields.end(), [](const auto *field) {
-    return field->keep_old_now;
+    return field->keeps_old_velocities_now();
   });
-  for (auto *field : fields) {
-    if (field->keep_old_now == keep) continue;
-    field->keep_old_now = keep;
-    field->choose_kernels();
-  }
+  for (auto *field : fields) field->keep_old_velocities_now(keep);
 }
 
 int FixMPMRefine::level(const std::string &name) const
