@@ -50,16 +50,18 @@ void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPlan::each(const std::string &name, Each run, Wanted wanted)
+void MPMPlan::each(const std::string &name, const Data &reads, const Data &writes, Each run,
+                   Wanted wanted)
 {
   std::vector<MPMField *> list;
   for (auto *field : fields)
     if (!wanted || wanted(*field)) list.push_back(field);
   const std::vector<double> seconds(list.size(), 0.0);
-  if (!list.empty()) stages.push_back({name, std::move(run), list, false, seconds});
+  if (!list.empty()) stages.push_back({name, std::move(run), reads, writes, list, false, seconds});
 }
 
-void MPMPlan::together(const std::string &name, const std::function<void()> &run, Wanted wanted)
+void MPMPlan::together(const std::string &name, const Data &reads, const Data &writes,
+                       const std::function<void()> &run, Wanted wanted)
 {
   const auto once = [run](MPMField &) {
     run();
@@ -68,7 +70,7 @@ void MPMPlan::together(const std::string &name, const std::function<void()> &run
     return !wanted || wanted(*field);
   };
   if (std::any_of(fields.begin(), fields.end(), wants))
-    stages.push_back({name, once, {fields[0]}, true, {0.0}});
+    stages.push_back({name, once, reads, writes, {fields[0]}, true, {0.0}});
 }
 
 void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
@@ -77,7 +79,10 @@ void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
   const auto act = [this, stage]() {
     act_on_nodes(stage);
   };
-  together("node actions", act, std::move(wanted));
+  together("node actions",
+           {Data::POSITION, Data::VELOCITY, Data::DEFORMATION, Data::STRESS, Data::MASS,
+            Data::FORCE, Data::NODES, Data::BLOCKS, Data::OWN},
+           {Data::FORCE, Data::NODES, Data::OWN}, act, std::move(wanted));
 }
 
 void MPMPlan::place(Place at)
@@ -107,7 +112,9 @@ void MPMPlan::step()
   double time = platform::walltime();
   for (auto &stage : stages) {
     for (std::size_t k = 0; k < stage.seconds.size(); k++) {
+      if (observer) observer(stage, *stage.fields[k], false);
       stage.run(*stage.fields[k]);
+      if (observer) observer(stage, *stage.fields[k], true);
       const double now = platform::walltime();
       stage.seconds[k] += now - time;
       time = now;
@@ -200,10 +207,10 @@ void MPMPlan::start()
     return;
   std::string text = "MPM plan of a step:\n";
   for (const auto &stage : stages) {
-    text += "  " + stage.name;
+    std::string name = stage.name;
     for (auto *field : stage.fields)
-      if (fields.size() > 1 && !stage.once) text += std::string(" ") + field->id();
-    text += "\n";
+      if (fields.size() > 1 && !stage.once) name += std::string(" ") + field->id();
+    text += fmt::format("  {:<40} {} -> {}\n", name, stage.reads.text(), stage.writes.text());
   }
   utils::logmesg(lmp, text);
 }

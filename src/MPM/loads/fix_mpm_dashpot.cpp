@@ -62,6 +62,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 // rate of a node, in wave speeds over node spacings, times the density of the far side over that of the body: with stress mls, stress
 // pulls less at nodes that points hardly reach than the functions there tell, and dashpots must not pull more
@@ -429,9 +430,10 @@ void FixMPMDashpot::add_stages(MPMPlan &plan, MPMPlan::Place place)
         return field->options.watches_gain();
       }))
     return;
-  plan.together("work of supports", [this] {
-    for (const auto &body : bodies) tell_watch(body);
-  });
+  plan.together("work of supports", {Data::VELOCITY, Data::NODES, Data::BLOCKS, Data::OWN},
+                {Data::OWN}, [this] {
+                  for (const auto &body : bodies) tell_watch(body);
+                });
 }
 
 /* ---------------------------------------------------------------------- */

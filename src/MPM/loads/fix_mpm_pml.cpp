@@ -59,6 +59,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 static const char *const FACE[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 
@@ -310,10 +311,13 @@ void FixMPMPML::topology_changed(MPMField &field)
 void FixMPMPML::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   const auto each = [&](const char *name, void (FixMPMPML::*what)(Body &)) {
-    plan.each(name, [this, what](MPMField &field) {
-      for (auto &body : bodies)
-        if (body.field == &field) (this->*what)(body);
-    });
+    plan.each(name,
+              {Data::POSITION, Data::VELOCITY, Data::DEFORMATION, Data::STRESS, Data::MASS,
+               Data::NODES, Data::BLOCKS, Data::OWN},
+              {Data::NODES, Data::OWN}, [this, what](MPMField &field) {
+                for (auto &body : bodies)
+                  if (body.field == &field) (this->*what)(body);
+              });
   };
   if (place == MPMPlan::BEFORE_SOLVE) each("forces of matched layers", &FixMPMPML::find_forces);
   if (place == MPMPlan::AFTER_MOMENTUM) each("matched layers", &FixMPMPML::apply);

@@ -30,6 +30,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/refine COARSE FINE ...
@@ -294,14 +295,15 @@ void FixMPMRefine::init_physics(MPMPlan &plan)
 void FixMPMRefine::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
-    plan.together("tied nodes", [this]() {
+    plan.together("tied nodes", {Data::POSITION, Data::BLOCKS, Data::OWN}, {Data::OWN}, [this]() {
       find_tied();
     });
   if (place == MPMPlan::AFTER_POINTS_TO_NODES)
-    plan.together("tied nodes", [this]() {
-      for (int k = (int) pairs.size() - 1; k >= 0; k--)
-        pairs[k]->to_parents(k + 1 < (int) pairs.size() ? pairs[k + 1].get() : nullptr);
-    });
+    plan.together(
+        "tied nodes", {Data::NODES, Data::BLOCKS, Data::OWN}, {Data::NODES, Data::OWN}, [this]() {
+          for (int k = (int) pairs.size() - 1; k >= 0; k--)
+            pairs[k]->to_parents(k + 1 < (int) pairs.size() ? pairs[k + 1].get() : nullptr);
+        });
 }
 
 void FixMPMRefine::act(double, Stage)
