@@ -48,7 +48,7 @@ MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
     Pointers(lmp), field(field)
 {
   state.declare(C, "mpm:C", size(), [this](int, double *row) {
-    if (!this->field.running) row[0] = NAN;    // not known, for fit()
+    if (!this->field.is_running()) row[0] = NAN;    // not known, for fit()
   });
   if (field.options.polypic) state.declare(Q, "mpm:Q", poly_size(field.lattice.dim));
 }

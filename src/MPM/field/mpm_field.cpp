@@ -136,7 +136,7 @@ void MPMField::check_box()
 void MPMField::init(MPMPlan *plan_of_all)
 {
   plan = plan_of_all;
-  running = has_moved = time_limit->watch_volume = keep_old = keep_old_now = false;
+  running = motion_is_done = time_limit->watch_volume = keep_old = keep_old_now = false;
   time_limit->bound = true;
   check_box();
   frame->check();
@@ -225,6 +225,25 @@ void MPMField::choose_kernels()
   batch->h = lattice.h;
 }
 
+void MPMField::keep_old_velocities_now(bool yes)
+{
+  if (keep_old_now == yes) return;
+  keep_old_now = yes;
+  choose_kernels();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMField::count_step()
+{
+  auto &counts = counts_of_run;
+  last_dt = step_dt();
+  counts.dt_min = std::min(counts.dt_min, last_dt);
+  counts.dt_max = std::max(counts.dt_max, last_dt);
+  counts.steps++;
+  counts.point_steps += map->npoints();
+}
+
 /* ---------------------------------------------------------------------- */
 
 const char *MPMField::id() const
@@ -280,7 +299,7 @@ PointRows MPMField::rows() const
   r.guarded = atom->nmax - 1;
   r.size = boxes ? boxes->sizes.data() : nullptr;
   if (domains) r.domain = domains->rows();
-  r.xnew = options.moves_late() ? const_cast<double *>(work.xnew.data()) : &atom->x[0][0];
+  r.xnew = options.moves_late() ? const_cast<double *>(late_positions.data()) : &atom->x[0][0];
   return r;
 }
 
@@ -324,7 +343,7 @@ double MPMField::memory_usage() const
   if (every)
     bytes += (every->mean_force.capacity() + every->mean_torque.capacity()) * sizeof(double);
   for (const auto *list : {&work.nodes, &work.node_velocities, &work.vectors, &work.weights,
-                           &work.places, &work.stress, &work.no_volume, &work.xnew, &work.history})
+                           &work.places, &work.stress, &work.no_volume, &late_positions, &work.history})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -113,7 +113,7 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
     }
     body.mixed = nconducting > 0 && (body.mixed || body.orthotropic || nhere > 1);
     any = any || nconducting > 0;
-    field->keep_old = true;
+    field->keep_old_velocities();
     bodies.push_back(body);
   }
   if (points && !any)

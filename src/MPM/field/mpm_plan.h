@@ -10,6 +10,7 @@
 #define LMP_MPM_PLAN_H
 
 #include "field/mpm_node_action.h"
+#include "field/mpm_stage_data.h"
 #include "field/mpm_watch.h"
 #include "pointers.h"
 
@@ -30,7 +31,17 @@ class MPMPorePressure;
 class MPMPlan : protected Pointers {
  public:
   using Each = std::function<void(MPMField &)>;
+  using Data = MPMStageData;
   using Wanted = std::function<bool(const MPMField &)>;
+
+  struct Stage {
+    std::string name;
+    Each run;
+    Data reads, writes;
+    std::vector<MPMField *> fields;    ///< the first one only, if it is run once
+    bool once;
+    std::vector<double> seconds;    ///< [field], spent in this stage
+  };
 
   /** Places in each list where other physics can add stages. Physics adds them in the order of definition. */
   enum Place {
@@ -61,13 +72,21 @@ class MPMPlan : protected Pointers {
 
   /** Append a stage that runs for each field for which wanted is true (null: for all). There is no such stage
    *  if no field wants it. */
-  void each(const std::string &name, Each run, Wanted wanted = nullptr);
+  void each(const std::string &name, const Data &reads, const Data &writes, Each run,
+            Wanted wanted = nullptr);
   /** Append a stage that runs once for all fields, if any field wants it. */
-  void together(const std::string &name, const std::function<void()> &run, Wanted wanted = nullptr);
+  void together(const std::string &name, const Data &reads, const Data &writes,
+                const std::function<void()> &run, Wanted wanted = nullptr);
   /** Append the node actions of one stage, if there are any. */
   void node_actions(MPMNodeAction::Stage, Wanted wanted = nullptr);
   /** Append the stages that other physics has at this place. */
   void place(Place);
+
+  /** The list of this run. */
+  const std::vector<Stage> &list() const { return stages; }
+  /** From now on, calls a function before (done is false) and after each stage. */
+  using Observer = std::function<void(const Stage &, const MPMField &, bool done)>;
+  void observe(Observer use) { observer = std::move(use); }
 
   /** Start of a run. */
   void start();
@@ -88,18 +107,12 @@ class MPMPlan : protected Pointers {
   void act_on_nodes(MPMNodeAction::Stage);
 
  private:
-  struct Stage {
-    std::string name;
-    Each run;
-    std::vector<MPMField *> fields;    // the first one only, if it is run once
-    bool once;
-    std::vector<double> seconds;    // [field], spent in this stage
-  };
   struct Cost {
     std::string stage;
     double time;    // [ns] per step and point of one process
   };
   std::vector<Stage> stages;
+  Observer observer;
   bool physics_looks_beyond() const;
   std::vector<Cost> costs(const MPMField &, double scale) const;
   double wall_start = 0.0, cpu_start = 0.0;    // at the start of the run [s]

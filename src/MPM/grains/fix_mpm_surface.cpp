@@ -8,6 +8,7 @@
 
 #include "grains/fix_mpm_surface.h"
 
+#include "field/mpm_setup_checks.h"
 #include "atom.h"
 #include "atom_vec.h"
 #include "base/mpm_options.h"
@@ -204,7 +205,7 @@ void FixMPMSurface::setup_pre_exchange()
 {
   domain->pbc();    // reference positions of points are inside of the box
   for (auto *field : MPMField::all(lmp)) {
-    if (force->pair) field->guard->check_radii();    // cutoffs are for the largest ones
+    if (force->pair) MPMSetupChecks(lmp, *field).radii();    // cutoffs are for the largest ones
     field->choose_kernels();
     field->map->setup();
     field->map->valid = false;

@@ -38,6 +38,7 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 static const char *const FACE_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 
@@ -405,7 +406,7 @@ void FixMPMHeat::check_temperatures()
   if (!radiates()) return;
   for (const auto &of : fields)
     for (const auto *material : of->field.materials) {
-      const int column = material->find_history("temperature");
+      const int column = material->temperature();
       if (!material->material->conducts()) continue;
       for (int i = 0; i < atom->nlocal; i++)
         if ((atom->mask[i] & material->groupbit) && of->field.is_point(i) &&
@@ -699,9 +700,12 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
   // points strain at the end of a step with their temperatures at that time: an implicit step must know these before
   const bool is_implicit = !find_fixes<FixMPMImplicit>(lmp).empty();
   if (place == (is_implicit ? MPMPlan::BEFORE_SOLVE : MPMPlan::AFTER_SOLVE))
-    plan.together("conduction of heat", [this]() {
-      conduct();
-    });
+    plan.together("conduction of heat",
+                  {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::HISTORY, Data::MASS,
+                   Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::STRESS, Data::HISTORY, Data::OWN}, [this]() {
+                    conduct();
+                  });
 }
 
 /* ---------------------------------------------------------------------- */

@@ -549,7 +549,7 @@ void FixMPMEmit::emit()
   past.layers = (double) last;
   for (auto *other : find_fixes<FixMPMEmit>(lmp)) other->past.newest = (double) tag;
 
-  const bool runs = field && field->running;
+  const bool runs = field && field->is_running();
   if (runs) give_initial_stress(*field, nlocal);
   MPMTraffic here, all;
   for (int i = nlocal; i < atom->nlocal; i++) {
@@ -606,8 +606,8 @@ void FixMPMEmit::make_point(const double *where, const double *v, double volume,
 void FixMPMEmit::give_temperature(int i)
 {
   double *const row = material->history[i];
-  const int column = material->find_history("temperature"),
-            molten = material->find_history("molten");
+  const int column = material->temperature(),
+            molten = material->molten();
   const Conduction c = material->material->conduction(row);
   if (!c.by_enthalpy) {
     row[column] = temperature;

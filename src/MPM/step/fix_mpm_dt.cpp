@@ -433,7 +433,7 @@ void FixMPMDt::write_restart(FILE *fp)
   const auto fields = MPMField::all(lmp);
   const bool flows = update->whichflag == 1 && !find_fixes<MPMFluid>(lmp).empty();
   const bool running = flows || std::any_of(fields.begin(), fields.end(), [](const auto *field) {
-                         return field->running;
+                         return field->is_running();
                        });
   const Limit steps = smallest(strain_limit_local());
   if (running) {
