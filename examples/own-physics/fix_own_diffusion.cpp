@@ -12,10 +12,10 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "lammpsplugin.h"
 #include "field/mpm_field.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
+#include "lammpsplugin.h"
 #include "version.h"
 
 #include <cmath>

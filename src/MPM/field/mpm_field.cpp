@@ -342,8 +342,9 @@ double MPMField::memory_usage() const
   if (boxes) bytes += boxes->sizes.capacity() * sizeof(double);
   if (every)
     bytes += (every->mean_force.capacity() + every->mean_torque.capacity()) * sizeof(double);
-  for (const auto *list : {&work.nodes, &work.node_velocities, &work.vectors, &work.weights,
-                           &work.places, &work.stress, &work.no_volume, &late_positions, &work.history})
+  for (const auto *list :
+       {&work.nodes, &work.node_velocities, &work.vectors, &work.weights, &work.places,
+        &work.stress, &work.no_volume, &late_positions, &work.history})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -128,7 +128,7 @@ class MPMField : protected Pointers {
     std::vector<double> places;       ///< [n][3] unused positions from transfers at rest
     std::vector<double> stress;       ///< [n][6]
     std::vector<double> no_volume;    ///< [n] zero
-    std::vector<double> history;    ///< [variable][BATCH]
+    std::vector<double> history;      ///< [variable][BATCH]
   } work;
 
   /** The per-point arrays that the options ask for are declared in state. */

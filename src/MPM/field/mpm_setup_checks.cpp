@@ -96,8 +96,7 @@ void MPMSetupChecks::locking()
   // a bent panel of 12 cells is 2 % too stiff with 0.49, 3 % with 0.495, 7 % with 0.499
   constexpr double LOCKS = 0.4975;
   const auto &o = field.options;
-  if (told_of_locking || o.averages_stress() || o.averages_volume() || o.averages_strain())
-    return;
+  if (told_of_locking || o.averages_stress() || o.averages_volume() || o.averages_strain()) return;
   std::vector<int> mine(field.materials.size(), 0), all(mine.size(), 0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i) || field.is_element_node(i)) continue;

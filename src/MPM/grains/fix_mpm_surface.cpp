@@ -8,7 +8,6 @@
 
 #include "grains/fix_mpm_surface.h"
 
-#include "field/mpm_setup_checks.h"
 #include "atom.h"
 #include "atom_vec.h"
 #include "base/mpm_options.h"
@@ -23,6 +22,7 @@
 #include "field/mpm_node_sums.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_refined_body.h"
+#include "field/mpm_setup_checks.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"

@@ -606,8 +606,7 @@ void FixMPMEmit::make_point(const double *where, const double *v, double volume,
 void FixMPMEmit::give_temperature(int i)
 {
   double *const row = material->history[i];
-  const int column = material->temperature(),
-            molten = material->molten();
+  const int column = material->temperature(), molten = material->molten();
   const Conduction c = material->material->conduction(row);
   if (!c.by_enthalpy) {
     row[column] = temperature;

@@ -8,7 +8,6 @@
 
 #include "step/fix_mpm.h"
 
-#include "field/mpm_setup_checks.h"
 #include "atom.h"
 #include "base/mpm_options.h"
 #include "base/mpm_pair_styles.h"
@@ -30,6 +29,7 @@
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_setup_checks.h"
 #include "field/mpm_strain.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"
