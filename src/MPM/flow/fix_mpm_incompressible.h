@@ -132,7 +132,6 @@ class FixMPMIncompressible :
   double spacing_around(const std::string &region) const override;
   double spacing() const override { return h; }
   void visit_batches(int group_bits, const BatchVisitor &) override;
-  MPMFlowSolids *solids_of() const { return solids.get(); }    ///< null: none
   double density_of_groups(int mask) const override;
   void check_density(double of_fluid, const std::string &who) const override;
 
