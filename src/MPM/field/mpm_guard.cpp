@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_point_batches.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_traffic.h"
@@ -57,14 +58,13 @@ void MPMGuard::check_positions()
 {
   // nothing can be done with a point whose position is not finite: unless it is deleted, it ends the run as one outside the box
 
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) {
-      const double *x = atom->x[i];
-      if (std::isfinite(x[0] + x[1] + x[2])) continue;
-      if (field.options.bad == MPMFieldOptions::WARN)
-        error->one(FLERR, "{} has lost its position at step {}", describe(i), update->ntimestep);
-      point_is_bad(i, "has lost its position");
-    }
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    const double *x = atom->x[i];
+    if (std::isfinite(x[0] + x[1] + x[2])) return;
+    if (field.options.bad == MPMFieldOptions::WARN)
+      error->one(FLERR, "{} has lost its position at step {}", describe(i), update->ntimestep);
+    point_is_bad(i, "has lost its position");
+  });
 }
 
 /* ---------------------------------------------------------------------- */
