@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "atom_vec.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "comm.h"

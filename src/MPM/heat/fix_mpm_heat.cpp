@@ -574,7 +574,7 @@ MPMHeatBody &FixMPMHeat::body_of(const MPMField &field)
 }
 
 /** Does a field have points that conduct, on any rank? */
-static bool conducts(const MPMField &field, MPI_Comm world)
+static bool has_conducting_points(const MPMField &field, MPI_Comm world)
 {
   const Atom &atom = *field.atom;
   int any = 0, all;
@@ -652,7 +652,7 @@ void FixMPMHeat::init_contacts()
                    "Fix mpm/heat contact {} {}: there is no fix mpm with the ID {}", p.field[0],
                    p.field[1], p.field[k]);
       body[k] = &body_of(*of);
-      if (!conducts(body[k]->field, world))
+      if (!has_conducting_points(body[k]->field, world))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/heat contact {} {}: no material of fix mpm {} conducts heat: give it "
                    "the part 'thermal conducting', or remove the contact",
