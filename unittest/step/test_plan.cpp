@@ -9,7 +9,7 @@
 
 #include "mpm_lammps.h"
 
-#include "field/mpm_guard.h"
+#include "base/mpm_find_fixes.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
 
@@ -138,11 +138,14 @@ std::vector<Named> scenes()
 
 TEST(Stages, WriteWhatTheySay)
 {
+  int count = 0;
   for (const auto &[name, text] : scenes()) {
     Scene run;
     const auto message = run.error(text + "run 1\n");
-    EXPECT_EQ(message, "") << name;
+    const bool may_be_refused = name.rfind("us", 0) == 0 || name.rfind("mu", 0) == 0;
+    if (!may_be_refused) EXPECT_EQ(message, "") << name;
     if (!message.empty()) continue;
+    count++;
     auto *const plan = MPMField::all(run.lmp)[0]->plan;
     std::unique_ptr<Hashes> before;
     std::set<std::string> wrong, seen;
@@ -163,6 +166,7 @@ TEST(Stages, WriteWhatTheySay)
     EXPECT_TRUE(wrong.empty()) << name << ": " << ::testing::PrintToString(wrong);
     EXPECT_GE(seen.size(), 5u) << name;
   }
+  EXPECT_GE(count, 40);    // schemes refuse some options
 }
 
 TEST(Stages, ReadNodesThatWereWritten)
