@@ -10,6 +10,7 @@
 #include "pore/pore_testing.h"
 
 #include "field/mpm_physics.h"
+#include "pore/fix_mpm_pore.h"
 
 using namespace MPM_TEST;
 

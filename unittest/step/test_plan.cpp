@@ -79,12 +79,12 @@ struct Named {
 std::string in_plane(const std::string &mpm, const std::string &fixes,
                      const std::string &material = "density 1 neohookean 100 0.3")
 {
-  return plane("lj", "f f p", "0 8 0 8", 1, 0.3) + "region body block 1 5 0 3 INF INF\n" +
+  return plane("lj", "f f", "0 8 0 8", 1, 0.3) + "region body block 1 5 0 3 INF INF\n" +
       "fix grid all mpm 0.5 " + mpm + "\ncreate_points 1 region body ppc 2\n" +
       "fix m all mpm/material " + material + "\nfix floor all mpm/boundary ylo slip\n" +
-      "velocity all set 0.1 -0.2 0\nfix g all gravity 0.1 vector 0 -1 0\ncompute e all mpm/energy\n"
+      "velocity all set 0.1 -0.2 0\nfix g all gravity 0.1 vector 0 -1 0\n"
       "timestep 0.002\n" +
-      fixes;
+      fixes + "compute e all mpm/energy\n";
 }
 
 const std::string SOIL = "density 2 linear 1e4 0.3";
@@ -122,7 +122,7 @@ std::vector<Named> scenes()
                            "fix w all mpm/pore 1e5 1 1 soil m 0.4 constant 0.01 free pressure 0\n"
                            "fix solve all mpm/implicit static\ntimestep 1\n",
                            SOIL)});
-  list.push_back({"layers", in_plane("", "fix far all mpm/pml xhi 2\n")});
+  list.push_back({"layers", in_plane("", "fix far all mpm/pml ylo 2\n")});
   list.push_back({"dashpot",
                   in_plane("",
                            "region w plane 1 0 0 1 0 0\n"
