@@ -38,6 +38,7 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 static const char *const FACE_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 
@@ -334,6 +335,19 @@ void FixMPMHeat::find_rubbers()
                "give its pair_coeff one of these, or drop the keyword");
 }
 
+bool FixMPMHeat::conducts(const MPMField &field) const
+{
+  return of(field).conducts();
+}
+
+void FixMPMHeat::give(const MPMField &field, std::size_t node, double heat, bool counts)
+{
+  auto &given = of(field).given;
+  if (given.empty()) given.resize(field.grid.nnodes(), 0.0);
+  given[node] += heat;
+  if (counts) book(FRICTION, heat);
+}
+
 /** Warns once of friction whose heat is lost, unless the input says that this is intended. */
 void FixMPMHeat::warn_of_friction()
 {
@@ -392,7 +406,7 @@ void FixMPMHeat::check_temperatures()
   if (!radiates()) return;
   for (const auto &of : fields)
     for (const auto *material : of->field.materials) {
-      const int column = material->find_history("temperature");
+      const int column = material->temperature();
       if (!material->material->conducts()) continue;
       for (int i = 0; i < atom->nlocal; i++)
         if ((atom->mask[i] & material->groupbit) && of->field.is_point(i) &&
@@ -560,7 +574,7 @@ MPMHeatBody &FixMPMHeat::body_of(const MPMField &field)
 }
 
 /** Does a field have points that conduct, on any rank? */
-static bool conducts(const MPMField &field, MPI_Comm world)
+static bool has_conducting_points(const MPMField &field, MPI_Comm world)
 {
   const Atom &atom = *field.atom;
   int any = 0, all;
@@ -638,7 +652,7 @@ void FixMPMHeat::init_contacts()
                    "Fix mpm/heat contact {} {}: there is no fix mpm with the ID {}", p.field[0],
                    p.field[1], p.field[k]);
       body[k] = &body_of(*of);
-      if (!conducts(body[k]->field, world))
+      if (!has_conducting_points(body[k]->field, world))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/heat contact {} {}: no material of fix mpm {} conducts heat: give it "
                    "the part 'thermal conducting', or remove the contact",
@@ -686,9 +700,12 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
   // points strain at the end of a step with their temperatures at that time: an implicit step must know these before
   const bool is_implicit = !find_fixes<FixMPMImplicit>(lmp).empty();
   if (place == (is_implicit ? MPMPlan::BEFORE_SOLVE : MPMPlan::AFTER_SOLVE))
-    plan.together("conduction of heat", [this]() {
-      conduct();
-    });
+    plan.together("conduction of heat",
+                  {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::HISTORY, Data::MASS,
+                   Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::STRESS, Data::HISTORY, Data::OWN}, [this]() {
+                    conduct();
+                  });
 }
 
 /* ---------------------------------------------------------------------- */

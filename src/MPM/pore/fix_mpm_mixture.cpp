@@ -83,6 +83,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 static constexpr int WIDTH = 8;          // reals of a node: with the old velocity, for both fields
 static constexpr double LEAST = 0.05;    // porosity, where soil is compressed beyond all grains
@@ -332,11 +333,7 @@ void FixMPMMixture::blocks_found()
   if (!stale()) return;
   for (auto *phase : {&soil, &water}) phase->reach.find(phase->field->grid, world);
   boxes_meet = soil.reach.may_meet(water.reach);
-  for (auto *phase : {&soil, &water}) {
-    if (phase->field->keep_old_now == boxes_meet) continue;
-    phase->field->keep_old_now = boxes_meet;
-    phase->field->choose_kernels();
-  }
+  for (auto *phase : {&soil, &water}) phase->field->keep_old_velocities_now(boxes_meet);
 }
 
 void FixMPMMixture::extend_topology(MPMField &field)
@@ -980,18 +977,24 @@ double FixMPMMixture::stable_dt(const MPMField &field, tagint &tag) const
 void FixMPMMixture::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_SOLVE)
-    plan.together("pressure of the mixture", [this]() {
-      share_pressure();
-    });
+    plan.together(
+        "pressure of the mixture",
+        {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::NODES, Data::BLOCKS, Data::OWN},
+        {Data::NODES, Data::OWN}, [this]() {
+          share_pressure();
+        });
   if (place == MPMPlan::AFTER_SOLVE)
-    plan.together("work in the mixture", [this]() {
-      correct_drag_at_walls();
-      account_for_work();
-    });
+    plan.together("work in the mixture", {Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::NODES, Data::OWN}, [this]() {
+                    correct_drag_at_walls();
+                    account_for_work();
+                  });
   if (place == MPMPlan::BEFORE_STRAIN)
-    plan.together("volume of the mixture", [this]() {
-      share_strain();
-    });
+    plan.together("volume of the mixture",
+                  {Data::POSITION, Data::DEFORMATION, Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::DEFORMATION, Data::NODES, Data::OWN}, [this]() {
+                    share_strain();
+                  });
 }
 
 /* ----------------------------------------------------------------------

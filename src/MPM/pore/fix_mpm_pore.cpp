@@ -42,6 +42,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/pore K RHO G keyword values ...
@@ -442,7 +443,7 @@ void FixMPMPore::init()
                  "The density of fix mpm/material {} is below that of the water in its pores: fix "
                  "mpm/pore takes it for that of the soil with full pores",
                  soil.material);
-    if (soil.warms && fix->find_history("temperature") < 0)
+    if (soil.warms && fix->temperature() < 0)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/pore expansion: soil {} has no temperature: its material needs a thermal "
                  "part",
@@ -591,6 +592,11 @@ static void warn_of_soils(LAMMPS *lmp, const std::string &id, const std::vector<
 
 void FixMPMPore::init_physics(MPMPlan &plan)
 {
+  if (moves() && !find_fixes<FixMPMRelax>(lmp).empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/relax cannot bring water with inertia to rest: use formulation u-p of fix "
+               "{} {} until bodies are at rest",
+               style, id);
   fields.clear();
   wet.clear();
   steps.clear();
@@ -696,7 +702,7 @@ void FixMPMPore::init_implicit() const
 /** Checks that the mass that moves by itself is less than all mass, and that nodes have accelerations. */
 void FixMPMPore::init_motion(MPMField &field)
 {
-  field.keep_old = true;
+  field.keep_old_velocities();
   refuse_field(
       lmp, *this, field,
       {{field.options.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
@@ -721,30 +727,43 @@ MPMPore &FixMPMPore::of(const MPMField &field) const
 void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
-    plan.together("pore pressure", [this]() {
-      step_flows = is_time_to_flow();
-      begin_step(step_flows);
-    });
+    plan.together("pore pressure",
+                  {Data::POSITION, Data::DEFORMATION, Data::MASS, Data::BLOCKS, Data::OWN},
+                  {Data::MASS, Data::OWN}, [this]() {
+                    step_flows = is_time_to_flow();
+                    begin_step(step_flows);
+                  });
   if (place == MPMPlan::BEFORE_SOLVE && formulation == U_V_P)
-    plan.together("inertia of pore water", [this]() {
-      take_off();
-    });
+    plan.together("inertia of pore water", {Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::NODES, Data::OWN}, [this]() {
+                    take_off();
+                  });
   if (place == MPMPlan::AFTER_SOLVE && !is_implicit) {
     const auto move = [this](MPMField &field) {
       if (step_flows) of(field).take_motion(waited.time + field.step_dt());
     };
-    plan.each("nodes to points with material", move, [this](const MPMField &field) {
-      return of(field).moves_first();
-    });
-    plan.together("flow of pore water", [this]() {
-      flow();
-    });
+    plan.each("nodes to points with material",
+              {Data::POSITION, Data::VELOCITY, Data::AFFINE, Data::DEFORMATION, Data::STRESS,
+               Data::HISTORY, Data::NODES, Data::BLOCKS, Data::OWN},
+              {Data::VELOCITY, Data::AFFINE, Data::DEFORMATION, Data::STRESS, Data::HISTORY,
+               Data::NODES, Data::OWN},
+              move, [this](const MPMField &field) {
+                return of(field).moves_first();
+              });
+    plan.together(
+        "flow of pore water",
+        {Data::POSITION, Data::DEFORMATION, Data::MASS, Data::NODES, Data::BLOCKS, Data::OWN},
+        {Data::MASS, Data::NODES, Data::OWN}, [this]() {
+          flow();
+        });
   }
   // at this point, fix mpm/implicit has left the velocities of the step on nodes
   if (place == MPMPlan::BEFORE_STRAIN && is_implicit)
-    plan.together("flow of pore water", [this]() {
-      take_solution();
-    });
+    plan.together("flow of pore water",
+                  {Data::POSITION, Data::DEFORMATION, Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::MASS, Data::NODES, Data::OWN}, [this]() {
+                    take_solution();
+                  });
 }
 
 /* ----------------------------------------------------------------------
