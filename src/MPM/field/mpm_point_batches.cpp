@@ -81,5 +81,5 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
   }
   for (auto *mesh : find_fixes<FixMPMMesh>(lmp)) mesh->visit_batches(groupbit, visit);
   for (auto *flow : find_fixes<FixMPMIncompressible>(lmp))
-    if (flow->solids_of()) flow->solids_of()->visit_batches(groupbit, visit);
+    if (flow->solids()) flow->solids()->visit_batches(groupbit, visit);
 }

@@ -36,12 +36,12 @@ static constexpr double ALIKE = 1.0e-6, LIKE_POINTS = 0.05;
 // of a corner into which columns of points just fit
 static constexpr double LEAST_OPEN = 0.25;
 
-MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, const Fix &flow) :
+MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, int groupbit) :
     Pointers(lmp), cells(cells)
 {
   for (auto *ifix : modify->get_fix_by_style("^mpm/emit$")) {
     auto *const fix = dynamic_cast<FixMPMEmit *>(ifix);
-    if (!fix || !fix->emits_into(flow)) continue;
+    if (!fix || !fix->emits_into(groupbit)) continue;
     mouths.emplace_back();
     mouths.back().fix = fix;
   }

@@ -26,8 +26,8 @@ class MPMFlowRegions;
  *  to the cells. */
 class MPMFlowInflow : protected Pointers {
  public:
-  /** Takes the mouths of points that belong to this flow. */
-  MPMFlowInflow(class LAMMPS *, const MPMFlowLattice &, const class Fix &flow);
+  /** Takes the inlets of points that belong to the flow of this group. */
+  MPMFlowInflow(class LAMMPS *, const MPMFlowLattice &, int groupbit);
   /** For viscous flows: faces along mouths are held, too, as stress must not bend or turn the fluid in a mouth. Without
    *  regions, the section then consists of whole cells: a partly filled cell would be slower and hold the others back. */
   bool clamps = false;

@@ -68,7 +68,7 @@ double MPMFlowPressure::open_side(const MPMFlowLattice::Cell &cell, int side) co
 
 double MPMFlowPressure::density_in(const MPMFlowLattice::Cell &cell) const
 {
-  if (!lightness) return 1.0;
+  if (!inverse_density) return 1.0;
   double sum = 0.0, sides = 0.0;
   for (int s = 0; s < 2 * cells.lattice.dim; s++) {
     const double side = open_side(cell, s);
@@ -372,8 +372,8 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
                                     const SolveGoal &goal)
 {
   const double h = cells.lattice.h;
-  if (lightness) {    // spreading of points has no density
-    lightness = nullptr;
+  if (inverse_density) {    // spreading of points has no density
+    inverse_density = nullptr;
     find_weights();
   }
   const double screen = 1.0 / (SPREAD * SPREAD * h * h);

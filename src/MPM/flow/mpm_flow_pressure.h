@@ -54,7 +54,7 @@ class MPMFlowPressure : protected Pointers {
   const std::vector<double> *sources = nullptr;
 
   /** [cell][dim] density in psi over the density at faces, of all cells; null: there is one density. */
-  const std::vector<double> *lightness = nullptr;
+  const std::vector<double> *inverse_density = nullptr;
 
   /** Uses Fourier transforms as the preconditioner, instead of multigrid; see MPMFlowFourier::is_there(). */
   void use_fourier();
@@ -169,7 +169,7 @@ class MPMFlowPressure : protected Pointers {
   void find_box();
   double light(int64_t cell, int axis) const
   {
-    return lightness ? (*lightness)[cell * cells.lattice.dim + axis] : 1.0;
+    return inverse_density ? (*inverse_density)[cell * cells.lattice.dim + axis] : 1.0;
   }
 };
 

@@ -121,6 +121,8 @@ class MPMFlowRegions : protected Pointers {
   double memory_usage() const;
 
  private:
+  static constexpr double FAR = 4.0;    // distance up to which a wall is looked at, in spacings
+
   struct Wall {
     std::string id;
     Region *region = nullptr;
@@ -156,7 +158,7 @@ class MPMFlowRegions : protected Pointers {
   std::vector<Cut> cuts;
   std::vector<Held> helds;
   bigint nbuild = -1;
-  bool any_moves = false, any_bodies = false, known = false, told_of_thin = false;
+  bool any_moves = false, any_bodies = false, known = false, warned_of_thin = false;
   // [wall][7] has a body been seen in another region, or in one of the 6 walls of the box?
   std::vector<int> met;
   double speed = 0.0, duration_of_motion = 0.0;
@@ -176,7 +178,8 @@ class MPMFlowRegions : protected Pointers {
   void find_change(Cut &, const double *x) const;
   bool is_thin(const MPMFlowLattice::Cell &) const;
   bool is_corner(const MPMFlowLattice::Cell &, int axis) const;
-  void warn_of_thin(int nthin);
+  bool is_gap(const MPMFlowLattice::Cell &) const;
+  void warn_of_thin(int nthin, int ngaps);
   enum Meets { AWAY, INSIDE, COMES };
   Meets meets(int wall, const double *x) const;
   void warn_of_bodies();

@@ -139,7 +139,7 @@ void MPMFlowStress::find_faces()
           of_walls += drag;
           face.wall += drag * v;
         }
-      if (lightness) mass /= (*lightness)[face.at];
+      if (inverse_density) mass /= (*inverse_density)[face.at];
       face.inverse = inverse_mass[face.at] = 1.0 / (mass + of_walls);
       face.share = mass * face.inverse;
       face.wall *= face.inverse;

@@ -55,7 +55,7 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   /** Viscosities of several liquids; null: there is one. */
   const MPMFlowViscosities *viscosities = nullptr;
   /** See MPMFlowPressure; null: there is one density. */
-  const std::vector<double> *lightness = nullptr;
+  const std::vector<double> *inverse_density = nullptr;
   /** [cell][dim] of all cells: zero for faces that keep their velocity, which no stress changes; null: there are none. */
   const std::vector<double> *mobility = nullptr;
 
@@ -127,7 +127,7 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   double in_cell(int64_t cell) const;
   double at_face(int64_t upper, int64_t lower) const;
   double at_edge(int64_t cell, int pair) const;
-  bool several() const { return viscosities || lightness; }
+  bool several() const { return viscosities || inverse_density; }
   bool is_held(int64_t face) const { return mobility && (*mobility)[face] == 0.0; }
   void strain(const double *u, double *out, double sign) const;
   void spread(const double *x);

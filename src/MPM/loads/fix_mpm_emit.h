@@ -79,8 +79,8 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
 
   // for incompressible flows
 
-  /** Do the points enter this flow? */
-  bool emits_into(const Fix &flow) const { return (flow.groupbit & (1 | groupbit)) != 0; }
+  /** Do the points enter the flow of this group? */
+  bool emits_into(int flow_groupbit) const { return (flow_groupbit & (1 | groupbit)) != 0; }
   const MPMMouth &passage() const { return *mouth; }    ///< valid from setup_pre_exchange() on
   /** Velocity v[3] of the material relative to the mouth in this step. Collective. */
   void velocity_now(double *v);
