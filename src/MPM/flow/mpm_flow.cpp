@@ -336,7 +336,7 @@ void MPMFlow::find_filled_volume()
   results.filled = 0.0;
   for (const auto &cell : parts.cells.cells)
     results.filled += std::min(1.0, fields.filled[cell.number]) *
-        (parts.regions ? parts.regions->room(cell.number) : 1.0);
+        (parts.regions ? parts.regions->volume_fraction(cell.number) : 1.0);
   results.filled *= parts.cells.lattice.cell_volume();
 }
 

@@ -341,7 +341,7 @@ void MPMFlowMomentum::extend_into_air()
       const int64_t face = (int64_t) cell.number * dim + c;
       const bool solved = parts.pressure->is_next_to_water(cell, c);
       if (solved ||
-          (parts.pressure->open(cell.number, c) > 0.0 &&
+          (parts.pressure->aperture(cell.number, c) > 0.0 &&
            fields.sums[(int64_t) cell.number * width + dim + c] > 0.0)) {
         fields.velocity[face] += fields.predicted[face];
         fields.known[face] = 1.0;

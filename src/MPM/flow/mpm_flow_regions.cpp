@@ -131,7 +131,7 @@ void MPMFlowRegions::find(double duration)
       std::copy_n(wall.last, 9, wall.older);    // as if it had moved like that before
     wall.has_last = true;
   }
-  find_shares();
+  find_apertures();
   find_cuts();
   if (any_bodies) warn_of_bodies();
   for (auto &wall : walls)
@@ -247,7 +247,7 @@ double MPMFlowRegions::closed_by(int wall, int64_t cell, int axis, double *arm) 
   face_middle(cell, axis, x);
   MathExtra::sub3(x, walls[wall].center, arm);
   nearest_image(*domain, arm);
-  return 1.0 - shares[face];
+  return 1.0 - apertures[face];
 }
 
 void MPMFlowRegions::find_wall(int wall, const MPMFlowLattice::Cell &cell, double *way) const
@@ -273,7 +273,7 @@ void MPMFlowRegions::set_velocity(int w, const double *u)
     if (body_faces[face] != w) continue;
     face_middle(face / dim, face % dim, x);
     velocity_at(w, x, v);
-    fluxes[face] = (1.0 - shares[face]) * v[face % dim];
+    fluxes[face] = (1.0 - apertures[face]) * v[face % dim];
   }
   for (auto &held : helds)
     if (held.wall == w) velocity_at(w, held.x, held.velocity);
@@ -293,15 +293,15 @@ void MPMFlowRegions::place(const int *index, const double *offset, double *x) co
    This is done for all cells that this rank has, so that nothing has to be communicated.
 ------------------------------------------------------------------------- */
 
-void MPMFlowRegions::find_shares()
+void MPMFlowRegions::find_apertures()
 {
   const auto &lattice = cells.lattice;
   const double h = lattice.h, far = FAR * h, near = 1.01 * std::sqrt((double) dim) * h;
   const int64_t size = cells.size();
   const int ncorner = 1 << dim;
   int nearest;
-  shares.assign(size * dim, 1.0);
-  rooms.assign(size, 1.0);
+  apertures.assign(size * dim, 1.0);
+  volume_fractions.assign(size, 1.0);
   levels.assign(size, far);
   if (any_moves) fluxes.assign(size * dim, 0.0);
   if (any_bodies) body_faces.assign(size * dim, -1);
@@ -315,8 +315,8 @@ void MPMFlowRegions::find_shares()
     const double level = levels[number] = distance(x, far, nearest);
     if (level > near) continue;
     if (level < -near) {
-      rooms[number] = 0.0;
-      std::fill_n(shares.begin() + number * dim, dim, 0.0);
+      volume_fractions[number] = 0.0;
+      std::fill_n(apertures.begin() + number * dim, dim, 0.0);
     } else {
       double corner[8], slope[3] = {0.0, 0.0, 0.0};
       for (int k = 0; k < ncorner; k++) {
@@ -332,23 +332,23 @@ void MPMFlowRegions::find_shares()
         const double share = dim == 2
             ? MPMFlowCutCell::positive(corner[0], corner[e])
             : MPMFlowCutCell::positive(corner[0], corner[e], corner[e | f], corner[f]);
-        shares[number * dim + d] = share < NO_SHARE ? 0.0 : share;
+        apertures[number * dim + d] = share < NO_SHARE ? 0.0 : share;
         slope[d] /= ncorner / 2;
       }
 
       // the surroundings, with the plane that is nearest to these distances
 
-      rooms[number] = MPMFlowCutCell::positive_in_hat(dim, level, slope);
+      volume_fractions[number] = MPMFlowCutCell::positive_in_hat(dim, level, slope);
     }
     for (int d = 0; any_moves && d < dim; d++) {
       const int64_t face = number * dim + d;
-      if (shares[face] == 1.0) continue;
+      if (apertures[face] == 1.0) continue;
       double y[3], v[3];
       int wall;
       face_middle(number, d, y);
       distance(y, far, wall);
       velocity_at(wall, y, v);
-      fluxes[face] = (1.0 - shares[face]) * v[d];
+      fluxes[face] = (1.0 - apertures[face]) * v[d];
       if (walls[wall].body) body_faces[face] = wall;
     }
   }
@@ -373,7 +373,7 @@ void MPMFlowRegions::find_cuts()
     double most = 0.0;
     bool whole = true;
     for (int d = 0; d < dim; d++) {
-      const double low = open(cell.number, d), high = open(cell.near[2 * d + 1], d);
+      const double low = aperture(cell.number, d), high = aperture(cell.near[2 * d + 1], d);
       if (!(cell.walls >> 2 * d & 1)) most = std::max(most, low);
       if (!(cell.walls >> 2 * d & 2)) most = std::max(most, high);
       whole = whole && low == 1.0 && high == 1.0;
@@ -393,7 +393,7 @@ void MPMFlowRegions::find_cuts()
     }
     if (levels[cell.number] > 2.0 * h || levels[cell.number] <= -HELD * h) continue;
     for (int d = 0; d < dim; d++) {
-      if (open(cell.number, d) > 0.0 || cell.walls >> 2 * d & 1) continue;
+      if (aperture(cell.number, d) > 0.0 || cell.walls >> 2 * d & 1) continue;
       double offset[3] = {0.5, 0.5, 0.5};
       offset[d] = 0.0;
       place(cell.index, offset, x);
@@ -422,7 +422,8 @@ void MPMFlowRegions::find_moments(Cut &cut) const
   const auto &cell = cells.cells[cut.cell];
   const double h = cells.lattice.h, far = FAR * h, volume = cells.lattice.cell_volume();
   const int ncorner = 1 << dim;
-  double level[8], of_face[3][2][3] = {};    // [axis][side]: area, and moments along the other axes
+  double level[8],
+      face_areas[3][2][3] = {};    // [axis][side]: area, and moments along the other axes
   for (int k = 0; k < ncorner; k++) {
     const double offset[3] = {(double) (k & 1), (double) (k >> 1 & 1), (double) (k >> 2 & 1)};
     double x[3];
@@ -436,11 +437,11 @@ void MPMFlowRegions::find_moments(Cut &cut) const
     for (int s = 0; s < 2; s++) {
       const int at = s ? 1 << d : 0;
       if (dim == 2)
-        MPMFlowCutCell::add_positive(level[at], level[at | e], of_face[d][s]);
+        MPMFlowCutCell::add_positive(level[at], level[at | e], face_areas[d][s]);
       else
         MPMFlowCutCell::add_positive(level[at], level[at | e], level[at | e | f], level[at | f],
-                                     of_face[d][s]);
-      faces += 0.5 * of_face[d][s][0];
+                                     face_areas[d][s]);
+      faces += 0.5 * face_areas[d][s][0];
     }
     square += cut.area[d] * cut.area[d];
   }
@@ -449,7 +450,7 @@ void MPMFlowRegions::find_moments(Cut &cut) const
   for (int d = 0; d < dim; d++)
     for (int e = 0; e < dim; e++) {
       const int k = 1 + (e > (d == 0 ? 1 : 0));    // index of e among the axes other than d
-      const auto *const low = of_face[d][0], *const high = of_face[d][1];
+      const auto *const low = face_areas[d][0], *const high = face_areas[d][1];
       cut.moment[d][e] = volume * (d == e ? open - 0.5 * (low[0] + high[0]) : low[k] - high[k]);
     }
 }
@@ -496,11 +497,11 @@ void MPMFlowRegions::keep_outside(double *x, double *v) const
     int wall;
     const double d = distance(x, FAR * h, wall);
     if (d >= margin) return;
-    double n[3], of_wall[3];
+    double n[3], wall_velocity[3];
     normal_at(wall, x, n);
-    velocity_at(wall, x, of_wall);
+    velocity_at(wall, x, wall_velocity);
     double into = 0.0;
-    for (int k = 0; k < dim; k++) into += n[k] * (v[k] - of_wall[k]);
+    for (int k = 0; k < dim; k++) into += n[k] * (v[k] - wall_velocity[k]);
     for (int k = 0; k < dim; k++) {
       x[k] += (2.0 * margin - d) * n[k];
       if (into < 0.0) v[k] -= into * n[k];
@@ -518,7 +519,7 @@ double MPMFlowRegions::memory_usage() const
 {
   double bytes = cuts.capacity() * sizeof(Cut) + helds.capacity() * sizeof(Held) +
       closed.capacity() + body_faces.capacity() * sizeof(int);
-  for (const auto *list : {&shares, &rooms, &fluxes, &levels})
+  for (const auto *list : {&apertures, &volume_fractions, &fluxes, &levels})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -90,7 +90,7 @@ bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
   constexpr double OPEN = 0.75, TOWARDS = 0.5;
   const double h = cells.lattice.h;
   for (int d = 0; d < dim; d++) {
-    if (open(cell.number, d) < OPEN || open(cell.near[2 * d + 1], d) < OPEN) continue;
+    if (aperture(cell.number, d) < OPEN || aperture(cell.near[2 * d + 1], d) < OPEN) continue;
     double from_wall[2], sum = 0.0;
     for (int s = 0; s < 2; s++) {
       double offset[3] = {0.5, 0.5, 0.5}, x[3], n[3];

@@ -18,7 +18,7 @@
 using namespace LAMMPS_NS;
 
 // open share of the surroundings of a cell below which the cells around count, too
-static constexpr double LITTLE_ROOM = 0.3;
+static constexpr double LITTLE_VOLUME = 0.3;
 // least cosine between a floor and the surface; open share from which on a cell is whole; a cell has a
 // surface with a share of water above SURFACE and below 1 - SURFACE; least slope of shares that shows
 // the direction of the surface, and what keeps its equations regular
@@ -31,23 +31,25 @@ void MPMFlowRegions::normalize(std::vector<double> &share) const
 {
   values.assign(cells.size(), 0.0);
   for (int64_t number = 0; number < cells.size(); number++)
-    if (rooms[number] < 1.0 && rooms[number] >= LITTLE_ROOM) share[number] /= rooms[number];
+    if (volume_fractions[number] < 1.0 && volume_fractions[number] >= LITTLE_VOLUME)
+      share[number] /= volume_fractions[number];
   for (const auto &cell : cells.cells) {
     double &mine = values[cell.number];
     mine = share[cell.number];
-    if (rooms[cell.number] >= LITTLE_ROOM) continue;
+    if (volume_fractions[cell.number] >= LITTLE_VOLUME) continue;
     double sum = 0.0, weight = 0.0;
     for (int s = 0; s < 2 * dim; s++) {
       const int other = cell.near[s];
-      const double a = open(s % 2 ? other : cell.number, s / 2);
-      if (cell.walls >> s & 1 || rooms[other] < LITTLE_ROOM) continue;
+      const double a = aperture(s % 2 ? other : cell.number, s / 2);
+      if (cell.walls >> s & 1 || volume_fractions[other] < LITTLE_VOLUME) continue;
       sum += a * share[other];
       weight += a;
     }
     if (weight > 0.0)
-      mine = (mine + (LITTLE_ROOM - rooms[cell.number]) * sum / weight) / LITTLE_ROOM;
+      mine =
+          (mine + (LITTLE_VOLUME - volume_fractions[cell.number]) * sum / weight) / LITTLE_VOLUME;
     else
-      mine = rooms[cell.number] > 0.0 ? mine / rooms[cell.number] : 0.0;
+      mine = volume_fractions[cell.number] > 0.0 ? mine / volume_fractions[cell.number] : 0.0;
   }
   cells.publish(values.data(), 1);
   cells.reflect_cells(values.data());
@@ -69,7 +71,7 @@ void MPMFlowRegions::continue_surface(std::vector<double> &share) const
     const auto &cell = cells.cells[k];
     double &mine = values[cell.number];
     mine = share[cell.number];
-    if (rooms[cell.number] >= WHOLE || closed[cell.number]) continue;
+    if (volume_fractions[cell.number] >= WHOLE || closed[cell.number]) continue;
 
     // gradient of the shares of whole cells, by least squares
 
@@ -77,7 +79,7 @@ void MPMFlowRegions::continue_surface(std::vector<double> &share) const
     double n = 0.0, mean = 0.0, middle[3] = {0.0, 0.0, 0.0};
     const auto each = [&](const auto &f) {
       for (int j = 0; j < naround; j++) {
-        if (at[j] < 0 || rooms[at[j]] < WHOLE) continue;
+        if (at[j] < 0 || volume_fractions[at[j]] < WHOLE) continue;
         const int plain = dim == 2 ? 3 * j : j;    // as if there were three layers
         const double offset[3] = {(double) (plain / 9 - 1), (double) (plain / 3 % 3 - 1),
                                   dim == 2 ? 0.0 : (double) (plain % 3 - 1)};
