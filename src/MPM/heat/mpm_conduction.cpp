@@ -62,8 +62,8 @@
    that reach such a node conduct less, by the factor that makes the sum of the node four times the usual one:
    the matrix stays symmetric, and heat is kept.
 
-   Bernstein polynomials: a point whose room is divided by a side of cells conducts with its parts in each
-   cell (mpm_cut_rooms.cpp), by which the sums are integrals wherever points are. Parts with a node whose rate
+   Bernstein polynomials: a point whose domain is divided by a side of cells conducts with its parts in each
+   cell (mpm_cut_domains.cpp), by which the sums are integrals wherever points are. Parts with a node whose rate
    is more than 1.4 times what is allowed conduct nothing, because a little conduction would make an
    insulating layer at a surface. These nodes, and those with less than a quarter of their conduction left,
    are idle: no heat comes in there, so that the body ends at the side of the cell.
@@ -245,8 +245,8 @@ const MPMConduction::Thermal *MPMConduction::thermal(const FixMPMMaterial *fix) 
 double MPMConduction::capacity_of(int i) const
 {
   const Thermal *const t = thermal(field.material_of(i));
-  Conduction room;
-  return t ? atom->rmass[i] * t->at(i, room).capacity : 0.0;
+  Conduction buffer;
+  return t ? atom->rmass[i] * t->at(i, buffer).capacity : 0.0;
 }
 
 double MPMConduction::heat_of_points() const
@@ -376,10 +376,11 @@ void LAMMPS_NS::principal_conductivities(const Conduction &c, const double *F, d
 }
 
 /** As Thermal::at(), with the mean of conductivities that jump. */
-const Conduction &MPMConduction::conduction_of(const Thermal &t, int i, Conduction &room) const
+const Conduction &MPMConduction::conduction_of(const Thermal &t, int i, Conduction &buffer) const
 {
-  if (!t.jumps || ranges.empty()) return t.at(i, room);
-  return room = mean_conduction(*t.fix->material, t.fix->history[i], ranges[i].low, ranges[i].high);
+  if (!t.jumps || ranges.empty()) return t.at(i, buffer);
+  return buffer =
+             mean_conduction(*t.fix->material, t.fix->history[i], ranges[i].low, ranges[i].high);
 }
 
 /** Finds the ranges of the means of conductivities that jump, from the temperatures of nodes. Raises the rate
@@ -405,10 +406,10 @@ void MPMConduction::find_ranges()
   for (const auto &run : field.map->runs) {
     const Thermal *const t = thermal(run.material);
     for (int i = run.first; t && t->jumps && i < run.last; i++) {
-      Conduction room;
-      const double own = t->at(i, room).most(), mean = conduction_of(*t, i, room).most();
+      Conduction buffer;
+      const double own = t->at(i, buffer).most(), mean = conduction_of(*t, i, buffer).most();
       if (!(mean > own)) continue;
-      const double rate = simple ? mean * volumes[i] / (atom->rmass[i] * room.capacity)
+      const double rate = simple ? mean * volumes[i] / (atom->rmass[i] * buffer.capacity)
                                  : bound(*t, i, volumes[i]);
       const double layer = layers ? layers->most(i) / own : 1.0;
       fastest_point = std::max(fastest_point, layer * rate);
@@ -422,8 +423,8 @@ void MPMConduction::find_ranges()
 
 void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
 {
-  Conduction room;
-  const Conduction &c = conduction_of(t, i, room);
+  Conduction buffer;
+  const Conduction &c = conduction_of(t, i, buffer);
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) k[a][b] = a == b ? c.conductivity : 0.0;
   if (c.orthotropic) {
@@ -479,8 +480,8 @@ double MPMConduction::steepness(int i) const
  *  bound. */
 double MPMConduction::bound(const Thermal &t, int i, double volume) const
 {
-  Conduction room;
-  const Conduction &c = conduction_of(t, i, room);
+  Conduction buffer;
+  const Conduction &c = conduction_of(t, i, buffer);
   double most = c.most();
   if (total) {
     double k[3][3];
@@ -660,7 +661,7 @@ void MPMConduction::find_ends()
   static constexpr double REACH = 5.0;    // node spacings: the cell of a face and the next one
   const MPMFrame &frame = *field.frame;
   const double reach = REACH * field.lattice.h;
-  const auto add = [&](const MPMCutRooms::Part &part) {
+  const auto add = [&](const MPMCutDomains::Part &part) {
     const int i = part.point;
     const double V = part.volume * atom->vfrac[i] * frame.lattice_jacobian(i) /
         frame.circle(frame.places()[i][0]);
@@ -673,7 +674,7 @@ void MPMConduction::find_ends()
     if (faces.is_near(frame.places()[part.point], reach)) add(part);
   for (const auto &run : field.map->runs)
     for (int i = run.first; thermal(run.material) && i < run.last; i++) {
-      MPMCutRooms::Part whole;
+      MPMCutDomains::Part whole;
       if (!cuts.is_cut[i] && faces.is_near(frame.places()[i], reach) &&
           cuts.make_whole(i, run, whole))
         add(whole);
@@ -697,9 +698,9 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
     layers->find([&](const MPMPointMap::Run &run, int first, int n, double *k, double *V) {
       const Thermal *const t = thermal(run.material);
       if (!t) return false;
-      Conduction room;
+      Conduction buffer;
       for (int p = 0; p < n; p++) {
-        k[p] = t->at(first + p, room).conductivity;
+        k[p] = t->at(first + p, buffer).conductivity;
         V[p] = volume_of(first + p);
       }
       return true;
@@ -710,8 +711,8 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
         if (!t) return false;
         const double *const rmass = atom->rmass + first, *const vfrac = atom->vfrac + first;
         double *const V = volumes.data() + first;
-        double room[BATCH];
-        const double *const J = field.jacobians.get(field, first, n, room);
+        double buffer[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, buffer);
         for (int p = 0; p < n; p++) V[p] = vfrac[p] * J[p];
         Conduction c = t->all;
         double greatest = c.most();
@@ -725,7 +726,7 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
         }
         if (simple && !t->varies && !layers) {
           for (int p = 0; p < n; p++) points.capacity[p] = rmass[p] * c.capacity;
-          for (int p = 0; p < n; p++) room[p] = greatest * V[p];
+          for (int p = 0; p < n; p++) buffer[p] = greatest * V[p];
         } else {
           for (int p = 0; p < n; p++) {
             if (t->varies) {
@@ -735,10 +736,10 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
             if (layers) greatest = layers->most(first + p);
             if (!simple) most = std::max(most, bound(*t, first + p, V[p]));
             points.capacity[p] = rmass[p] * c.capacity;
-            room[p] = greatest * V[p];
+            buffer[p] = greatest * V[p];
           }
         }
-        if (simple) raise_ratio(most, n, room, points.capacity);
+        if (simple) raise_ratio(most, n, buffer, points.capacity);
         for (int p = 0; wants_volumes && p < n; p++)
           points.volume[p] = total ? vfrac[p] * field.frame->lattice_jacobian(first + p) : V[p];
         return true;
@@ -765,8 +766,9 @@ void MPMConduction::find_unseen()
       transfer.order,
       [this](const MPMPointMap::Run &run, int first, int n, double *C) {
         const Thermal *const t = thermal(run.material);
-        Conduction room;
-        for (int p = 0; p < n; p++) C[p] = atom->rmass[first + p] * t->at(first + p, room).capacity;
+        Conduction buffer;
+        for (int p = 0; p < n; p++)
+          C[p] = atom->rmass[first + p] * t->at(first + p, buffer).capacity;
       },
       unseen);
   for (std::size_t k = 0; k < unseen.size(); k++) unseen[k] = temperature[k] - unseen[k];
@@ -789,7 +791,7 @@ void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::R
 {
   const double *const V = volumes.data() + first;
   const double *const share = shares.empty() || left == ALL ? nullptr : shares.data() + first;
-  Conduction room;
+  Conduction buffer;
   for (int p = 0; p < n; p++) {
     const double conducting = share ? V[p] * share[p] : V[p];
     if (total || t.all.orthotropic) {
@@ -800,13 +802,13 @@ void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::R
     } else if (layers) {
       double times = -conducting;
       if (t.jumps && !ranges.empty()) {
-        const double mean = conduction_of(t, first + p, room).conductivity;
-        times *= mean / t.at(first + p, room).conductivity;
+        const double mean = conduction_of(t, first + p, buffer).conductivity;
+        times *= mean / t.at(first + p, buffer).conductivity;
       }
       layers->multiply(first + p, q[p]);
       for (int d = 0; d < 3; d++) q[p][d] *= times;
     } else {
-      const double factor = -conducting * conduction_of(t, first + p, room).conductivity;
+      const double factor = -conducting * conduction_of(t, first + p, buffer).conductivity;
       for (int d = 0; d < 3; d++) q[p][d] *= factor;
     }
     q[p][3] = 0.0;
@@ -838,7 +840,7 @@ void MPMConduction::find_changes()
       });
 }
 
-/** Adds the conduction of points whose rooms are in several cells. */
+/** Adds the conduction of points whose domains are in several cells. */
 void MPMConduction::conduct_parts()
 {
   for (const auto &part : cuts.parts) {
@@ -1016,10 +1018,10 @@ double MPMConduction::greatest_possible() const
       }))
     return greatest;
   double mine = greatest, all;
-  Conduction room;
+  Conduction buffer;
   for (int i = 0; i < atom->nlocal; i++)
     if (const Thermal *const t = field.is_point(i) ? thermal(field.material_of(i)) : nullptr)
-      mine = std::max(mine, t->at(i, room).conductivity);
+      mine = std::max(mine, t->at(i, buffer).conductivity);
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
   return all;
 }
@@ -1035,7 +1037,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
   const bool bounded = steepest > 0.0 || field.boxes;
   double most = 0.0;
   const double possible = layers ? greatest_possible() : 0.0;
-  Conduction room;
+  Conduction buffer;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i)) continue;
     const Thermal *const t = thermal(field.material_of(i));
@@ -1045,7 +1047,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
       here = bound(*t, i, volume_of(i));
       // at interfaces what is possible counts, not what is there at
       // present, so that it is the same after a restart
-      if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
+      if (layers) here *= layers->most_over_own(possible / t->at(i, buffer).conductivity);
     } else if (!field.domains || conducted == 0.0) {
       double k[3][3], x[24], least = 1.0;
       tensor(*t, i, k);
@@ -1054,7 +1056,7 @@ double MPMConduction::greatest_rate_of_points(tagint &tag) const
         for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
       const double steep = field.domains ? 1.0 / (least * least) : MOST_AT_LIGHT_NODES * 4.0 * dim;
       here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
-          (atom->rmass[i] * t->at(i, room).capacity);
+          (atom->rmass[i] * t->at(i, buffer).capacity);
     }
     if (here <= most) continue;
     most = here;

@@ -145,7 +145,7 @@ double MPMConduction::keep_given()
     if (given[k] != 0.0) warmed[k / NODES_PER_BLOCK] = 1;
 
   const MPMStencil stencil(field);
-  Conduction room;
+  Conduction buffer;
   double got = 0.0;
   for (const auto &run : field.map->runs) {
     const auto &block = grid.blocks[run.slot];
@@ -162,7 +162,7 @@ double MPMConduction::keep_given()
       if (heat == 0.0) continue;
       got += atom->rmass[i] * heat;
       double *const history = t->fix->history[i];
-      const Conduction &c = t->at(i, room);
+      const Conduction &c = t->at(i, buffer);
       if (c.by_enthalpy) {
         t->fix->material->warm(history, heat);
       } else {

@@ -562,16 +562,16 @@ template <class Stress>
 void FixMPMMixture::sum_forces(Phase &phase, std::vector<double> &to, const Stress &of)
 {
   MPMField &field = *phase.field;
-  auto &room = field.work.stress;
-  room.resize(6 * (std::size_t) atom->nmax);
+  auto &buffer = field.work.stress;
+  buffer.resize(6 * (std::size_t) atom->nmax);
   PointRows r = field.rows();
-  r.tau = room.data();
+  r.tau = buffer.data();
   TransferStep s = field.step_data();
   s.force_scale = 0.0;
   points_to(to, field, field.kernel, [&](const MPMPointMap::Run &run, const int *base, int *box) {
     if (!phase.reaches[run.slot]) return;
     for (int i = run.first; i < run.last; i++) {
-      double *const mine = &room[6 * (std::size_t) i];
+      double *const mine = &buffer[6 * (std::size_t) i];
       const double value = of(i);
       for (int k = 0; k < 6; k++) mine[k] = k < 3 ? value : 0.0;
     }
