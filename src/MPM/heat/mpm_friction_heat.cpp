@@ -235,7 +235,7 @@ void MPMFrictionHeat::give(Body &body, const double *record, double energy, bool
   Grid &grid = body.field->grid;
   if (given.empty()) given.resize(grid.nnodes(), 0.0);
   given[node_of(body, record)] += energy;
-  if (owned) heat->book(FixMPMHeat::FRICTION, energy);
+  if (owned) heat->book(MPMHeatFlow::FRICTION, energy);
 }
 
 void MPMFrictionHeat::between(int a, const double *ra, int b, const double *rb,
