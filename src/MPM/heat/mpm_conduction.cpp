@@ -118,9 +118,9 @@ MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer
 
 /* ---------------------------------------------------------------------- */
 
-void MPMConduction::init(double sigma, bool surfaces, bool &told_of_layers)
+void MPMConduction::init(double sigma, bool surfaces, bool &warned_of_layers)
 {
-  told = &told_of_layers;
+  warned = &warned_of_layers;
   thermals.clear();
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;

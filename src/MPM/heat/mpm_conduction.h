@@ -57,9 +57,9 @@ class MPMConduction : protected Pointers {
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
-  /** Start of a run. surfaces: heat also comes through surfaces other than faces of the box. told_of_layers: set once a
+  /** Start of a run. surfaces: heat also comes through surfaces other than faces of the box. warned_of_layers: set once a
    *  warning about interfaces without mean conductivities has been printed. */
-  void init(double sigma, bool surfaces, bool &told_of_layers);
+  void init(double sigma, bool surfaces, bool &warned_of_layers);
 
   /** First part of a step: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
    *  the transfers pic and xpic. starts: the first call of find_rates() will be for these temperatures, except those that
@@ -197,7 +197,7 @@ class MPMConduction : protected Pointers {
   std::unique_ptr<MPMLayerMean> layers;
   double greatest = 0.0;    // largest of all conductivities, with layers
   // has a warning been printed about interfaces without means? In the fix, as this object is made anew for each run
-  bool *told = nullptr;
+  bool *warned = nullptr;
   double fastest_point = 0.0;    // largest rate in this step, without the factor of the functions
   // do rates of points follow from capacities and volumes alone; do nodes keep their temperatures of the start of the step?
   bool simple = false, keeps = false;

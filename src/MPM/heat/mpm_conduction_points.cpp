@@ -55,8 +55,8 @@ void MPMConduction::init_layers()
     least = &t == first ? t.all.conductivity : std::min(least, t.all.conductivity);
     fastest = std::max(fastest, t.all.conductivity / capacity);
   }
-  if (!can && differ && greatest > SAME * least && !*told) {
-    *told = true;
+  if (!can && differ && greatest > SAME * least && !*warned) {
+    *warned = true;
     if (comm->me == 0)
       error->warning(
           FLERR,
@@ -71,8 +71,8 @@ void MPMConduction::init_layers()
     greatest = 0.0;
     return;
   }
-  if (orthotropic && differ && !*told) {
-    *told = true;
+  if (orthotropic && differ && !*warned) {
+    *warned = true;
     if (comm->me == 0)
       error->warning(FLERR,
                      "Fix mpm/heat: materials of different conductivity share fix mpm {}, and one "
