@@ -19,6 +19,7 @@
 #include "heat/mpm_heat_surface.h"
 #include "heat/mpm_heat_thin.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>

@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
+#include "base/mpm_state.h"
 #include "comm.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
@@ -276,7 +277,7 @@ void MPMPoreFlow::find_coarse_points(double widest)
 {
   coarse = widest > FINE;
   for (const auto *field : wet) {
-    const auto &soils_here = field->layers_soil_heres();
+    const auto &soils_here = field->layers_of_points();
     std::vector<double> mine, all;
     for (const auto &soil : soils_here) {
       mine.push_back(soil.volume);
@@ -399,10 +400,9 @@ double MPMPoreFlow::inflow(int part)
   return flows[part];
 }
 
-void MPMPoreFlow::write_restart(FILE *fp, bool has_state) const
+void MPMPoreFlow::write_restart(FILE *fp, bool has_state)
 {
-  auto totals = came;
-  write_totals(fp, world, totals,
+  write_totals(fp, world, came,
                {gradients_known ? 1.0 : 0.0, has_state ? 1.0 : 0.0, rates_known ? 1.0 : 0.0,
                 conducted, exchanged, coarse ? 1.0 : 0.0, waited.steps, waited.time, thinned});
 }

@@ -90,7 +90,7 @@ class MPMPoreFlow : protected Pointers {
   /** Energy of water that has come in on this rank [pressure*volume]. */
   double energy_came() const { return came[MPMPoreSurface::ENERGY]; }
 
-  void write_restart(FILE *, bool has_state) const;
+  void write_restart(FILE *, bool has_state);
   /** Takes what write_restart() has written; returns has_state. */
   bool restart(const double *);
   double memory_usage() const;

@@ -27,6 +27,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// factor within which times are equal on paper, as sums of ranks differ by round-off
+static constexpr double NEARLY = 1.0 + 1.0e-6;
+
 MPMPoreWatch::MPMPoreWatch(LAMMPS *lmp, const MPMPoreOptions &options, const MPMPorePoints &points,
                            const MPMPoreFlow &flow, const std::string &id) :
     Pointers(lmp),
