@@ -164,6 +164,11 @@ void FixMPMIncompressible::check_density(double fluid, const std::string &who) c
                fluid, id, style, flow->options.density);
 }
 
+void FixMPMIncompressible::visit_batches(int group_bits, const BatchVisitor &visit)
+{
+  if (flow->parts.solids) flow->parts.solids->visit_batches(group_bits, visit);
+}
+
 double FixMPMIncompressible::spacing_around(const std::string &region) const
 {
   return std::count(flow->options.region_ids.begin(), flow->options.region_ids.end(), region)
@@ -174,11 +179,6 @@ double FixMPMIncompressible::spacing_around(const std::string &region) const
 double FixMPMIncompressible::spacing() const
 {
   return flow->options.h;
-}
-
-MPMFlowSolids *FixMPMIncompressible::solids() const
-{
-  return flow->parts.solids.get();
 }
 
 double FixMPMIncompressible::density_of_groups(int mask) const

@@ -17,16 +17,21 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 
 #include "base/mpm_state.h"
 #include "base/mpm_step_limit.h"
+#include "field/mpm_fluid.h"
+#include "field/mpm_point_batches.h"
 
 #include <memory>
 #include <string>
 
 namespace LAMMPS_NS {
 class MPMFlow;
-class MPMFlowSolids;
 
 /** Flow of an incompressible fluid with free surfaces (MPMFlow): options, calls by LAMMPS, and output. */
-class FixMPMIncompressible : public FixMPMState, public MPMStepLimit {
+class FixMPMIncompressible :
+    public FixMPMState,
+    public MPMStepLimit,
+    public MPMFluid,
+    public MPMPointOwner {
  public:
   FixMPMIncompressible(class LAMMPS *, int, char **);
   ~FixMPMIncompressible() override;
@@ -49,16 +54,11 @@ class FixMPMIncompressible : public FixMPMState, public MPMStepLimit {
    *  acceleration, or a moving region or wall passes one, or the limit of explicit viscosity, of solids, or of surface
    *  tension. tag: of the limiting point; 0: another limit. */
   double stable_dt(tagint &tag) const override;
-  /** Node spacing of this flow if the region is solid for it, else 0. */
-  double spacing_around(const std::string &region) const;
-  /** Node spacing. */
-  double spacing() const;
-  /** Points that are elastic solids; null: there are none. */
-  MPMFlowSolids *solids() const;
-  /** Density of points in groups with these bits, that are no solids. */
-  double density_of_groups(int mask) const;
-  /** Stops with an error if the density of the fluid given by another fix differs. who: the start of the message. */
-  void check_density(double fluid, const std::string &who) const;
+  double spacing_around(const std::string &region) const override;
+  double spacing() const override;
+  void visit_batches(int group_bits, const BatchVisitor &) override;
+  double density_of_groups(int mask) const override;
+  void check_density(double fluid, const std::string &who) const override;
 
  private:
   std::unique_ptr<MPMFlow> flow;

@@ -17,8 +17,8 @@
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_friction_heat.h"
 #include "force.h"
-#include "heat/mpm_friction_heat.h"
 #include "implicit/fix_mpm_implicit.h"
 #include "input.h"
 #include "variable.h"
@@ -29,6 +29,7 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) :
     FixMPMState(lmp, narg, arg), flow(lmp, options, gradients, id)
@@ -134,6 +135,19 @@ void FixMPMHeat::find_rubbers()
                "give its pair_coeff one of these, or drop the keyword");
 }
 
+bool FixMPMHeat::conducts(const MPMField &field) const
+{
+  return flow.in(field).conducts();
+}
+
+void FixMPMHeat::give(const MPMField &field, std::size_t node, double heat, bool counts)
+{
+  auto &given = flow.in(field).given;
+  if (given.empty()) given.resize(field.grid.nnodes(), 0.0);
+  given[node] += heat;
+  if (counts) book(MPMHeatFlow::FRICTION, heat);
+}
+
 /** Warns once of friction whose heat is lost, unless the input says that this is intended. */
 void FixMPMHeat::warn_of_friction()
 {
@@ -180,7 +194,7 @@ void FixMPMHeat::check_temperatures()
   if (!options.radiates()) return;
   for (const auto &of : flow.fields)
     for (const auto *material : of->field.materials) {
-      const int column = material->find_history("temperature");
+      const int column = material->temperature();
       if (!material->material->conducts()) continue;
       for (int i = 0; i < atom->nlocal; i++)
         if ((atom->mask[i] & material->groupbit) && of->field.is_point(i) &&
@@ -256,9 +270,12 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
   // points strain at the end of a step with their temperatures at that time: an implicit step must know these before
   const bool is_implicit = !find_fixes<FixMPMImplicit>(lmp).empty();
   if (place == (is_implicit ? MPMPlan::BEFORE_SOLVE : MPMPlan::AFTER_SOLVE))
-    plan.together("conduction of heat", [this]() {
-      conduct();
-    });
+    plan.together("conduction of heat",
+                  {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::HISTORY, Data::MASS,
+                   Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::STRESS, Data::HISTORY, Data::OWN}, [this]() {
+                    conduct();
+                  });
 }
 
 /* ----------------------------------------------------------------------

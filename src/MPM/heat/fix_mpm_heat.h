@@ -16,6 +16,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #define LMP_FIX_MPM_HEAT_H
 
 #include "base/mpm_state.h"
+#include "field/mpm_heat_sink.h"
 #include "field/mpm_physics.h"
 #include "heat/mpm_grain_heat.h"
 #include "heat/mpm_heat_flow.h"
@@ -28,7 +29,7 @@ namespace LAMMPS_NS {
 
 /** Conduction of heat in points of conducting materials (with a part thermal), heat through faces of the box,
  *  surfaces of regions, and free surfaces, and heat exchange between bodies (fix mpm) in contact. */
-class FixMPMHeat : public FixMPMState, public MPMPhysics {
+class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
   int setmask() override;    // fix mpm calls conduction
@@ -57,6 +58,9 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics {
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
   double energy_at_hand() const override;
+
+  bool conducts(const MPMField &) const override;
+  void give(const MPMField &, std::size_t node, double heat, bool counts) override;
 
   /** Conduction in this field. */
   MPMConduction &of(const MPMField &field) const { return flow.in(field); }

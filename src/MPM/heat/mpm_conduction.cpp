@@ -125,7 +125,7 @@ void MPMConduction::init(double sigma, bool surfaces, bool &warned_of_layers)
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
-    const int T = fix->find_history("temperature"), molten = fix->find_history("molten");
+    const int T = fix->temperature(), molten = fix->molten();
     thermals.push_back({fix, T, molten, material.conduction_varies(),
                         molten >= 0 && conductivity_varies_with_temperature(material),
                         material.conduction(nullptr)});

@@ -135,7 +135,7 @@ MPMHeatBody &MPMHeatFlow::body_in(const MPMField &field)
 }
 
 /** Does a field have points that conduct, on any rank? */
-static bool conducts(const MPMField &field, MPI_Comm world)
+static bool has_conducting_points(const MPMField &field, MPI_Comm world)
 {
   const Atom &atom = *field.atom;
   int any = 0, all;
@@ -213,7 +213,7 @@ void MPMHeatFlow::init_contacts()
                    "Fix mpm/heat contact {} {}: there is no fix mpm with the ID {}", p.field[0],
                    p.field[1], p.field[k]);
       body[k] = &body_in(*of);
-      if (!conducts(body[k]->field, world))
+      if (!has_conducting_points(body[k]->field, world))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/heat contact {} {}: no material of fix mpm {} conducts heat: give it "
                    "the part 'thermal conducting', or remove the contact",

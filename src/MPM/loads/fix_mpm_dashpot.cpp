@@ -62,6 +62,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 // rate of a node, in wave speeds over node spacings, times the density of the far side over that of the body: with stress mls, stress
 // pulls less at nodes that points hardly reach than the functions there tell, and dashpots must not pull more
@@ -134,7 +135,7 @@ void FixMPMDashpot::init_physics(MPMPlan &plan)
                   {options.has_fmpm(), "transfer fmpm",
                    "its terms do not have the dashpots: use another transfer"}});
     warn_of_light_nodes(*field);
-    field->keep_old = true;
+    field->keep_old_velocities();
     bodies.emplace_back();
     bodies.back().field = field;
     bodies.back().rates = &field->nodes.add_field("rates of " + std::string(id), 6);
@@ -384,9 +385,10 @@ void FixMPMDashpot::add_stages(MPMPlan &plan, MPMPlan::Place place)
         return field->options.watches_gain();
       }))
     return;
-  plan.together("work of supports", [this] {
-    for (const auto &body : bodies) tell_watch(body);
-  });
+  plan.together("work of supports", {Data::VELOCITY, Data::NODES, Data::BLOCKS, Data::OWN},
+                {Data::OWN}, [this] {
+                  for (const auto &body : bodies) tell_watch(body);
+                });
 }
 
 /* ---------------------------------------------------------------------- */

@@ -16,6 +16,7 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 #define LMP_FIX_MPM_DASHPOT_H
 
 #include "base/mpm_state.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
@@ -35,6 +36,7 @@ class FixMPMDashpot :
     public FixMPMState,
     public MPMNodeAction,
     public MPMPhysics,
+    public MPMAddedStress,
     private MPMDashpotOptions {
  public:
   FixMPMDashpot(class LAMMPS *, int, char **);

@@ -54,6 +54,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/traction surface values keyword values ...
@@ -199,7 +200,7 @@ void FixMPMTraction::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (!grows || place != MPMPlan::BEFORE_POINTS_TO_NODES) return;
   plan.each(
-      "area of surfaces",
+      "area of surfaces", {Data::POSITION, Data::DEFORMATION, Data::BLOCKS, Data::OWN}, {Data::OWN},
       [this](MPMField &field) {
         if (!field.time_limit->bound || update->ntimestep % EVERY == 0) find_growth(field);
       },

@@ -25,6 +25,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 FixMPMMixture::FixMPMMixture(LAMMPS *lmp, int narg, char **arg) :
     FixMPMState(lmp, narg, arg), mixture(lmp, options, id)
@@ -151,18 +152,24 @@ void FixMPMMixture::init_action()
 void FixMPMMixture::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_SOLVE)
-    plan.together("pressure of the mixture", [this]() {
-      mixture.share_pressure();
-    });
+    plan.together(
+        "pressure of the mixture",
+        {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::NODES, Data::BLOCKS, Data::OWN},
+        {Data::NODES, Data::OWN}, [this]() {
+          mixture.share_pressure();
+        });
   if (place == MPMPlan::AFTER_SOLVE)
-    plan.together("work in the mixture", [this]() {
-      mixture.correct_drag_at_walls();
-      mixture.account_for_work();
-    });
+    plan.together("work in the mixture", {Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::NODES, Data::OWN}, [this]() {
+                    mixture.correct_drag_at_walls();
+                    mixture.account_for_work();
+                  });
   if (place == MPMPlan::BEFORE_STRAIN)
-    plan.together("volume of the mixture", [this]() {
-      mixture.share_strain();
-    });
+    plan.together("volume of the mixture",
+                  {Data::POSITION, Data::DEFORMATION, Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::DEFORMATION, Data::NODES, Data::OWN}, [this]() {
+                    mixture.share_strain();
+                  });
 }
 
 /* ----------------------------------------------------------------------

@@ -31,6 +31,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/pore K RHO G keyword values ...
@@ -173,6 +174,11 @@ double FixMPMPore::distance_to_bodies(const double *x, double far) const
 
 void FixMPMPore::init_physics(MPMPlan &plan)
 {
+  if (moves() && !find_fixes<FixMPMRelax>(lmp).empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/relax cannot bring water with inertia to rest: use formulation u-p of fix "
+               "{} {} until bodies are at rest",
+               style, id);
   flow.clear();
   find_seals();
   if (!options.sets_every) options.every = flow.needs_each_step() ? 1 : MPMPoreOptions::AUTO;
@@ -187,7 +193,7 @@ void FixMPMPore::init_physics(MPMPlan &plan)
     if (!mine.has_water()) continue;
     flow.add_wet(mine);
     if (options.formulation == MPMPoreOptions::U_V_P) {
-      field->keep_old = true;
+      field->keep_old_velocities();
       checks.check_motion(*this, *field);
     }
     const auto &o = field->options;
@@ -221,29 +227,42 @@ void FixMPMPore::init_physics(MPMPlan &plan)
 void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
-    plan.together("pore pressure", [this]() {
-      flow.begin_step();
-    });
+    plan.together("pore pressure",
+                  {Data::POSITION, Data::DEFORMATION, Data::MASS, Data::BLOCKS, Data::OWN},
+                  {Data::MASS, Data::OWN}, [this]() {
+                    flow.begin_step();
+                  });
   if (place == MPMPlan::BEFORE_SOLVE && options.formulation == MPMPoreOptions::U_V_P)
-    plan.together("inertia of pore water", [this]() {
-      flow.separate_inertia();
-    });
+    plan.together("inertia of pore water", {Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::NODES, Data::OWN}, [this]() {
+                    flow.separate_inertia();
+                  });
   if (place == MPMPlan::AFTER_SOLVE && !flow.is_implicit) {
     const auto move = [this](MPMField &field) {
       flow.take_motion(field);
     };
-    plan.each("nodes to points with material", move, [this](const MPMField &field) {
-      return flow.in(field).moves_first();
-    });
-    plan.together("flow of pore water", [this]() {
-      flow.advance();
-    });
+    plan.each("nodes to points with material",
+              {Data::POSITION, Data::VELOCITY, Data::AFFINE, Data::DEFORMATION, Data::STRESS,
+               Data::HISTORY, Data::NODES, Data::BLOCKS, Data::OWN},
+              {Data::VELOCITY, Data::AFFINE, Data::DEFORMATION, Data::STRESS, Data::HISTORY,
+               Data::NODES, Data::OWN},
+              move, [this](const MPMField &field) {
+                return flow.in(field).moves_first();
+              });
+    plan.together(
+        "flow of pore water",
+        {Data::POSITION, Data::DEFORMATION, Data::MASS, Data::NODES, Data::BLOCKS, Data::OWN},
+        {Data::MASS, Data::NODES, Data::OWN}, [this]() {
+          flow.advance();
+        });
   }
   // at this point, fix mpm/implicit has left the velocities of the step on nodes
   if (place == MPMPlan::BEFORE_STRAIN && flow.is_implicit)
-    plan.together("flow of pore water", [this]() {
-      flow.take_solution();
-    });
+    plan.together("flow of pore water",
+                  {Data::POSITION, Data::DEFORMATION, Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::MASS, Data::NODES, Data::OWN}, [this]() {
+                    flow.take_solution();
+                  });
 }
 
 /* ----------------------------------------------------------------------

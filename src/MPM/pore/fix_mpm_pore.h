@@ -16,6 +16,7 @@ FixStyle(mpm/pore,FixMPMPore);
 #define LMP_FIX_MPM_PORE_H
 
 #include "base/mpm_state.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
 #include "pore/mpm_pore_checks.h"
 #include "pore/mpm_pore_flow.h"
@@ -27,7 +28,7 @@ namespace LAMMPS_NS {
 
 /** Pore water in the points of soils, which move with the velocity of the soil: options, calls by LAMMPS and fix mpm. Treats the flow of the water,
  *  without its own inertia (u-p) or with it (u-v-p), and the water pressure in the forces. */
-class FixMPMPore : public FixMPMState, public MPMPhysics {
+class FixMPMPore : public FixMPMState, public MPMPhysics, public MPMPorePressure {
  public:
   FixMPMPore(class LAMMPS *, int, char **);
   ~FixMPMPore() override;
@@ -48,7 +49,6 @@ class FixMPMPore : public FixMPMState, public MPMPhysics {
     if (flow.in(field).has_water()) flow.in(field).surface.extend_topology();
   }
   void topology_changed(MPMField &) override;
-  bool joins_motion() const override { return true; }
   MPMNodePressure *node_pressure(const MPMField &field) override
   {
     return flow.in(field).has_water() ? &flow.in(field) : nullptr;
@@ -76,11 +76,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics {
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
 
-  /** Is there soil with water in this field? */
-  bool has_water(const MPMField &field) const { return flow.in(field).has_water(); }
-  /** See MPMPore. */
   void find_forces_below_surface(const MPMField &field, const std::vector<char> &near,
-                                 std::vector<double> &of_water, std::vector<double> &of_all) const
+                                 std::vector<double> &of_water,
+                                 std::vector<double> &of_all) const override
   {
     flow.in(field).find_forces_below_surface(near, of_water, of_all);
   }

@@ -116,11 +116,7 @@ void MPMMixture::blocks_found()
   if (!stale()) return;
   for (auto *phase : {&soil, &water}) phase->reach.find(phase->field->grid, world);
   boxes_meet = soil.reach.may_meet(water.reach);
-  for (auto *phase : {&soil, &water}) {
-    if (phase->field->keep_old_now == boxes_meet) continue;
-    phase->field->keep_old_now = boxes_meet;
-    phase->field->choose_kernels();
-  }
+  for (auto *phase : {&soil, &water}) phase->field->keep_old_velocities_now(boxes_meet);
 }
 
 void MPMMixture::extend_topology(MPMField &field)

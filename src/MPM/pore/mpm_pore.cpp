@@ -102,7 +102,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
       if (here[k] && one.material == fix->id) {
         const double storage = one.storage_at(1.0, water);
         const double unit = force->mvv2e * force->nktv2p;
-        soils.push_back({fix, one, one.warms ? fix->find_history("temperature") : -1});
+        soils.push_back({fix, one, one.warms ? fix->temperature() : -1});
         if (one.warms) warmth = &of_points;
         if (!one.is_linear()) quadratic.resize(1);
         least_storage = std::min(least_storage, storage);

@@ -42,7 +42,7 @@ void MPMPoreChecks::check_soils() const
                  "The density of fix mpm/material {} is below that of the water in its pores: fix "
                  "mpm/pore takes it for that of the soil with full pores",
                  soil.material);
-    if (soil.warms && fix->find_history("temperature") < 0)
+    if (soil.warms && fix->temperature() < 0)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/pore expansion: soil {} has no temperature: its material needs a thermal "
                  "part",
