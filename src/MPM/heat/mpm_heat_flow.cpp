@@ -31,7 +31,7 @@ using namespace MPM_NS;
 /** Do faces of the box take their weights from the surface that nodes have (MPMHeatBody)? */
 bool MPMHeatFlow::weighs_faces(const MPMField &field)
 {
-  return field.options.shape != LINEAR && field.options.shape != BERNSTEIN;
+  return field.options.shape != MPM_NS::LINEAR && field.options.shape != MPM_NS::BERNSTEIN;
 }
 
 MPMHeatFlow::MPMHeatFlow(LAMMPS *lmp, MPMHeatOptions &options, const MPMRows &gradients,
