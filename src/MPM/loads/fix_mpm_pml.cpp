@@ -146,7 +146,7 @@ void FixMPMPML::init_physics(MPMPlan &plan)
 {
   bodies.clear();
   is_inside.clear();
-  told = false;
+  warned = false;
   for (auto *field : plan.fields) {
     const auto &options = field->options;
     refuse_field(
@@ -282,12 +282,12 @@ void FixMPMPML::post_run()
   if (comm->me == 0 && all < known)
     error->warning(FLERR, "Fix mpm/pml {}: {:.0f} of the {:.0f} points of its layers are gone", id,
                    known - all, known);
-  if (comm->me == 0 && most > SMALL_STRAIN && !told)
+  if (comm->me == 0 && most > SMALL_STRAIN && !warned)
     error->warning(FLERR,
                    "Fix mpm/pml {}: strain in its layers is up to {:.3g}, and they are matched to "
                    "small strain only: put them further away, or use fix mpm/dashpot",
                    id, most);
-  told = most > SMALL_STRAIN;
+  warned = most > SMALL_STRAIN;
   known = all;
 }
 
