@@ -6,9 +6,9 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// The four schemes: each is one list of stages, in the order of the book (V.P. Nguyen, A. de Vaucorbeil,
-// S. Bordas, The Material Point Method, Springer 2023, chapter 2). Stages that no field needs are not in
-// the list of a run.
+// The four schemes: each is one list of stages, in the order of the book (V.P. Nguyen, A. de
+// Vaucorbeil, S. Bordas, The Material Point Method, Springer 2023, chapter 2). Stages that no field
+// needs are not in the list of a run.
 
 #include "field/mpm_affine.h"
 #include "field/mpm_field.h"
@@ -89,8 +89,9 @@ void gradients_with_material(MPMPlan &plan, double share, double shift)
   plan.each("gradients with material", MOTION + STATE + AT_NODES, STATE + NODES_AND_OWN, strain);
 }
 
-/** Strain of the motion of the step before: that has brought the points to where they are. Where the time
- *  step changes, the deformation gradient would not be that of the motion with another duration. */
+/** Strain of the motion of the step before: that has brought the points to where they are. Where
+ *  the time step changes, the deformation gradient would not be that of the motion with another
+ *  duration. */
 void gradients_of_last_motion(MPMPlan &plan, double share, double shift)
 {
   const auto strain = [=](MPMField &field) {
@@ -204,8 +205,8 @@ void solve_and_move(MPMPlan &plan)
   add_light_nodes(plan, false);
 }
 
-/** The velocities of the points once more to the nodes, at the old positions. An affine matrix is that of
- *  this step, never the old one. */
+/** The velocities of the points once more to the nodes, at the old positions. An affine matrix is
+ *  that of this step, never the old one. */
 void map_back(MPMPlan &plan)
 {
   points_to_nodes(plan, "velocities back to nodes", MOMENTUM);
