@@ -7,28 +7,31 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The kinetic energy of a node changes in a step by all impulses on it times the mean of its old and its new
-   velocity. The part of a tangential impulse J_t between bodies of relative velocity u is J_t . (u_old + u_new)/2,
-   and what slides loses that as heat, exactly. With the velocities just before and after the impulse
-   it would be more: before it, the shear stress has accelerated the node, by tau dt/(rho h), which is not small against
-   the sliding velocity in stiff bodies, and which friction takes back in each step. Where bodies stick there
-   is no heat: what is lost there is numerical, and of the order of the step.
+   The kinetic energy of a node changes in a step by all impulses on it times the mean of its old
+   and its new velocity. The part of a tangential impulse J_t between bodies of relative velocity u
+   is J_t . (u_old + u_new)/2, and what slides loses that as heat, exactly. With the velocities just
+   before and after the impulse it would be more: before it, the shear stress has accelerated the
+   node, by tau dt/(rho h), which is not small against the sliding velocity in stiff bodies, and
+   which friction takes back in each step. Where bodies stick there is no heat: what is lost there
+   is numerical, and of the order of the step.
 ------------------------------------------------------------------------- */
 
-#include "heat/mpm_friction_heat.h"
+#include "field/mpm_friction_heat.h"
 
 #include "atom.h"
 #include "base/mpm_clear.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "domain.h"
 #include "error.h"
+#include "field/fix_mpm_material.h"
+#include "field/mpm_conductivity.h"
 #include "field/mpm_field.h"
+#include "field/mpm_heat_sink.h"
 #include "field/mpm_passes.h"
 #include "fix.h"
 #include "force.h"
-#include "heat/fix_mpm_heat.h"
-#include "heat/mpm_conduction.h"
-#include "modify.h"
+#include "material/material.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,18 +76,18 @@ static bool leaves_plane(const Conduction &c)
 
 void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &fields)
 {
-  const auto heats = modify->get_fix_by_style("^mpm/heat$");
-  if (heats.empty())
+  const auto sinks = find_fixes<MPMHeatSink>(lmp);
+  if (sinks.empty())
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix {} {} heat: nothing conducts the heat of friction: define a fix mpm/heat, or drop "
         "the keyword",
         user.style, user.id);
-  heat = dynamic_cast<FixMPMHeat *>(heats[0]);
+  sink = sinks[0];
   bodies.clear();
   bool any = false, points = false;
   for (auto *field : fields) {
-    Body body = {field, nullptr, false, false, 0.0, {}};
+    Body body = {field, false, false, false, 0.0, {}};
     std::vector<int> mine(field->materials.size(), 0), here(mine.size());    // of its points
     for (int i = 0; i < atom->nlocal; i++)
       for (std::size_t k = 0; k < mine.size(); k++)
@@ -111,7 +114,7 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
     }
     body.mixed = nconducting > 0 && (body.mixed || body.orthotropic || nhere > 1);
     any = any || nconducting > 0;
-    field->keep_old = true;
+    field->keep_old_velocities();
     bodies.push_back(body);
   }
   if (points && !any)
@@ -125,8 +128,7 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
 void MPMFrictionHeat::begin_step()
 {
   for (auto &body : bodies) {
-    auto &conduction = heat->of(*body.field);
-    body.conduction = conduction.conducts() ? &conduction : nullptr;
+    body.conducts = sink->conducts(*body.field);
     if (body.orthotropic)
       map_tensor(body);
     else if (body.mixed)
@@ -134,8 +136,9 @@ void MPMFrictionHeat::begin_step()
   }
 }
 
-/** Means over points, weighted with their volumes, of numbers that value(i, c, values) gives for a point and what it conducts;
- *  points that do not conduct count as 0. To at_node, of so many reals, from one of them on. */
+/** Means over points, weighted with their volumes, of numbers that value(i, c, values) gives for a
+ *  point and what it conducts; points that do not conduct count as 0. To at_node, of so many reals,
+ *  from one of them on. */
 template <class F>
 void MPMFrictionHeat::map_means(Body &body, int first, int nvalue, int width, const F &value)
 {
@@ -175,8 +178,9 @@ void MPMFrictionHeat::map_effusivity(Body &body)
 static constexpr int ROW[2][6] = {{0, 1, 0}, {0, 1, 2, 0, 0, 1}};
 static constexpr int COLUMN[2][6] = {{0, 1, 1}, {0, 1, 2, 1, 2, 2}};
 
-/** The square roots of the tensors K rho c: with their mean E the effusivity along a normal is |E n|, which is sqrt(n.K.n rho c) for a
- *  single material, and the mean of sqrt(K rho c) for several isotropic ones. */
+/** The square roots of the tensors K rho c: with their mean E the effusivity along a normal is |E
+ *  n|, which is sqrt(n.K.n rho c) for a single material, and the mean of sqrt(K rho c) for several
+ *  isotropic ones. */
 void MPMFrictionHeat::map_tensor(Body &body)
 {
   const int dim = domain->dimension, width = dim == 3 ? 6 : 3;
@@ -230,12 +234,8 @@ double MPMFrictionHeat::made(const double *J, const double *old, const double *n
 void MPMFrictionHeat::give(Body &body, const double *record, double energy, bool owned)
 {
   // among points of several materials a node may have none that conducts
-  if (!body.conduction || energy == 0.0 || effusivity(body, record, nullptr) == 0.0) return;
-  auto &given = body.conduction->given;
-  Grid &grid = body.field->grid;
-  if (given.empty()) given.resize(grid.nnodes(), 0.0);
-  given[node_of(body, record)] += energy;
-  if (owned) heat->book(FixMPMHeat::FRICTION, energy);
+  if (!body.conducts || energy == 0.0 || effusivity(body, record, nullptr) == 0.0) return;
+  sink->give(*body.field, node_of(body, record), energy, owned);
 }
 
 void MPMFrictionHeat::between(int a, const double *ra, int b, const double *rb,
