@@ -15,8 +15,8 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Warns if a body comes apart numerically (keyword apart of fix mpm): a material that resists tension is
- *  stretched so far that neighboring points no longer share enough nodes. */
+/** Warns if a body comes apart numerically (keyword apart of fix mpm): a material that resists
+ *  tension is stretched so far that neighboring points no longer share enough nodes. */
 class MPMFractureWatch : public MPMWatch, protected Pointers {
  public:
   MPMFractureWatch(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
@@ -25,7 +25,7 @@ class MPMFractureWatch : public MPMWatch, protected Pointers {
   void start() override
   {
     steps = 0;
-    told = false;
+    warned = false;
   }
   /** End of a step of the cycle; checks the points every few hundred steps. */
   void step() override;
@@ -35,7 +35,7 @@ class MPMFractureWatch : public MPMWatch, protected Pointers {
  private:
   MPMField &field;
   bigint steps = 0;
-  bool told = false;
+  bool warned = false;
 
   void look();
 };
