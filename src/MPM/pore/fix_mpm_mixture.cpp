@@ -795,7 +795,7 @@ void FixMPMMixture::correct_drag_at_walls()
       at_water[d] += change * normal[d];
       node.impulse[d] -= bears[d];
     }
-    push.wall->bear(*soil.field, node.soil, bears);
+    push.wall->add_reaction(*soil.field, node.soil, bears);
   }
 }
 
