@@ -25,6 +25,7 @@
 #include "walls/mpm_coupled_lines.h"
 
 #include "field/mpm_field.h"
+#include "math/sets.h"
 #include "math_extra.h"
 #include "walls/mpm_line_constraint.h"
 #include "walls/mpm_wall.h"
@@ -34,7 +35,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -60,27 +60,20 @@ std::vector<MPMCoupledLines> MPMCoupledLines::find(std::vector<MPMCrossing> &lin
   std::stable_sort(uses.begin(), uses.end(), [](const Use &a, const Use &b) {
     return a.node < b.node;
   });
-  std::vector<int> parent(lines.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int k) {
-    while (parent[k] != k) k = parent[k] = parent[parent[k]];
-    return k;
-  };
+  Sets sets(lines.size());
   for (auto first = uses.begin(), last = first; first != uses.end(); first = last) {
     while (last != uses.end() && last->node == first->node) last++;
     for (auto a = first; a != last; a++)
       for (auto b = a + 1; b != last; b++) {
         const MPMCrossing &one = lines[a->line], &other = lines[b->line];
         if (one.axis == other.axis || MathExtra::dot3(one.normal, other.normal) < apart) continue;
-        const int low = std::min(root(a->line), root(b->line)),
-                  high = std::max(root(a->line), root(b->line));
-        parent[high] = low;
+        sets.join(a->line, b->line);
       }
   }
   std::vector<int> size(lines.size(), 0), place(lines.size(), -1);
-  for (std::size_t k = 0; k < lines.size(); k++) size[root((int) k)]++;
+  for (std::size_t k = 0; k < lines.size(); k++) size[sets.root((int) k)]++;
   for (std::size_t k = 0; k < lines.size(); k++) {
-    const int r = root((int) k);
+    const int r = sets.root((int) k);
     if (size[r] < 2) continue;
     if (place[r] < 0) {
       place[r] = (int) found.size();

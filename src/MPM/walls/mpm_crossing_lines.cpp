@@ -91,7 +91,7 @@ void MPMCrossingLines::list(const std::vector<MPMWallNode> &nodes,
 
 /* ----------------------------------------------------------------------
    Nodes that are on lines do not act on their own. With slip and friction, a surface that moves
-   across the lattice hands nodes over, see list_region_nodes(). Lines cannot do this, and there are
+   across the lattice hands nodes over, see MPMWallNodes. Lines cannot do this, and there are
    none in that case
 ------------------------------------------------------------------------- */
 

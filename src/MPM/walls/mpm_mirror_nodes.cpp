@@ -7,46 +7,30 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Mirror planes: see "Mirrored boundaries" in Developer_mpm.rst, which derives the projection; for
-   faces between planes of nodes see mpm_line_constraint.cpp. The impulse of this projection on the
-   body is
+   The projection of mirror planes is derived in the README of this room. Its impulse on the body is
      -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
-   with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes k0 +
-   j and to their images k0 - j, which for an unconstrained component is minus the mean velocity at
-   the wall times a mass. Stick prescribes all components, slip the normal one. At edges, a node and
-   its images in all faces of the fix that prescribe a component form a group with signs.
+   with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes
+   k0 + j and to their images k0 - j, which for an unconstrained component is minus the mean velocity
+   at the wall times a mass. Stick prescribes all components, slip the normal one. At edges, a node
+   and its images in all faces of the fix that prescribe a component form a group with signs.
 
    Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
    times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
-   back for the gradient must follow the decision of the column: otherwise, a block that bounced had
-   1.4 times its energy.
+   back for the gradient follows the decision of the column.
 
    FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
    normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
    momentum and force of the nodes (Sulsky, Chen, Schreyer 1994), so that the increment at a wall at
    rest is zero, as it is when the body is continued by its mirror image. With an unchanged v_old,
-   the prescribed component would be updated as in PIC, because the velocity that a node at the wall
-   gets from the points on one side of it is a mean over some distance, not zero; a bar of 16 cells
-   lost 2.3 % of its energy in 10 periods. A point that arrives at the wall would keep its velocity
-   for good, as the nodes that could change it do not change themselves; a block of water that fell
-   on the floor kept four times the energy. Hence v_old relative to the wall counts as consistent
-   with the wall, in each component, only up to the value at the first node inside (a field that
-   rises from the wall has less at the wall than there); any excess remains in v_old, and the points
-   lose it. v_old relative to the wall means relative to its velocity in the last step. In its first
-   step, a wall counts as having moved like this before. Separating walls, walls that turn, and
-   friction leave v_old alone. So do regions, except those that stick or slip at their surface
-   (MPMCrossingLines); next to them, the components that they prescribe are updated as in PIC. PIC
-   and APIC have no use for v_old.
+   the prescribed component would be updated as in PIC. But a point that arrives at the wall must
+   lose its velocity. Hence v_old relative to the wall, whose velocity is that in the last step,
+   counts as consistent with the wall, in each component, only up to the value at the first node
+   inside (a field that rises from the wall has less at the wall than there); any excess remains in
+   v_old, and the points lose it. Separating walls, walls that turn, and friction leave v_old alone.
+   So do regions, except those that stick or slip at their surface (MPMCrossingLines).
 
-   AFLIP leaves v_old alone, too. With affine matrices, the nodes at the wall get the velocity that
-   the field has there, not a mean over some distance, so that a vibration loses nothing: the bar
-   above keeps its energy to the same five digits. A constraint on v_old would create energy: a
-   point at a distance y from a wall that sticks would keep its velocity v along it, while its
-   affine matrix, for which the nodes at the wall are at rest, becomes v/y, again in each step. One
-   grain that slid on a rough floor within a tenth of a cell spent 70 times its kinetic energy by
-   friction and did not slow down. With an unchanged v_old, velocity and affine matrix are together
-   projected on the fields that vanish at the wall, which leaves v (y^2/D)/(1 + y^2/D) of a single
-   point (D: h^2/4 quadratic, h^2/3 cubic).
+   AFLIP leaves v_old alone, too: with affine matrices, a vibration loses nothing, and a constraint
+   on v_old would create energy, see DECISIONS.md. PIC and APIC have no use for v_old.
 ------------------------------------------------------------------------- */
 
 #include "walls/mpm_mirror_nodes.h"

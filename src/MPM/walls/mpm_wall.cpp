@@ -93,7 +93,7 @@ bool MPMWall::region_moves() const
    Nodes inside hold only the points of a body in front of the surface that they reach. The body
    would creep into the wall, and stresses next to it would be wrong by an amount that depends on
    where the surface is in a cell. Lines hold the surface. Nodes hold material inside a region, as
-   in a grip, which has no surface there: see act_on_crossing().
+   in a grip, which has no surface there: see MPMCrossingLines.
 ------------------------------------------------------------------------- */
 
 bool MPMWall::acts_across() const
