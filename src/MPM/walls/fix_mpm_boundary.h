@@ -15,10 +15,10 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #ifndef LMP_FIX_MPM_BOUNDARY_H
 #define LMP_FIX_MPM_BOUNDARY_H
 
+#include "field/mpm_friction_heat.h"
 #include "field/mpm_line_ties.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
-#include "heat/mpm_friction_heat.h"
 #include "walls/mpm_contact_search.h"
 #include "walls/mpm_thin_regions.h"
 #include "walls/mpm_wall.h"
@@ -73,9 +73,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   /** Signed distance of x from the surface of the region, negative inside; far if it is larger.
    *  Only during a run. */
   double distance(const double *x, double far) const { return wall.surface->distance(x, far); }
-  /** Does this wall keep nodes of the field at the face xlo, an axis of symmetry, from moving along
-   *  x? */
-  bool holds_axis(const MPMField &field) const { return wall.holds_axis(field); }
+  bool holds_axis(const MPMField &field) const override { return wall.holds_axis(field); }
 
   /** Adds an impulse on a node [mass velocity] to the reaction that the wall counted for it in this
    *  step, with its moment and work. */

@@ -10,7 +10,7 @@
 #define LMP_MPM_BOUNDARY_OPTIONS_H
 
 #include "declare/option.h"
-#include "heat/mpm_friction_heat.h"
+#include "field/mpm_friction_heat.h"
 
 #include <string>
 

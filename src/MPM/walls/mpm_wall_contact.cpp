@@ -15,7 +15,7 @@
 #include "walls/mpm_wall_contact.h"
 
 #include "field/mpm_field.h"
-#include "field/mpm_physics.h"
+#include "field/mpm_forces.h"
 #include "walls/mpm_wall.h"
 #include "walls/mpm_wall_reaction.h"
 
@@ -55,7 +55,7 @@ double MPMWallContact::tangential_share(MPMContactState &state, double normal, d
 void MPMWallContact::find_water(MPMField &field, const std::vector<char> &near, double dt)
 {
   water.clear();
-  if (surface_force_of_physics(field, near, water))
+  if (pore_surface_force(field, near, water))
     for (double &w : water) w *= dt;
 }
 

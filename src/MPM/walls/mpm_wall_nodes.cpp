@@ -9,7 +9,7 @@
 #include "walls/mpm_wall_nodes.h"
 
 #include "field/mpm_field.h"
-#include "field/mpm_physics.h"
+#include "field/mpm_forces.h"
 #include "math_extra.h"
 #include "math_special.h"
 #include "region.h"
@@ -256,7 +256,7 @@ void MPMWallNodes::act_on_node(MPMWallContact &contact, MPMWallNode &node)
 void MPMWallNodes::find_water(MPMWallContact &contact, double dt) const
 {
   contact.clear_water();
-  if (!pressure_of_physics(field)) return;
+  if (!pore_pressure(field)) return;
   std::vector<char> near(field.grid.blocks.size(), 0);
   mirrors.mark_blocks(near);
   crossings.mark_blocks(near);

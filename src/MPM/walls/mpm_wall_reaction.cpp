@@ -9,8 +9,8 @@
 #include "walls/mpm_wall_reaction.h"
 
 #include "field/mpm_field.h"
+#include "field/mpm_friction_heat.h"
 #include "force.h"
-#include "heat/mpm_friction_heat.h"
 #include "math_extra.h"
 #include "walls/mpm_wall.h"
 
