@@ -16,8 +16,8 @@
 
 namespace LAMMPS_NS {
 
-/** A step as a list of named stages, which run in the order in which they were added. Each stage names the data that it
- *  reads and writes. */
+/** A step as a list of named stages, which run in the order in which they were added. Each stage
+ *  names the data that it reads and writes. */
 class MPMStageList {
  public:
   struct Stage {

@@ -6,12 +6,12 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// First values of affine matrices come from the velocities of the points.
-// A point that has not moved yet has no affine matrix, and those of points whose velocities were
-// changed by a command between runs belong to the motion before. With zero in their place, the first
-// step would take a part of the energy of a rotation (2 % for a disk of 10 cells). The matrix of a
-// point is the slope of the velocities around it, by least squares weighted with mass and shape
-// functions: with the mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
+// First values of affine matrices come from the velocities of the points. A point that has not
+// moved yet has no affine matrix, and those of points whose velocities were changed by a command
+// between runs belong to the motion before. With zero in their place, the first step would take a
+// part of the energy of a rotation (2 % for a disk of 10 cells). The matrix of a point is the slope
+// of the velocities around it, by least squares weighted with mass and shape functions: with the
+// mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
 //   C = [sum_i N_i m_i <(v - <v>_i) (x - <x>_i)>_i] [sum_i N_i m_i <(x - <x>_i) (x - <x>_i)>_i]^+.
 // It is exact for fields that vary linearly, also at the surface of a body. Directions in which the
 // points around have no extent get no slope (pseudo-inverse).
@@ -222,11 +222,11 @@ void MPMAffine::add_torques()
 }
 
 /* ----------------------------------------------------------------------
-   What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where < >
-   are means with the shape functions N_ip over the places r of nodes from the point, and F is that of the
-   total frame, else 1. <r r> is D in the moving least squares form; with other functions it depends on
-   where the point is in its cell. Bilinear modes (PolyPIC) have none, as products of coordinates are
-   orthogonal to linear functions.
+   What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where
+   < > are means with the shape functions N_ip over the places r of nodes from the point, and F is
+   that of the total frame, else 1. <r r> is D in the moving least squares form; with other
+   functions it depends on where the point is in its cell. Bilinear modes (PolyPIC) have none, as
+   products of coordinates are orthogonal to linear functions.
 ------------------------------------------------------------------------- */
 
 void MPMAffine::angular_momentum(int i, double L[3]) const

@@ -9,10 +9,10 @@
 // Points of fix mpm that have a size: boxes along the axes (gimp and cpgimp), and domains (cpdi and
 // cpdi2), see transfer/cpdi.h.
 //
-// Domains of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that move
-// with the nodes' velocities. Domains stay the same throughout a step. A tile has the neighbors of
-// its block on all sides, but only those blocks are active that corners can reach soon: whether
-// they still do is checked at the start of each step.
+// Domains of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that
+// move with the nodes' velocities. Domains stay the same throughout a step. A tile has the
+// neighbors of its block on all sides, but only those blocks are active that corners can reach
+// soon: whether they still do is checked at the start of each step.
 
 #include "field/mpm_cpdi.h"
 
@@ -52,10 +52,10 @@ double LAMMPS_NS::half_size(const MPMField &field, int i)
 }
 
 /* ----------------------------------------------------------------------
-   Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous one
-   follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along axis d
-   those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and rotation this is
-   F_dd l_d, and a cube that just turns keeps its size.
+   Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous
+   one follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along
+   axis d those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and
+   rotation this is F_dd l_d, and a cube that just turns keeps its size.
 ------------------------------------------------------------------------- */
 
 void MPMBoxes::update()
@@ -84,8 +84,9 @@ void MPMBoxes::size_of(int i, double *size) const
 }
 
 /* ----------------------------------------------------------------------
-   a ring has its initial size at x/F_zz, which is its initial radius until it moves only: with stress
-   apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any more
+   a ring has its initial size at x/F_zz, which is its initial radius until it moves only: with
+   stress apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any
+   more
 ------------------------------------------------------------------------- */
 
 bool MPMBoxes::is_too_large(int i) const

@@ -179,9 +179,10 @@ void MPMField::find_materials()
 }
 
 /* ----------------------------------------------------------------------
-   Velocities of nodes that were mapped back have contact decided by those of the step, and no impulse of their
-   own. When points moved with them, a tool without friction that was drawn through a body felt nearly twice its
-   force, and a cone that is a separating wall 5 % too little at 1.2 cells of depth
+   Velocities of nodes that were mapped back have contact decided by those of the step, and no
+   impulse of their own. When points moved with them, a tool without friction that was drawn through
+   a body felt nearly twice its force, and a cone that is a separating wall 5 % too little at 1.2
+   cells of depth
 ------------------------------------------------------------------------- */
 
 static bool is_in_contact(const MPMField &field)
@@ -194,8 +195,8 @@ static bool is_in_contact(const MPMField &field)
 
 /* ----------------------------------------------------------------------
    Long records of nodes keep forces and old velocities apart: the ledger and some node actions need
-   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves domains with
-   velocities that were mapped back, knows long records only
+   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves
+   domains with velocities that were mapped back, knows long records only
 ------------------------------------------------------------------------- */
 
 void MPMField::choose_kernels()
@@ -305,8 +306,8 @@ PointRows MPMField::rows() const
 
 PointRows MPMField::rows_at_rest(double *values, const double *weights)
 {
-  // a value of a node that is not finite moves points even in no time, and the next transfer would look for
-  // their nodes; they stay where they are until the guard has seen the velocity
+  // a value of a node that is not finite moves points even in no time, and the next transfer would
+  // look for their nodes; they stay where they are until the guard has seen the velocity
 
   work.places.resize(3 * (std::size_t) atom->nmax);
   PointRows r = rows();

@@ -49,8 +49,8 @@ class MPMWatch;
 class MPMRows;
 struct MPMPoints;
 
-/** One velocity field on one lattice: options, points, nodes, and an object for each feature that only
- *  some options need. */
+/** One velocity field on one lattice: options, points, nodes, and an object for each feature that
+ *  only some options need. */
 class MPMField : protected Pointers {
   MPMFieldOptions chosen;
 
@@ -97,7 +97,8 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPM_NS::Batch> batch;
 
   MPMLedger ledger;
-  /** [n][dim] gradients on the lattice that other physics keep for points; set by their init_physics(). */
+  /** [n][dim] gradients on the lattice that other physics keep for points; set by their
+   *  init_physics(). */
   std::vector<const MPMRows *> slopes;
   /** Physics that change how points strain; set by their init_physics(). */
   std::vector<MPMStretch *> stretching;
@@ -140,7 +141,8 @@ class MPMField : protected Pointers {
   /** The field of a fix mpm; null: the fix does not exist or has another style. */
   static MPMField *find(class LAMMPS *, const std::string &id);
 
-  /** Start of a run, before anything reads the options: choose the form of the stress if the input leaves it open. */
+  /** Start of a run, before anything reads the options: choose the form of the stress if the input
+   *  leaves it open. */
   void choose_stress(const std::vector<MPMPhysics *> &);
   /** Start of a run. */
   void init(MPMPlan *);
@@ -162,13 +164,15 @@ class MPMField : protected Pointers {
 
   /** Duration of a step of the cycle. */
   double step_dt() const;
-  /** Duration of the step before, which has moved the points to where they are; of this step, if there was none. */
+  /** Duration of the step before, which has moved the points to where they are; of this step, if
+   *  there was none. */
   double step_dt_before() const { return last_dt > 0.0 ? last_dt : step_dt(); }
   /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
   int steps_to_next() const;
   /** The arrays of points as transfers read them. */
   MPM_NS::PointRows rows() const;
-  /** Rows for transfers of other values and weights, in which points do not move (the time step is zero). */
+  /** Rows for transfers of other values and weights, in which points do not move (the time step is
+   *  zero). */
   MPM_NS::PointRows rows_at_rest(double *values, const double *weights);
   /** Data for transfers, with the duration of a step of the cycle or another one. */
   MPM_NS::TransferStep step_data() const { return step_data(step_dt()); }
@@ -189,18 +193,20 @@ class MPMField : protected Pointers {
   /** The run continues after a step of this duration. */
   void continue_after(double dt) { last_dt = dt; }
 
-  /** From now on in this run, nodes keep the velocities that they had before the momentum equation: for a node
-   *  action or physics that reads them. To be called by init_action() or init_physics(). */
+  /** From now on in this run, nodes keep the velocities that they had before the momentum equation:
+   *  for a node action or physics that reads them. To be called by init_action() or
+   *  init_physics(). */
   void keep_old_velocities() { keep_old = true; }
   bool keeps_old_velocities() const { return keep_old; }
   /** The same, or no longer, until the blocks are renewed. To be called by blocks_found(). */
   void keep_old_velocities_now(bool yes);
   bool keeps_old_velocities_now() const { return keep_old_now; }
 
-  /** [n][3] positions of the end of the step, where points move late: valid from the stage that finds them to the
-   *  one that moves the points. */
+  /** [n][3] positions of the end of the step, where points move late: valid from the stage that
+   *  finds them to the one that moves the points. */
   std::vector<double> &positions_to_come() { return late_positions; }
-  /** Has physics already called for the motion of this step, which then only waits for the positions? */
+  /** Has physics already called for the motion of this step, which then only waits for the
+   *  positions? */
   bool has_moved() const { return motion_is_done; }
   void set_moved(bool yes) { motion_is_done = yes; }
 

@@ -56,7 +56,8 @@ void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &c
 
 void MPMGuard::check_positions()
 {
-  // nothing can be done with a point whose position is not finite: unless it is deleted, it ends the run as one outside the box
+  // nothing can be done with a point whose position is not finite: unless it is deleted, it ends
+  // the run as one outside the box
 
   each_point(field, [&](const MPMPointMap::Run &, int i) {
     const double *x = atom->x[i];

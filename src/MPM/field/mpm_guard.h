@@ -14,7 +14,8 @@
 
 namespace LAMMPS_NS {
 
-/** Treatment of points of a field that become bad or fail during a run (keywords bad and failed). */
+/** Treatment of points of a field that become bad or fail during a run (keywords bad and
+ *  failed). */
 class MPMGuard : protected Pointers {
  public:
   /** Sums over the points deleted so far on all ranks, as in restart files. */
@@ -37,16 +38,17 @@ class MPMGuard : protected Pointers {
   void point_has_failed(int i) { failed_points.push_back(atom->tag[i]); }
   /** Checks all positions: the kernels must never see one that is not finite. */
   void check_positions();
-  /** End of a step: counts bad points and requests an exchange, at which bad or failed points are deleted. */
+  /** End of a step: counts bad points and requests an exchange, at which bad or failed points are
+   *  deleted. */
   void handle_bad_points();
-  /** Called before an exchange, which would silently lose points outside of fixed faces: these points are bad.
-   *  Deletes the points that are to be deleted. */
+  /** Called before an exchange, which would silently lose points outside of fixed faces: these
+   *  points are bad. Deletes the points that are to be deleted. */
   void check_inside_box();
-  /** Reports which other atoms (grains) the exchange will lose, unless thermo_modify lost ignores them.
-   *  Collective. */
+  /** Reports which other atoms (grains) the exchange will lose, unless thermo_modify lost ignores
+   *  them. Collective. */
   void tell_lost_atoms() const;
-  /** Wraps points back that have moved by more than a period of the box. LAMMPS subtracts one period when
-   *  neighbor lists are made, which may be rare. */
+  /** Wraps points back that have moved by more than a period of the box. LAMMPS subtracts one
+   *  period when neighbor lists are made, which may be rare. */
   void wrap_far_points();
 
   /** May points of the field be deleted? */
@@ -59,8 +61,8 @@ class MPMGuard : protected Pointers {
   /** Number of bad points so far. */
   bigint nbad() const { return nbad_total; }
 
-  /** Points that fixes added to the field minus points that they removed, on this rank. A fix that counts
-   *  points uses it to detect points that came or went for other reasons. */
+  /** Points that fixes added to the field minus points that they removed, on this rank. A fix that
+   *  counts points uses it to detect points that came or went for other reasons. */
   double brought = 0.0;
 
  private:

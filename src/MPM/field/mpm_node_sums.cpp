@@ -95,7 +95,8 @@ void LAMMPS_NS::map_surface(MPMField &field, const std::vector<char> &near,
 
 /* ---------------------------------------------------------------------- */
 
-/** The B-spline of an order around 0 at x (power: its order), or its integral up to x (power: one more), as a sum of truncated powers. */
+/** The B-spline of an order around 0 at x (power: its order), or its integral up to x (power: one
+ *  more), as a sum of truncated powers. */
 static double spline_sum(int order, int power, double x)
 {
   double sum = 0.0, binomial = 1.0, factorial = 1.0;

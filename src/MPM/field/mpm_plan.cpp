@@ -216,8 +216,8 @@ void MPMPlan::start()
 }
 
 /* ----------------------------------------------------------------------
-   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts come
-   before the step. Without keyword plan, stages of the same name are one entry
+   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts
+   come before the step. Without keyword plan, stages of the same name are one entry
 ------------------------------------------------------------------------- */
 
 std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) const

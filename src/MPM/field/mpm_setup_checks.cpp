@@ -78,7 +78,8 @@ void MPMSetupChecks::forgotten_points()
   field.guard->expect_points(warn_of_forgotten_points(lmp, "mpm", "have no stress"));
 }
 
-/** Poisson ratio of new points, by the tangent at rest; 0 for fluids, and if the law has no tangent of its own. */
+/** Poisson ratio of new points, by the tangent at rest; 0 for fluids, and if the law has no tangent
+ *  of its own. */
 static double poisson_ratio(const Material &material)
 {
   if (!material.is_solid() || !material.has_tangent()) return 0.0;
@@ -119,12 +120,12 @@ void MPMSetupChecks::locking()
 }
 
 /* ----------------------------------------------------------------------
-   In the total frame points stay at their positions in their cells, even where round-off decides about strain
-   and stress. Linear and Bernstein functions have gradients that jump at faces of cells. Those of quadratic
-   functions do not, but near the end of one (grad N)^2/N does not vanish. Forces have one factor grad N, and
-   the strain from new velocities has another one: a node that only this point reaches, with
-   the mass m_p N, changes its strain by an amount that does not depend on N, unless N is zero. Only
-   the outermost points have such nodes.
+   In the total frame points stay at their positions in their cells, even where round-off decides
+   about strain and stress. Linear and Bernstein functions have gradients that jump at faces of
+   cells. Those of quadratic functions do not, but near the end of one (grad N)^2/N does not vanish.
+   Forces have one factor grad N, and the strain from new velocities has another one: a node that
+   only this point reaches, with the mass m_p N, changes its strain by an amount that does not
+   depend on N, unless N is zero. Only the outermost points have such nodes.
 ------------------------------------------------------------------------- */
 
 void MPMSetupChecks::places()
@@ -240,7 +241,8 @@ void MPMSetupChecks::points()
     if (all[kind]) error->all(FLERR, refusals[kind], all[kind], example_all[kind], field.id());
 }
 
-/** Warns of points that create_points made before the fix: they have areas instead of volumes of rings, the same at all radii. */
+/** Warns of points that create_points made before the fix: they have areas instead of volumes of
+ *  rings, the same at all radii. */
 void MPMSetupChecks::rings()
 {
   if (!field.options.axisymmetric) return;
@@ -353,8 +355,8 @@ MPMSetupChecks::Lists MPMSetupChecks::lists() const
 }
 
 /* ----------------------------------------------------------------------
-   Fixes that are made for atoms: those that set forces affect only external ones, as forces of stress never
-   leave the lattice, and thermostats treat the motion of points as heat
+   Fixes that are made for atoms: those that set forces affect only external ones, as forces of
+   stress never leave the lattice, and thermostats treat the motion of points as heat
 ------------------------------------------------------------------------- */
 
 void MPMSetupChecks::fixes()
@@ -382,8 +384,8 @@ void MPMSetupChecks::fixes()
 }
 
 /* ----------------------------------------------------------------------
-   With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A skin counts as small for
-   grains only if it is a small part of their size
+   With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A skin
+   counts as small for grains only if it is a small part of their size
 ------------------------------------------------------------------------- */
 
 void MPMSetupChecks::skin()
@@ -403,9 +405,10 @@ void MPMSetupChecks::skin()
 }
 
 /* ----------------------------------------------------------------------
-   Blocks of nodes and the order of points work with a large skin, but lists and ghosts grow with the cube
-   of skin and cutoff. Measured for two touching blocks, cutoff 0.55 and node spacing 1: with a skin of 0.5
-   0.7 pairs per atom; with 2, 19 pairs and 2.2 times the time of the run; with 4, 180 pairs and 6.8 times
+   Blocks of nodes and the order of points work with a large skin, but lists and ghosts grow with
+   the cube of skin and cutoff. Measured for two touching blocks, cutoff 0.55 and node spacing 1:
+   with a skin of 0.5 0.7 pairs per atom; with 2, 19 pairs and 2.2 times the time of the run; with
+   4, 180 pairs and 6.8 times
 ------------------------------------------------------------------------- */
 
 void MPMSetupChecks::lists_of_pairs()
@@ -443,9 +446,9 @@ void MPMSetupChecks::lists_of_pairs()
 }
 
 /* ----------------------------------------------------------------------
-   Pair style granular takes its cutoffs from the radii, but restart files lack the data that it needs for this:
-   with the settings of a file alone, cutoffs are undefined, mostly 0. Then there are no ghosts,
-   and contacts across ranks and periodic faces are missed silently.
+   Pair style granular takes its cutoffs from the radii, but restart files lack the data that it
+   needs for this: with the settings of a file alone, cutoffs are undefined, mostly 0. Then there
+   are no ghosts, and contacts across ranks and periodic faces are missed silently.
 ------------------------------------------------------------------------- */
 
 static void check_cutoffs(LAMMPS *lmp)
@@ -473,8 +476,8 @@ static void check_cutoffs(LAMMPS *lmp)
 }
 
 /* ----------------------------------------------------------------------
-   Grains see points by their radius. LAMMPS gives no error for a radius of zero, which leaves no force
-   or one between centers, nor for one of 0.5, its default, in other units.
+   Grains see points by their radius. LAMMPS gives no error for a radius of zero, which leaves no
+   force or one between centers, nor for one of 0.5, its default, in other units.
 ------------------------------------------------------------------------- */
 
 void MPMSetupChecks::radii()

@@ -16,8 +16,8 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Checks of the input and of the points of a field at the start of each run. Each is one function, and stops with an
- *  error or warns. */
+/** Checks of the input and of the points of a field at the start of each run. Each is one function,
+ *  and stops with an error or warns. */
 class MPMSetupChecks : protected Pointers {
  public:
   MPMSetupChecks(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
@@ -29,7 +29,8 @@ class MPMSetupChecks : protected Pointers {
     PLACES,    ///< the frame knows where points are on the lattice
     LISTS      ///< only with a pair style: there are neighbor lists
   };
-  /** Makes the checks of one group. first: also those that are of all fields together. Collective. */
+  /** Makes the checks of one group. first: also those that are of all fields together.
+   *  Collective. */
   void run(When, bool first);
 
   /** Settings that decide when neighbor lists are made, and with this the order of sums. */
@@ -42,8 +43,8 @@ class MPMSetupChecks : protected Pointers {
   /** Settings of the restart file that the next run continues from. */
   std::optional<Lists> lists_of_file;
 
-  /** Stops with an error if points that meet grains have no radius or one that is too large, or are rings around an
-   *  axis of symmetry. */
+  /** Stops with an error if points that meet grains have no radius or one that is too large, or are
+   *  rings around an axis of symmetry. */
   void radii();
 
  private:

@@ -14,8 +14,8 @@
 
 namespace LAMMPS_NS {
 
-/** Data that a stage of the step reads, or writes. plan yes prints them, and test_plan checks that a stage writes
- *  nothing else. */
+/** Data that a stage of the step reads, or writes. plan yes prints them, and test_plan checks that
+ *  a stage writes nothing else. */
 class MPMStageData {
  public:
   enum Datum {

@@ -107,7 +107,8 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   return smallest;
 }
 
-/** Notes the largest change of volume of the points of a batch in this step; inverted ones are errors anyway. */
+/** Notes the largest change of volume of the points of a batch in this step; inverted ones are
+ *  errors anyway. */
 void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
 {
   double most = 0.0;
@@ -150,12 +151,12 @@ void MPMTimeLimit::check()
 
 /* ----------------------------------------------------------------------
    largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
-   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from velocities that
-   the same stress has just changed (USL without affine matrix) reduces it most. With points of finite size it
-   is proportional to the square root of their half size s in node spacings, as
-   the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s). Domains (CPDI)
-   do not depend on size. Linear functions without any limit have warnings of their own, see
-   mpm_stage_light.cpp and share_of_thin_nodes().
+   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from
+   velocities that the same stress has just changed (USL without affine matrix) reduces it most.
+   With points of finite size it is proportional to the square root of their half size s in node
+   spacings, as the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s).
+   Domains (CPDI) do not depend on size. Linear functions without any limit have warnings of their
+   own, see mpm_stage_light.cpp and share_of_thin_nodes().
 ------------------------------------------------------------------------- */
 
 double MPMTimeLimit::stable_share(double size) const
@@ -187,10 +188,11 @@ double MPMTimeLimit::stable_share(double size) const
 }
 
 /* ----------------------------------------------------------------------
-   The total frame has no remedy for light nodes, but its lattice does not change: the largest stable time step
-   in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and the mass m = sum_p m_p N_ip is
-   stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and give 1.6 times as much with affine
-   matrices. Bernstein functions of the middle of a cell begin like linear ones.
+   The total frame has no remedy for light nodes, but its lattice does not change: the largest
+   stable time step in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and the
+   mass m = sum_p m_p N_ip is stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and give
+   1.6 times as much with affine matrices. Bernstein functions of the middle of a cell begin like
+   linear ones.
 ------------------------------------------------------------------------- */
 
 double MPMTimeLimit::share_of_thin_nodes() const
@@ -254,10 +256,10 @@ void MPMTimeLimit::warn() const
 }
 
 /* ----------------------------------------------------------------------
-   Warns if nobody has set the time step, and the default of the units is that of atoms: for most bodies so small
-   that nothing moves. If a pair style indicates atoms or grains, it may be right, unless it is tiny.
-   A time step that was set for other reasons than these points (grains, finite elements), or by fix mpm/dt, may
-   have to be small
+   Warns if nobody has set the time step, and the default of the units is that of atoms: for most
+   bodies so small that nothing moves. If a pair style indicates atoms or grains, it may be right,
+   unless it is tiny. A time step that was set for other reasons than these points (grains, finite
+   elements), or by fix mpm/dt, may have to be small
 ------------------------------------------------------------------------- */
 
 void MPMTimeLimit::warn_of_small() const

@@ -144,8 +144,8 @@ void FixMPM::init()
   for (auto *other : modify->get_fix_list())
     if (other != this && other->time_integrate) time_integrate = 0;
 
-  // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none. It would
-  // warn of this one, too, as soon as there is a pair style
+  // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none. It
+  // would warn of this one, too, as soon as there is a pair style
 
   const double nothing = 1.0e-8 * field->lattice.h;
   if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
@@ -178,7 +178,8 @@ void FixMPM::check_fields() const
 }
 
 /* ----------------------------------------------------------------------
-   Points that touch something must be in the neighbor lists; none does where the only others are grains in a fluid
+   Points that touch something must be in the neighbor lists; none does where the only others are
+   grains in a fluid
 ------------------------------------------------------------------------- */
 
 void FixMPM::check_include() const
@@ -269,8 +270,9 @@ void FixMPM::pre_neighbor()
 }
 
 /* ----------------------------------------------------------------------
-   LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include). Nothing exerts
-   torques on the others, so that these stay zero until atoms change their places in memory
+   LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include).
+   Nothing exerts torques on the others, so that these stay zero until atoms change their places in
+   memory
 ------------------------------------------------------------------------- */
 
 void FixMPM::pre_force(int)
@@ -348,8 +350,8 @@ double FixMPM::memory_usage()
 
 /* ----------------------------------------------------------------------
    totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
-   neighbor lists are made, the options that a run must go on with, the duration of the last step, and
-   what else the run has
+   neighbor lists are made, the options that a run must go on with, the duration of the last step,
+   and what else the run has
 ------------------------------------------------------------------------- */
 
 namespace {
@@ -360,7 +362,7 @@ struct Saved {
   MPMAffine::Velocities velocities;
   MPMSetupChecks::Lists lists;
   int waited, nstart, ntext;    // nstart reals and ntext characters follow,
-  int more;    // and then, of what files from before lack, 1: duration of the last step, 2: and lines
+  int more;    // and then, unless the file is old, 1: duration of the last step, 2: and lines
 };
 }    // namespace
 

@@ -24,8 +24,8 @@ namespace LAMMPS_NS {
 class MPMField;
 class MPMPlan;
 
-/** Fix mpm: one velocity field on one lattice, which moves the material points of its group. It is the
- *  interface of LAMMPS to an MPMField.
+/** Fix mpm: one velocity field on one lattice, which moves the material points of its group. It is
+ *  the interface of LAMMPS to an MPMField.
  *
  *  The whole step is done in initial_integrate(): at this time atom->f is complete for any order of
  *  fixes, and at output all state is on one time level. The first instance drives all of them.

@@ -13,7 +13,6 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_cpdi.h"
-#include "field/mpm_every.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
@@ -35,8 +34,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
-   With scheme usl and without light nodes the motion of this step is that of the material: stress is
-   made at once, while points are in the cache
+   With scheme usl and without light nodes the motion of this step is that of the material: stress
+   is made at once, while points are in the cache
 ------------------------------------------------------------------------- */
 
 void MPMStages::nodes_to_points(MPMField &field, Strain strain, const UseGradients &use)
@@ -88,7 +87,8 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain, const UseGradien
   }
 }
 
-/** Nothing that comes between AFTER_SOLVE and the motion may change velocities of nodes, or look at the state of points. */
+/** Nothing that comes between AFTER_SOLVE and the motion may change velocities of nodes, or look at
+ *  the state of points. */
 bool MPMStages::can_move_first(const MPMField &field)
 {
   const auto &o = field.options;
@@ -112,9 +112,10 @@ void MPMStages::move_points(MPMField &field)
 }
 
 /* ----------------------------------------------------------------------
-   With MUSL and USAVG, points and the corners of domains move with the velocities that were mapped back, which
-   strain takes, too. What moves apart from strain is not held by stress, and under tension goes away from
-   where it belongs. In the total frame forces do not depend on where points are
+   With MUSL and USAVG, points and the corners of domains move with the velocities that were mapped
+   back, which strain takes, too. What moves apart from strain is not held by stress, and under
+   tension goes away from where it belongs. In the total frame forces do not depend on where points
+   are
 ------------------------------------------------------------------------- */
 
 void MPMStages::strain_from_nodes(MPMField &field, double motion_dt, double share,
@@ -166,5 +167,4 @@ void MPMStages::checks(MPMField &field)
   field.frame->end_of_step();
   field.time_limit->check();
   field.count_step();
-  if (field.every) field.every->finish();
 }

@@ -6,11 +6,12 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// The four schemes: each is one list of stages, in the order of the book (V.P. Nguyen, A. de Vaucorbeil,
-// S. Bordas, The Material Point Method, Springer 2023, chapter 2). Stages that no field needs are not in
-// the list of a run.
+// The four schemes: each is one list of stages, in the order of the book (V.P. Nguyen, A. de
+// Vaucorbeil, S. Bordas, The Material Point Method, Springer 2023, chapter 2). Stages that no field
+// needs are not in the list of a run.
 
 #include "field/mpm_affine.h"
+#include "field/mpm_every.h"
 #include "field/mpm_field.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_plan.h"
@@ -41,6 +42,10 @@ template <bool (MPMFieldOptions::*OPTION)() const> bool with(Field field)
 bool has_ledger(Field field)
 {
   return field.ledger.on;
+}
+bool takes_long_steps(Field field)
+{
+  return field.options.every > 1;
 }
 bool takes_torques(Field field)
 {
@@ -89,8 +94,9 @@ void gradients_with_material(MPMPlan &plan, double share, double shift)
   plan.each("gradients with material", MOTION + STATE + AT_NODES, STATE + NODES_AND_OWN, strain);
 }
 
-/** Strain of the motion of the step before: that has brought the points to where they are. Where the time
- *  step changes, the deformation gradient would not be that of the motion with another duration. */
+/** Strain of the motion of the step before: that has brought the points to where they are. Where
+ *  the time step changes, the deformation gradient would not be that of the motion with another
+ *  duration. */
 void gradients_of_last_motion(MPMPlan &plan, double share, double shift)
 {
   const auto strain = [=](MPMField &field) {
@@ -204,8 +210,8 @@ void solve_and_move(MPMPlan &plan)
   add_light_nodes(plan, false);
 }
 
-/** The velocities of the points once more to the nodes, at the old positions. An affine matrix is that of
- *  this step, never the old one. */
+/** The velocities of the points once more to the nodes, at the old positions. An affine matrix is
+ *  that of this step, never the old one. */
 void map_back(MPMPlan &plan)
 {
   points_to_nodes(plan, "velocities back to nodes", MOMENTUM);
@@ -227,6 +233,11 @@ void end(MPMPlan &plan)
   plan.each("fracture watch", STATE + Data{Data::POSITION, Data::BLOCKS}, {Data::OWN}, look,
             with<&Options::watches_fracture>);
   plan.each("checks", MOTION + STATE + AT_NODES, {Data::OWN}, checks);
+  const auto finish = [](MPMField &field) {
+    field.every->finish();
+  };
+  plan.each("end of a long step", MOTION + Data{Data::OWN}, {Data::POSITION, Data::OWN}, finish,
+            takes_long_steps);
 }
 
 }    // namespace
