@@ -576,7 +576,7 @@ void MPMMixture::correct_drag_at_walls()
       at_water[d] += change * normal[d];
       node.impulse[d] -= reaction[d];
     }
-    push.wall->bear(*soil.field, node.soil, reaction);
+    push.wall->add_reaction(*soil.field, node.soil, reaction);
   }
 }
 
