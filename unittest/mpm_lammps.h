@@ -27,7 +27,7 @@
 #include "force.h"
 #include "input.h"
 #include "lammps.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "modify.h"
 #include "step/fix_mpm.h"

@@ -44,7 +44,6 @@ EXCEPTIONS = {
     ("implicit/fix_mpm_relax.cpp", "heat"): "written before there were rooms",
     ("implicit/fix_mpm_relax.cpp", "pore"): "written before there were rooms",
     ("implicit/fix_mpm_relax.cpp", "refine"): "written before there were rooms",
-    ("law/law.h", "material"): "written before there were rooms",
     ("loads/fix_mpm_emit.cpp", "flow"): "written before there were rooms",
     ("refine/fix_mpm_refine.cpp", "heat"): "written before there were rooms",
     ("step/fix_mpm.cpp", "grains"): "written before there were rooms",

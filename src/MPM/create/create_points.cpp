@@ -384,7 +384,8 @@ int CreatePoints::divisions(const bigint *s) const
   return (int) n;
 }
 
-/** Visits the center of each part of a divided site that is in the region, x fastest. Returns the number of all parts. */
+/** Visits the center of each part of a divided site that is in the region, x fastest. Returns the
+ *  number of all parts. */
 int CreatePoints::for_parts(const bigint *s,
                             const std::function<void(const double *x)> &visit) const
 {
@@ -615,15 +616,15 @@ void CreatePoints::check_outside()
 }
 
 /* ----------------------------------------------------------------------
-   refuse, or report, new points close to material points that exist
-   refuse, or report, new points close to existing material points
-   An existing point is closer than half a spacing along all axes to one site only, that of the cell
-   of the site lattice that it is in: no other points need to be looked at.
-   A body whose points have a share of the volume is meant to be in the same place as one in another field.
+   refuse, or report, new points close to material points that exist refuse, or report, new points
+   close to existing material points An existing point is closer than half a spacing along all axes
+   to one site only, that of the cell of the site lattice that it is in: no other points need to be
+   looked at. A body whose points have a share of the volume is meant to be in the same place as one
+   in another field.
 ------------------------------------------------------------------------- */
 
-/** Does atom i belong to the body of the new points? It does if it is in a field that they are in or, where they are in
- *  no field yet, if it has their type. */
+/** Does atom i belong to the body of the new points? It does if it is in a field that they are in
+ *  or, where they are in no field yet, if it has their type. */
 bool CreatePoints::same_body(int i) const
 {
   const int bits = group_bits | 1;    // 1: all
@@ -742,8 +743,8 @@ bigint CreatePoints::make_points()
   bigint share;
   for (bigint base = 0; base < n; base += share * comm->nprocs) {
 
-    // my share of the next sites. It is small: freed memory of the size of arrays would make the C library
-    // keep those in its heap, where growing arrays leave holes
+    // my share of the next sites. It is small: freed memory of the size of arrays would make the C
+    // library keep those in its heap, where growing arrays leave holes
 
     share = std::max(SHARE, base / (PART * comm->nprocs));
     made.clear();
@@ -1010,8 +1011,8 @@ void CreatePoints::check_periodic(const Mesh &mesh, const char *file) const
 }
 
 /* ----------------------------------------------------------------------
-   move points into the box, which may be from one of the next periodic images: a point that is farther away is a
-   mistake, and LAMMPS would move it image by image
+   move points into the box, which may be from one of the next periodic images: a point that is
+   farther away is a mistake, and LAMMPS would move it image by image
 ------------------------------------------------------------------------- */
 
 void CreatePoints::wrap_sites(const char *file, const char *what)

@@ -77,8 +77,9 @@ struct CreatePointsMeshOptions {
   MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius, bool nodes);
 };
 
-/** Command create_points: fills a region or the bodies of an image with material points on a regular
- *  lattice of sites, or makes a point at each node or for each element of a mesh, or at each row of a table.
+/** Command create_points: fills a region or the bodies of an image with material points on a
+ *  regular lattice of sites, or makes a point at each node or for each element of a mesh, or at
+ *  each row of a table.
  *
  *  Sites are at origin + (s + 1/2) spacing for integer s. Their numbering, the test against the
  *  region, the jitter, and the IDs are functions of the site alone. Ranks take equal shares of the

@@ -302,9 +302,9 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
   if (points.empty()) fail(fmt::format("has no points of type {}", given.part));
 }
 
-/** Warns of points that are the same except for round-off: they come from two files, or were written twice with different
- *  digits. Positions are sorted into cells of NEAR edges of a point, twice, with cells shifted by half of their width, so that
- *  hardly any pair is missed. */
+/** Warns of points that are the same except for round-off: they come from two files, or were
+ *  written twice with different digits. Positions are sorted into cells of NEAR edges of a point,
+ *  twice, with cells shifted by half of their width, so that hardly any pair is missed. */
 void CreatePointsTable::warn_of_near_points(const std::string &file) const
 {
   double volume = 0.0;
@@ -332,7 +332,8 @@ void CreatePointsTable::warn_of_near_points(const std::string &file) const
                  file, near.size(), NEAR, x[0], x[1], x[2]);
 }
 
-/** Moves points into the box from the next periodic images; refuses IDs and positions that occur twice. */
+/** Moves points into the box from the next periodic images; refuses IDs and positions that occur
+ *  twice. */
 void CreatePointsTable::check_points(const std::string &file)
 {
   const auto fail = [&](const std::string &what) {

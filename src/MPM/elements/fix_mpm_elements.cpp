@@ -26,7 +26,7 @@
 #include "force.h"
 #include "group.h"
 #include "law/axes.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "material/plane_stress.h"
 #include "math/matrix.h"
@@ -71,7 +71,8 @@ static bool bends(const double *row)
 // axes must have at least this part of their length along an element
 static constexpr double LEAST_AXIS = 0.1;
 
-// bending: error of a slope relative to the effect of the curvature, and share of triangles from which on a warning is due
+// bending: error of a slope relative to the effect of the curvature, and share of triangles from
+// which on a warning is due
 static constexpr double ROUGH = 0.05, MANY_ROUGH = 0.1;
 
 static const ElementRule &rule_of(const double *row)
@@ -579,8 +580,8 @@ void FixMPMElements::check_fields() const
 }
 
 /* ----------------------------------------------------------------------
-   an upper bound for the distance of nodes of an element, with room for more deformation: the Frobenius
-   norm of F is sqrt(dim) without deformation
+   an upper bound for the distance of nodes of an element, with room for more deformation: the
+   Frobenius norm of F is sqrt(dim) without deformation
 ------------------------------------------------------------------------- */
 
 double FixMPMElements::largest_extent() const
@@ -742,8 +743,8 @@ int FixMPMElements::nodes_of(const double *r) const
 
 /* ----------------------------------------------------------------------
    kinematics of an element: F = sum_k x_k grad_0 N_k, or the stored F if the element has not moved.
-   F-bar (E.A. de Souza Neto et al., Int. J. Solids Struct. 33 (1996) 3277) replaces the J of each point by
-   the mean of J over the element, in 2d by scaling the plane
+   F-bar (E.A. de Souza Neto et al., Int. J. Solids Struct. 33 (1996) 3277) replaces the J of each
+   point by the mean of J over the element, in 2d by scaling the plane
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
@@ -843,7 +844,8 @@ void FixMPMElements::load(Work &w, std::size_t e, bool moved) const
   w.n += rule.npoint;
 }
 
-/** Finds axes for the motion along a surface or a line: those of the material, projected on the surface, if it has any. */
+/** Finds axes for the motion along a surface or a line: those of the material, projected on the
+ *  surface, if it has any. */
 void FixMPMElements::find_frame(const double (*g)[3], double (*frame)[3]) const
 {
   if (!has_axes) return plane_stress->make_frame(g[1], g[along], frame);
@@ -893,8 +895,8 @@ void FixMPMElements::find_stretches(Work &w)
 }
 
 /* ----------------------------------------------------------------------
-   stress and history of the points in the batch. At the start of a run, nothing has moved since the last
-   evaluation of the stress, unless a command has moved points
+   stress and history of the points in the batch. At the start of a run, nothing has moved since the
+   last evaluation of the stress, unless a command has moved points
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::material_update(Work &w, bool starting)
@@ -941,10 +943,10 @@ void FixMPMElements::map_gradients(Work &w)
 }
 
 /* ----------------------------------------------------------------------
-   f_k = -sum_q V0 tau grad N_k. With F-bar the power of the stress is tau : (L + (mean - tr L)/dim I)
-   where mean is the rate of the mean of J. In the force, the mean of the pressure acts on the gradients of
-   the volume of the element and replaces the pressure of each point: force and strain are consistent, and
-   an elastic body keeps its energy
+   f_k = -sum_q V0 tau grad N_k. With F-bar the power of the stress is tau : (L + (mean - tr L)/dim
+   I) where mean is the rate of the mean of J. In the force, the mean of the pressure acts on the
+   gradients of the volume of the element and replaces the pressure of each point: force and strain
+   are consistent, and an elastic body keeps its energy
 ------------------------------------------------------------------------- */
 
 /** Adds -f_k to f, in units of stress times volume over length. */
@@ -1033,8 +1035,8 @@ void FixMPMElements::set_pressure(MPMElementsPressure *who, bool closed)
 }
 
 /* ----------------------------------------------------------------------
-   visits triangles (for a quadrangle, both ways to divide it, with half a weight each) or lines: the positions of their
-   nodes, without jumps at periodic faces
+   visits triangles (for a quadrangle, both ways to divide it, with half a weight each) or lines:
+   the positions of their nodes, without jumps at periodic faces
 ------------------------------------------------------------------------- */
 
 template <class Visit> void FixMPMElements::for_faces(Visit visit) const
@@ -1094,7 +1096,8 @@ std::vector<FixMPMElements::NumberedFace> FixMPMElements::all_faces() const
   return gather(mine);
 }
 
-/** Visits edges (in 2d: corners): the positions of their nodes, relative to the first one, and the edges. */
+/** Visits edges (in 2d: corners): the positions of their nodes, relative to the first one, and the
+ *  edges. */
 template <class Visit> void FixMPMElements::for_curved_edges(Visit visit) const
 {
   for (std::size_t e = 0; e < nodes.size() && curved; e++) {
@@ -1123,8 +1126,9 @@ double FixMPMElements::widest_gap() const
 }
 
 /* ----------------------------------------------------------------------
-   p times the gradient of the enclosed volume: a third (in 2d half) of the area for each node, and the gradient of the volume
-   between the triangles and a curved surface, so that the work is p dV exactly
+   p times the gradient of the enclosed volume: a third (in 2d half) of the area for each node, and
+   the gradient of the volume between the triangles and a curved surface, so that the work is p dV
+   exactly
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::add_pressure(bool starting)
@@ -1257,8 +1261,8 @@ void FixMPMElements::add_bending()
   });
 }
 
-/** Largest frequency of free nodes, by the theorem of Gerschgorin: its square is at most the largest sum of a row of the stiffness
- *  over its mass. */
+/** Largest frequency of free nodes, by the theorem of Gerschgorin: its square is at most the
+ *  largest sum of a row of the stiffness over its mass. */
 double FixMPMElements::largest_bending_frequency() const
 {
   std::vector<double> sum(ids.n, 0.0), all(ids.n);
@@ -1284,8 +1288,9 @@ double FixMPMElements::largest_bending_frequency() const
 }
 
 /* ----------------------------------------------------------------------
-   Energy that a body without a lattice spends is not in the balance of the lattices, which has neither its kinetic energy nor
-   the forces that move it: the material returns it, and this fix keeps it
+   Energy that a body without a lattice spends is not in the balance of the lattices, which has
+   neither its kinetic energy nor the forces that move it: the material returns it, and this fix
+   keeps it
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::keep_spent(const std::function<void()> &strain)
@@ -1366,9 +1371,10 @@ double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
 }
 
 /* ----------------------------------------------------------------------
-   The gas in a closed surface is one spring between all of its nodes, of the stiffness k = -dp/dV along the gradient g of the
-   volume: omega^2 = k sum_i g_i^2/m_i. For a thin bag, the limit follows from the size of the bag, whatever its mesh. The
-   pressure of this step may not be known yet
+   The gas in a closed surface is one spring between all of its nodes, of the stiffness k = -dp/dV
+   along the gradient g of the volume: omega^2 = k sum_i g_i^2/m_i. For a thin bag, the limit
+   follows from the size of the bag, whatever its mesh. The pressure of this step may not be known
+   yet
 ------------------------------------------------------------------------- */
 
 double FixMPMElements::gas_frequency() const
@@ -1424,8 +1430,9 @@ void FixMPMElements::check_dt() const
 }
 
 /* ----------------------------------------------------------------------
-   Where a slack element becomes taut its stiffness jumps, and Verlet steps that are not small then gain energy each time. A
-   bag that unfolds has 1.29 of its energy after 4000 steps of 0.8 of the limit, 1.007 with half and 1.001 with a quarter of it
+   Where a slack element becomes taut its stiffness jumps, and Verlet steps that are not small then
+   gain energy each time. A bag that unfolds has 1.29 of its energy after 4000 steps of 0.8 of the
+   limit, 1.007 with half and 1.001 with a quarter of it
 ------------------------------------------------------------------------- */
 
 void FixMPMElements::check_free_dt()

@@ -55,8 +55,8 @@ struct MPMElementsOptions {
 /** Interface for the pressure on one side of a surface of elements. */
 class MPMElementsPressure {
  public:
-  /** Pressure for the enclosed volume (0: not closed) and the area of the surface. Collective, in each
-   *  step. starting: at the setup of a run. */
+  /** Pressure for the enclosed volume (0: not closed) and the area of the surface. Collective, in
+   *  each step. starting: at the setup of a run. */
   virtual double on_surface(double volume, double area, bool starting) = 0;
   /** Is the pressure independent of volume and area? */
   virtual bool is_given() const = 0;
@@ -109,21 +109,22 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   /** Does a fix mpm move the nodes? */
   bool on_lattice() const { return has_lattice; }
 
-  /** Sets the pressure, which pushes a closed surface outward, and an open one toward the side from which its elements
-   *  go around counterclockwise (in 2d: to the right of lines). Valid until the next init(). closed: an error if the
-   *  surface encloses no volume. */
+  /** Sets the pressure, which pushes a closed surface outward, and an open one toward the side from
+   *  which its elements go around counterclockwise (in 2d: to the right of lines). Valid until the
+   *  next init(). closed: an error if the surface encloses no volume. */
   void set_pressure(MPMElementsPressure *, bool closed);
 
-  /** Energy stored by the elements of this rank [pressure * volume]; on the first rank, minus the work done so far by
-   *  the pressure in a closed surface. */
+  /** Energy stored by the elements of this rank [pressure * volume]; on the first rank, minus the
+   *  work done so far by the pressure in a closed surface. */
   double stored_energy() const;
 
-  /** Forces of the elements and of the pressure on the points of this rank, [nlocal][3], as added to atom->f. */
+  /** Forces of the elements and of the pressure on the points of this rank, [nlocal][3], as added
+   *  to atom->f. */
   const double *forces() const override { return force_on.data(); }
 
   /** Smallest stable time step of this rank's elements: 2/omega with a bound of the highest
-   *  frequency omega. tag: a node of the limiting element; speed: its wave speed, or 0 if the gas in
-   *  a closed surface contributes more. Collective. */
+   *  frequency omega. tag: a node of the limiting element; speed: its wave speed, or 0 if the gas
+   *  in a closed surface contributes more. Collective. */
   double stable_dt_local(tagint &tag, double &speed) const;
 
   /** Stops with an error if the time step exceeds the stable one of an element. */
@@ -137,7 +138,8 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   void add_blocks(double *blocks) override;
   double asymmetry() const override;
 
-  /** Message on a feature that trial motions do not support, with advice; null: all is supported. */
+  /** Message on a feature that trial motions do not support, with advice; null: all is
+   *  supported. */
   const char *beyond_trials() const
   {
     return bending ? "bending: use explicit steps"
@@ -159,15 +161,18 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   tagint first_node() const { return ids.low; }
   bigint number_of_nodes() const { return ids.n; }
 
-  /** Undeformed edges of all elements and diagonals of quadrangles, on all ranks. Nodes are numbered from the first one
-   *  on. An edge is listed once for each of its elements. Collective. */
+  /** Undeformed edges of all elements and diagonals of quadrangles, on all ranks. Nodes are
+   *  numbered from the first one on. An edge is listed once for each of its elements.
+   *  Collective. */
   std::vector<MPM_NS::NearNodes::Edge> edges() const;
 
-  /** Largest distance of a place on the present surface or line from the nodes around it, over all ranks. An object
-   *  that keeps only a smaller distance from nodes can pass through there. Collective. */
+  /** Largest distance of a place on the present surface or line from the nodes around it, over all
+   *  ranks. An object that keeps only a smaller distance from nodes can pass through there.
+   *  Collective. */
   double widest_gap() const;
 
-  /** Largest distance between two nodes of an element on all ranks, with room for further deformation. Collective. */
+  /** Largest distance between two nodes of an element on all ranks, with room for further
+   *  deformation. Collective. */
   double largest_extent() const;
 
   /** Face of a surface (in 2d: a line): an element or half of a quadrangle. */
@@ -201,8 +206,9 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   bigint nelements;       // of the mesh
   MPM_NS::SurfaceKind kind = {};
   MPMElementsPressure *pressure = nullptr;
-  double side =
-      0.0;    // 1: the pressure pushes toward the side from which elements go around counterclockwise; -1: away from it; 0: unknown
+  // 1: the pressure pushes toward the side from which elements go around counterclockwise; -1: away
+  // from it; 0: unknown
+  double side = 0.0;
   IDs ids;
   bool has_lattice = true;      // does a fix mpm move the nodes?
   bool warned_slack = false;    // in this run
@@ -217,10 +223,10 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   std::unique_ptr<MPM_NS::PlaneStress> plane_stress;    // of surfaces and lines
 
   // A row of the pool: label and type of an element, tags of its nodes [maxnode], their reference
-  // positions relative to the first one [maxnode][dim], and for each integration point F [9],
-  // tau [6], history, and, for surfaces and lines, the gradient of the motion along them [9]. Parts that
-  // bend have rows of their own, with the square of their extent and a BentTriangle, BentLine, or SharedStrain in
-  // place of positions and integration points.
+  // positions relative to the first one [maxnode][dim], and for each integration point F [9], tau
+  // [6], history, and, for surfaces and lines, the gradient of the motion along them [9]. Parts
+  // that bend have rows of their own, with the square of their extent and a BentTriangle, BentLine,
+  // or SharedStrain in place of positions and integration points.
 
   double *first, *count;    // [n] range of the elements of an atom in the pool
   std::vector<double> pool;

@@ -6,8 +6,9 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Elements after a trial motion of an implicit solver. They work as in a step, and their state is then restored. The stiffness of
-// each is found from central differences, one component of one of its nodes at a time, in all elements at once.
+// Elements after a trial motion of an implicit solver. They work as in a step, and their state is
+// then restored. The stiffness of each is found from central differences, one component of one of
+// its nodes at a time, in all elements at once.
 
 #include "elements/fix_mpm_elements.h"
 
@@ -45,8 +46,8 @@ void FixMPMElements::unpack_forward_comm(int n, int first_one, double *buf)
   std::copy_n(buf, 3 * (std::size_t) n, &motion[3 * (std::size_t) first_one]);
 }
 
-/** Calls use(element, its number of nodes, forces on them [force]) with the state after the motion, and restores the state. Returns
- *  false if it is not finite. */
+/** Calls use(element, its number of nodes, forces on them [force]) with the state after the motion,
+ *  and restores the state. Returns false if it is not finite. */
 template <class Use> bool FixMPMElements::try_elements(const Use &use)
 {
   const std::vector<double> before = pool;
@@ -83,7 +84,8 @@ void FixMPMElements::find_moved(std::size_t e, bool moved, double (*x)[3]) const
     }
 }
 
-/** Adds to sent, times a sign, the pressure of this step on the surfaces as they are after the motion or before. */
+/** Adds to sent, times a sign, the pressure of this step on the surfaces as they are after the
+ *  motion or before. */
 void FixMPMElements::add_pressure_after(bool moved, double sign)
 {
   const double factor = sign * side * pressure_before / (force->nktv2p * dim);
@@ -103,8 +105,8 @@ void FixMPMElements::add_pressure_after(bool moved, double sign)
   }
 }
 
-/** Adds the derivative of the pressure on surfaces. An enclosed volume has a symmetric second derivative, so each face gets the
- *  symmetric part. */
+/** Adds the derivative of the pressure on surfaces. An enclosed volume has a symmetric second
+ *  derivative, so each face gets the symmetric part. */
 void FixMPMElements::differentiate_pressure()
 {
   const int size = maxnode * dim;
@@ -118,7 +120,8 @@ void FixMPMElements::differentiate_pressure()
       double high[3], low[3], K[9][9];
       for (int m = 0; m < 3; m++) at[m] = x[SPLIT[part][m]];
       for (int column = 0; column < dim * dim; column++) {
-        // the area is linear, or bilinear, in the positions of nodes, so that differences of any size are exact
+        // the area is linear, or bilinear, in the positions of nodes, so that differences of any
+        // size are exact
         double &place = x[SPLIT[part][column / dim]][column % dim];
         const double value = place;
         place = value + 0.5 * shortest;
@@ -141,7 +144,8 @@ void FixMPMElements::differentiate_pressure()
   }
 }
 
-/** Sums the values of nodes in sent [local and ghost][3] over ranks, and adds those of this rank to the array to. */
+/** Sums the values of nodes in sent [local and ghost][3] over ranks, and adds those of this rank to
+ *  the array to. */
 void FixMPMElements::bring_home(double *to)
 {
   comm->reverse_comm(this, 3);

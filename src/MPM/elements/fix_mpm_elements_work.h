@@ -10,14 +10,15 @@
 #define LMP_FIX_MPM_ELEMENTS_WORK_H
 
 #include "elements/fix_mpm_elements.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/plane_stress.h"
 #include "math/matrix.h"
 #include "mesh/element.h"
 
 namespace LAMMPS_NS {
 
-/** Triangles of a quadrangle, each with the weight 1/2; the first one also stands for a triangle. */
+/** Triangles of a quadrangle, each with the weight 1/2; the first one also stands for a
+ *  triangle. */
 static constexpr int SPLIT[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
 
 /** Normal of a triangle (in 2d: a line) whose magnitude is its area (length). at: [dim] corners. */
@@ -50,8 +51,8 @@ struct FixMPMElements::Work {
   double g[MPM_NS::BATCH][MPM_NS::MAX_ELEMENT_NODES][3];    // gradients of the functions in space
   double volume[MPM_NS::BATCH];                             // reference volume
   double J[MPM_NS::BATCH];                                  // determinant of F without F-bar
-  MPM_NS::Batch batch = {};                        // must start from zero, see material/batch.h
-  std::vector<double> history, mean;               // history of the batch; means over an element
+  MPM_NS::Batch batch = {};             // must start from zero, see material/batch_kernels.h
+  std::vector<double> history, mean;    // history of the batch; means over an element
   std::vector<MPM_NS::PlaneStress::Point> thin;    // [BATCH], for surfaces and lines
 };
 

@@ -28,7 +28,7 @@
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "modify.h"
 #include "step/fix_mpm.h"
 #include "update.h"

@@ -18,7 +18,7 @@
 #include "field/mpm_point_map.h"
 #include "force.h"
 #include "loads/fix_mpm_emit.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "modify.h"

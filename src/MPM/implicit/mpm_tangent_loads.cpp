@@ -16,7 +16,7 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 #include <algorithm>
 #include <cmath>

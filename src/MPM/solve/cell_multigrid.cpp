@@ -20,12 +20,14 @@
 
 using namespace MPM_NS;
 
-// cells of a level that is factorized, and sweeps of Gauss-Seidel before and after a coarse correction
+// cells of a level that is factorized, and sweeps of Gauss-Seidel before and after a coarse
+// correction
 static constexpr int FEW = 400;
 static constexpr int SWEEPS = 1;
 // corrections by the next level, from the second level on
 static constexpr int CORRECTIONS = 2;
-// of the coefficients of joined cells: the faces of a level twice as coarse have twice the distance between cells
+// of the coefficients of joined cells: the faces of a level twice as coarse have twice the distance
+// between cells
 static constexpr double COARSER = 0.5;
 
 namespace {
@@ -103,7 +105,8 @@ class Pieces {
   std::vector<int> cell_at;    // [place in vectors]
 };
 
-/** By a < n, then by b: of each a there are a few. Equal ones stay in their order, so that sums of these do not change. */
+/** By a < n, then by b: of each a there are a few. Equal ones stay in their order, so that sums of
+ *  these do not change. */
 void put_in_order(std::vector<Flow> &flows, int n)
 {
   std::vector<int> end(n + 1, 0);
@@ -154,7 +157,8 @@ CellGraph coarse_graph(const std::vector<Piece> &pieces, std::vector<Flow> &flow
   return graph;
 }
 
-/** Sums over the neighbors of cells, color by color, with as many places for each cell: what sweeps do most of the time. */
+/** Sums over the neighbors of cells, color by color, with as many places for each cell: what sweeps
+ *  do most of the time. */
 class ColoredSums {
  public:
   /** Of a graph whose places in vectors are its cells. */
@@ -178,7 +182,8 @@ class ColoredSums {
       }
     }
   }
-  /** put(cell, sum of face times x of its neighbors) for the cells of a color, one after the other. */
+  /** put(cell, sum of face times x of its neighbors) for the cells of a color, one after the
+   *  other. */
   template <class Put> void visit(int color, const double *x, const Put &put) const
   {
     if (width == 4)
@@ -259,7 +264,7 @@ struct CellMultigrid::Levels {
     ColoredSums sums;
     std::vector<int> next;    // [cell] of the next level
     std::vector<double> x, b, diagonal, to_be;
-    bool proper;    // neighbors have different colors
+    bool proper = false;    // neighbors have different colors
   };
   std::vector<Level> coarse;
   EnvelopeFactors factors;
@@ -294,7 +299,8 @@ void CellMultigrid::setup(const CellOperator &fine)
   on->factorize();
 }
 
-/** Pieces of larger cells are joined where ranks have the same cell in theirs; all ranks get all of them. */
+/** Pieces of larger cells are joined where ranks have the same cell in theirs; all ranks get all of
+ *  them. */
 void CellMultigrid::Levels::first_coarse()
 {
   const auto &graph = fine->cells();
@@ -476,7 +482,8 @@ double CellMultigrid::project(double *x)
   return largest;
 }
 
-/** A sweep over both colors.  With values of all ranks at both sides of faces, all cells of a color change at once. */
+/** A sweep over both colors. With values of all ranks at both sides of faces, all cells of a color
+ *  change at once. */
 void CellMultigrid::Levels::smooth_fine(const double *r, double *z, bool from_zero, bool backwards)
 {
   const auto &graph = fine->cells();
@@ -497,7 +504,8 @@ void CellMultigrid::Levels::smooth_fine(const double *r, double *z, bool from_ze
   }
 }
 
-/** Right side of the first coarse level: each rank has a part of the residuals of its cells, that of r where it owns them. */
+/** Right side of the first coarse level: each rank has a part of the residuals of its cells, that
+ *  of r where it owns them. */
 void CellMultigrid::Levels::restrict_fine(const double *r, const double *z)
 {
   const auto &graph = fine->cells();
@@ -525,8 +533,8 @@ void CellMultigrid::Levels::cycle(std::size_t which)
     return;
   }
 
-  // a color whose neighbors have changed has no residual after its sweep, if no two of its cells are neighbors: another sweep
-  // of it changes nothing, and what it was before does not matter
+  // a color whose neighbors have changed has no residual after its sweep, if no two of its cells
+  // are neighbors: another sweep of it changes nothing, and what it was before does not matter
 
   double *const x = level.x.data();
   const double *const b = level.b.data(), *const diagonal = level.diagonal.data(),

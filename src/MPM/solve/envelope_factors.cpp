@@ -21,7 +21,8 @@ static int padded(int n)
 }
 
 /* ----------------------------------------------------------------------
-   Unknowns in layers: those that are as many entries away from the first one. That is one that is far from another one
+   Unknowns in layers: those that are as many entries away from the first one. That is one that is
+   far from another one
 ------------------------------------------------------------------------- */
 
 void EnvelopeFactors::put_in_layers(const Sparse &A)
@@ -30,7 +31,8 @@ void EnvelopeFactors::put_in_layers(const Sparse &A)
   queue.clear();
   queue.reserve(n);
   layer.assign(n, -1);
-  // from a given one: the queue has all that are joined to it, in layers, behind those that it has already
+  // from a given one: the queue has all that are joined to it, in layers, behind those that it has
+  // already
   const auto visit = [&](int seed) {
     std::size_t next = queue.size();
     queue.push_back(seed);
@@ -67,7 +69,8 @@ void EnvelopeFactors::put_in_order()
   part[0] = part[1] = part[2] = padded(n);
 }
 
-/** Halves on both sides of the layer that has this one of the queue. Each is put in layers again, from the middle on, and backwards. */
+/** Halves on both sides of the layer that has this one of the queue. Each is put in layers again,
+ *  from the middle on, and backwards. */
 void EnvelopeFactors::cut(const Sparse &A, int at)
 {
   const int n = unknowns;

@@ -32,7 +32,8 @@ using Sparse = BlockRows::Sparse;
 using Part = CoarseParts::Part;
 using Block = MatrixBlock;
 
-/** The functions of twice the spacing that have a function in them along an axis, and how much of it. */
+/** The functions of twice the spacing that have a function in them along an axis, and how much of
+ *  it. */
 int parents(int order, int i, int *parent, double *weight)
 {
   const int m = i >> 1;
@@ -48,7 +49,8 @@ int parents(int order, int i, int *parent, double *weight)
   return odd ? give(2, {m, m + 1}, {0.5, 0.5}) : give(3, {m - 1, m, m + 1}, {0.125, 0.75, 0.125});
 }
 
-/** Calls f(index, weight) for all parents of a node. period: of the coarse level along each axis, 0: none. */
+/** Calls f(index, weight) for all parents of a node. period: of the coarse level along each axis,
+ *  0: none. */
 template <class F>
 void each_parent(int order, int dim, const LatticeIndex &index, const int *period, const F &f)
 {
@@ -129,8 +131,8 @@ struct Blocks {
   std::vector<int> place;                                // of the columns of a row, -1: none
 };
 
-/** Adds to one triangle of the element, blocks [number][number] of [W][W], what functions with the gradients [G] have by the stiffness C [G
- *  W][G W]. */
+/** Adds to one triangle of the element, blocks [number][number] of [W][W], what functions with the
+ *  gradients [G] have by the stiffness C [G W][G W]. */
 template <int W, int G, class F>
 void add_blocks(int number, F gradient_of, const double *C, double *element)
 {
@@ -156,7 +158,8 @@ void add_blocks(int number, F gradient_of, const double *C, double *element)
   }
 }
 
-/** The same with G_J [ngrad][width][width], of projected functions, which turn a value into others. */
+/** The same with G_J [ngrad][width][width], of projected functions, which turn a value into
+ *  others. */
 template <int W, int G>
 void add_held_blocks(int number, const double *gradients, const double *C, double *element)
 {
@@ -179,7 +182,8 @@ void add_held_blocks(int number, const double *gradients, const double *C, doubl
   }
 }
 
-/** Means around nodes of which several ranks may have a part: sums that make their stiffness, and values of nodes, one mean after the other. */
+/** Means around nodes of which several ranks may have a part: sums that make their stiffness, and
+ *  values of nodes, one mean after the other. */
 struct Means {
   struct Head {
     uint64_t around;
@@ -194,7 +198,8 @@ struct Means {
     heads.clear();
     values.clear();
   }
-  /** Calls f(begin, end, c) with the values of all ranks for each mean that no rank before this one has a part in.  Collective. */
+  /** Calls f(begin, end, c) with the values of all ranks for each mean that no rank before this one
+   *  has a part in. Collective. */
   template <class F> void each_of_all(LatticeRanks &ranks, const F &f) const
   {
     const auto counts = ranks.gather(std::vector<int>{(int) heads.size()});
@@ -294,7 +299,8 @@ struct SplineMultigrid::Levels {
   bool usable = true;    // all factors are there
   std::vector<double> work[3], rest;
 
-  // nodes at surfaces and interfaces, whose functions are nearly dependent: chunks of them are factorized, on all ranks
+  // nodes at surfaces and interfaces, whose functions are nearly dependent: chunks of them are
+  // factorized, on all ranks
   LatticeNodes rim;
   std::vector<int> rim_number;       // [node] in the rim, -1: not in it
   std::vector<int64_t> rim_owned;    // nodes of the rim that this rank owns
@@ -306,10 +312,12 @@ struct SplineMultigrid::Levels {
   std::vector<Block> rim_ties;    // of all ranks: row u, column x of u = P x
   std::vector<double> rim_x, rim_b;
 
-  // from the nodes of this rank to those of its part of the first coarse level, and from these to the level
+  // from the nodes of this rank to those of its part of the first coarse level, and from these to
+  // the level
   LatticeNodes mine;
   CoarseParts to_mine;
-  // of nodes with constraints, whose functions are those of several others where these are tied, and of these in the rim
+  // of nodes with constraints, whose functions are those of several others where these are tied,
+  // and of these in the rim
   struct HeldPart {
     int node;
     double W[9];
@@ -401,7 +409,8 @@ struct SplineMultigrid::Levels {
       for (auto j = of.begin(node); j != of.end(node); ++j)
         if (i->node >= j->node) f(*i, *j);
   }
-  /** What the other directions of a node with constraints have, so that those are no motions without stiffness: c (1 - P)^T (1 - P). */
+  /** What the other directions of a node with constraints have, so that those are no motions
+   *  without stiffness: c (1 - P)^T (1 - P). */
   template <class F>
   void each_held(const HeldParts &of, int64_t node, int self, double c, const F &f) const
   {
@@ -546,8 +555,8 @@ bool SplineMultigrid::begin_again()
   return true;
 }
 
-/** Which nodes of this rank are in the rim: all ranks know all nodes that have a stiffness. A system that is factorized as a whole
- *  needs none. */
+/** Which nodes of this rank are in the rim: all ranks know all nodes that have a stiffness. A
+ *  system that is factorized as a whole needs none. */
 void SplineMultigrid::Levels::find_rim(const double *given)
 {
   const int w = width;
@@ -663,7 +672,8 @@ void SplineMultigrid::Levels::start(int n, const int64_t *of)
     held = held || !plain[node];
     const auto add = [&](int at) {
       const bool known = place[at] >= 0;
-      // of a whole, nodes as they are: images of one in a narrow periodic box become one when they are projected
+      // of a whole, nodes as they are: images of one in a narrow periodic box become one when they
+      // are projected
       if (whole) held = held || known;
       if (known && !whole) return;
       place[at] = local.size();
@@ -692,7 +702,8 @@ void SplineMultigrid::Levels::add_rim(int row, int column, const double *K)
     for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
 }
 
-/** From the stiffness K [n][n] of nodes, one triangle, to that of the nodes x of u = P x. number: of each node, and then of each x. */
+/** From the stiffness K [n][n] of nodes, one triangle, to that of the nodes x of u = P x. number:
+ *  of each node, and then of each x. */
 template <int W>
 void SplineMultigrid::Levels::hold(const std::vector<int64_t> &of, const HeldParts &parts,
                                    std::vector<int> &number, std::vector<double> &K)
@@ -926,7 +937,8 @@ void SplineMultigrid::Levels::add_masses(const double *mass)
   }
 }
 
-/** The nodes of the first coarse level, of all ranks, and its blocks, and from there on all of the levels. */
+/** The nodes of the first coarse level, of all ranks, and its blocks, and from there on all of the
+ *  levels. */
 void SplineMultigrid::Levels::merge_ranks()
 {
   LatticeNodes all;
@@ -1037,7 +1049,8 @@ void SplineMultigrid::Levels::assemble_whole(int n)
       }
 }
 
-/** The matrix by other values of blocks; false, on all ranks: these are not those that there were. */
+/** The matrix by other values of blocks; false, on all ranks: these are not those that there
+ *  were. */
 bool SplineMultigrid::Levels::refill()
 {
   const int w = width;
@@ -1061,7 +1074,8 @@ bool SplineMultigrid::Levels::refill()
   return true;
 }
 
-/** Levels from the first one on, whose blocks are those that were sent.  rows: [ranks + 1] nodes of each rank. */
+/** Levels from the first one on, whose blocks are those that were sent. rows: [ranks + 1] nodes of
+ *  each rank. */
 void SplineMultigrid::Levels::coarsen(LatticeNodes level, std::vector<int> rows)
 {
   int cells[3];
@@ -1400,7 +1414,8 @@ void SplineMultigrid::precondition(const double *r, double *z)
     o.system->apply(z, o.rest.data());
   }
 
-  // residuals of the nodes that this rank owns go to its part of the coarse level, and those of all ranks to the level
+  // residuals of the nodes that this rank owns go to its part of the coarse level, and those of all
+  // ranks to the level
 
   auto &partial = o.partial;
   partial.assign(o.number.size() * w, 0.0);

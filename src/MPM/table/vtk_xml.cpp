@@ -57,8 +57,8 @@ bool is_blank(char c)
 
 }    // namespace
 
-/** Bytes of an array one after another, as they are or from base64, where what was encoded by itself (as the lengths of compressed blocks are) ends
- *  with a group of four characters. */
+/** Bytes of an array one after another, as they are or from base64, where what was encoded by
+ *  itself (as the lengths of compressed blocks are) ends with a group of four characters. */
 class VtkXml::Bytes {
  public:
   Bytes(const VtkXml &file, std::size_t at, bool in_base64, const std::string &what) :
