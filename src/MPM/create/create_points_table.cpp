@@ -277,7 +277,7 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
                    given.volume,
                    id_column < 0 ? 0 : (bigint) at(id_column),
                    mine,
-                   CreatePoints::NO_IMAGE};
+                   CreatePointsSite::NO_IMAGE};
     for (int d = 0; d < dim; d++) point.x[d] = given.move[d] + given.scale * at(place[d]);
     double J = 1.0;
     if (nF) {
@@ -434,9 +434,9 @@ bigint CreatePoints::make_table_points()
 void CreatePoints::set_columns(int first)
 {
   if (table) table->columns.set(first, table_rows);
-  if (mesh_fields) mesh_fields->set(first);
+  if (mesh) mesh->fields->set(first);
   const MPMPointColumns *columns = table ? &table->columns
-      : mesh_fields                      ? &mesh_fields->given()
+      : mesh                             ? &mesh->fields->given()
                                          : nullptr;
   const std::string missing = columns && columns->has_state() ? columns->missing() : "";
   if (!missing.empty() && comm->me == 0)
