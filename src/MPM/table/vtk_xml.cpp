@@ -281,7 +281,8 @@ std::string VtkXml::read_bytes(Bytes &from, const std::string &what) const
   return compressed ? uncompressed(from, what) : from.take(from.length());
 }
 
-std::string VtkXml::uncompressed(Bytes &from, const std::string &what) const
+std::string VtkXml::uncompressed([[maybe_unused]] Bytes &from,
+                                 [[maybe_unused]] const std::string &what) const
 {
   std::string bytes;
 #ifdef MPM_ZLIB
