@@ -8,9 +8,8 @@
 
 // Transfers of one number, see ScalarKernels; compiled once for each instruction set.
 //
-// To nodes, a vector holds up to four nodes along the last axis. To points, it holds points in a
-// row that share their first node, and each node is a number for all of them: as many instructions
-// for four or eight points as for one.
+// To nodes, a vector holds up to four nodes along the last axis. To points, it holds points in a row that share their first node,
+// and each node is a number for all of them: as many instructions for four or eight points as for one.
 
 #include "transfer/kernels_isa.h"
 #include "transfer/scalar.h"
@@ -54,8 +53,8 @@ MPM_INLINE void prefetch_points(const double *rows, Index p)
   __builtin_prefetch(reinterpret_cast<const void *>(start + 64));
 }
 
-/** Three reals of rows of four points from the given one on, axis by axis. Behind the last point
- *  there are others like it, and there may be no memory behind the last row. */
+/** Three reals of rows of four points from the given one on, axis by axis. Behind the last point there are others like it,
+ *  and there may be no memory behind the last row. */
 MPM_INLINE void load_points(const double *rows, Index p, Index n, Index guarded, V *axis)
 {
   if (p + 4 <= n && p + 4 <= guarded) {
@@ -72,10 +71,9 @@ MPM_INLINE void load_points(const double *rows, Index p, Index n, Index guarded,
   transpose(axis);
 }
 
-/** Node MIDDLE along an axis, whose weight is never small, has what the others leave: weights sum
- *  to one, and slopes to zero. Points that share their nodes then have one node less, and the
- *  gradient of a constant is exactly zero. Linear functions and Bernstein polynomials have no such
- *  node. */
+/** Node MIDDLE along an axis, whose weight is never small, has what the others leave: weights sum to one, and slopes
+ *  to zero. Points that share their nodes then have one node less, and the gradient of a constant is exactly zero. Linear functions
+ *  and Bernstein polynomials have no such node. */
 constexpr int MIDDLE = 1;
 template <Shape SHAPE>
 constexpr bool has_middle = SHAPE == QUADRATIC || SHAPE == CUBIC || SHAPE == GIMP;
@@ -83,8 +81,7 @@ constexpr bool has_middle = SHAPE == QUADRATIC || SHAPE == CUBIC || SHAPE == GIM
 /** Weights of all points at a node along an axis. */
 using Columns = double (*)[BATCH + SPARE_ROWS];
 
-/** Stores the weights of four points along an axis; LESS: none of node MIDDLE but in the rows of
- *  the last one. */
+/** Stores the weights of four points along an axis; LESS: none of node MIDDLE but in the rows of the last one. */
 template <int N, bool LAST, bool LESS>
 MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], Columns columns)
 {
@@ -215,9 +212,8 @@ void prepare(const PointRows &rows, const TransferStep &step, int n, const int b
     prepare_box<DIM, SHAPE, false>(rows, step, n, base, kind, out, box);
 }
 
-/** The rows of nodes of points that share the first one. Lanes without a node hold whatever follows
- *  in the tile. LESS: along the axes but the last one, nodes count as their difference from
- *  MIDDLE. */
+/** The rows of nodes of points that share the first one. Lanes without a node hold whatever follows in the tile.
+ *  LESS: along the axes but the last one, nodes count as their difference from MIDDLE. */
 template <int DIM, Shape SHAPE, bool LESS> struct NodeRows {
   static constexpr int N = FunctionOf<SHAPE>::nodes, M = DIM == 3 ? N : 1, LAST = DIM - 1;
   static constexpr int sx = stride<DIM, SHAPE>(0), sy = DIM == 3 ? stride<DIM, SHAPE>(1) : 0;
@@ -385,8 +381,8 @@ void add_values(const ScalarStencil &in, const double *q, double *tile)
   });
 }
 
-/** Points in a vector, for a given number that is left: those that there are not have weights of
- *  other points, and anything comes out of them. */
+/** Points in a vector, for a given number that is left: those that there are not have weights of other points, and anything comes
+ *  out of them. */
 template <int LANES, class F> MPM_INLINE void visit_lanes(int first, int last, const F &f)
 {
   if constexpr (LANES > 4) {
@@ -396,8 +392,7 @@ template <int LANES, class F> MPM_INLINE void visit_lanes(int first, int last, c
 }
 constexpr int LANES = REGISTER > 4 ? REGISTER : 4;
 
-/** The nodes of points that share the first one, one by one; LESS: along all axes as their
- *  difference from MIDDLE. */
+/** The nodes of points that share the first one, one by one; LESS: along all axes as their difference from MIDDLE. */
 template <int DIM, Shape SHAPE, bool LESS> struct NodeNumbers {
   using Rows = NodeRows<DIM, SHAPE, LESS>;
   static constexpr int N = Rows::N, M = Rows::M;
@@ -445,8 +440,7 @@ MPM_INLINE void get_points(const NodeNumbers<DIM, SHAPE, LESS> &nodes, const Sca
   using Rows = typename Numbers::Rows;
   using W = Vec<L>;
   constexpr int N = Numbers::N, M = Numbers::M, LAST = DIM - 1;
-  // barrier: numbers are operands in memory, otherwise GCC has each of them in all lanes of a
-  // register, and spills
+  // barrier: numbers are operands in memory, otherwise GCC has each of them in all lanes of a register, and spills
   asm volatile("" : : "r"(nodes.number) : "memory");
   value = slope[0] = slope[1] = slope[2] = W{};
   MPM_UNROLL
@@ -492,14 +486,13 @@ MPM_INLINE void get_points(const NodeNumbers<DIM, SHAPE, LESS> &nodes, const Sca
   }
 }
 
-/** Points that share their nodes, where these are less than this number, are done one by one: what
- *  it takes to have nodes as numbers is for all of them. */
+/** Points that share their nodes, where these are less than this number, are done one by one: what it takes to have nodes as numbers is
+ *  for all of them. */
 constexpr int FEW = 3;
 
-/** Calls many(nodes, p, lanes) for points that share their nodes, several at a time, and few(first,
- *  last) for those that are too few for that, in the order of points: the lanes behind the last
- *  point of many() are of those that come next. The nodes of some groups of points come first, as
- *  those of a group would have to be waited for. */
+/** Calls many(nodes, p, lanes) for points that share their nodes, several at a time, and few(first, last) for those that are too
+ *  few for that, in the order of points: the lanes behind the last point of many() are of those that come next. The nodes of some
+ *  groups of points come first, as those of a group would have to be waited for. */
 template <int DIM, Shape SHAPE, bool LESS, class Many, class Few>
 MPM_INLINE void visit_groups(const ScalarStencil &in, const double *tile, const Many &many,
                              const Few &few)

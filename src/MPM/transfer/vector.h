@@ -9,8 +9,8 @@
 #ifndef MPM_TRANSFER_VECTOR_H
 #define MPM_TRANSFER_VECTOR_H
 
-// Short vectors of doubles on the vector extensions of GCC and Clang, for files that are compiled
-// once for each instruction set. All names are local to the including file, and every function is
+// Short vectors of doubles on the vector extensions of GCC and Clang, for files that are compiled once
+// for each instruction set. All names are local to the including file, and every function is
 // inlined: no code made for one CPU can serve another.
 //
 // A vector that is wider than the registers is two halves. (GCC can split wide vectors itself, but
