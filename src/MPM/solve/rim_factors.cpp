@@ -99,6 +99,15 @@ bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &factors, 
   return false;
 }
 
+bool MPM_NS::factorize_rows(const Eigen::SparseMatrix<double, Eigen::RowMajor, int> &A,
+                            EnvelopeFactors &factors, bool again)
+{
+  // symmetric: its rows are columns
+  const Eigen::Map<const Eigen::SparseMatrix<double>> columns(
+      A.rows(), A.cols(), A.nonZeros(), A.outerIndexPtr(), A.innerIndexPtr(), A.valuePtr());
+  return factorize(columns, factors, again);
+}
+
 /* ---------------------------------------------------------------------- */
 
 /** Half of a chunk with too many operations, and so on. The envelope of a layer is as many nodes as

@@ -32,6 +32,9 @@ std::vector<char> rim_of(const LatticeNodes &, const std::vector<double> &stiffn
  *  false if no shift is sufficient, or if the matrix is not finite; the factors must not be used
  *  then. again: the entries are in the same places as in the last matrix. */
 bool factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &, bool again = false);
+/** The same for a matrix that is stored by rows. */
+bool factorize_rows(const Eigen::SparseMatrix<double, Eigen::RowMajor, int> &, EnvelopeFactors &,
+                    bool again = false);
 
 /** An approximate inverse for nodes at the surface of a body, or at the surface of a part that is
  *  much stiffer than its surroundings.

@@ -9,9 +9,9 @@
 #ifndef MPM_SOLVE_SPLINE_MULTIGRID_H
 #define MPM_SOLVE_SPLINE_MULTIGRID_H
 
-#include "solve/lattice_key.h"
 #include "solve/lattice_ranks.h"
 #include "solve/linear_system.h"
+#include "solve/node_constraints.h"
 
 #include <memory>
 #include <vector>
@@ -45,13 +45,7 @@ class SplineMultigrid {
   SplineMultigrid(const Grid &, LatticeRanks &, int width, int order, int few = 0, int all = 0);
   ~SplineMultigrid();
 
-  /** A constraint that couples several nodes: the motion of a node is u = sum P x over itself and
-   *  other nodes; this is the term of one of them, with P [width][width]. */
-  struct Tie {
-    int64_t node;
-    LatticeIndex other;
-    double P[9];
-  };
+  using Tie = NodeTie;
   /** Starts a new operator, for the present blocks of nodes of the grid. projection:
    *  [node][width][width], such that P u is a free motion of a node; null: no constraints. blocks:
    *  [node][width][width], the diagonal blocks of K + m without constraints, summed over ranks.
