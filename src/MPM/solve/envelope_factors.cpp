@@ -185,13 +185,13 @@ bool EnvelopeFactors::compute_again(const Sparse &A)
   return good;
 }
 
-/** What all ranks have sent, in their order. */
+/** What all ranks have own_part, in their order. */
 void EnvelopeFactors::gather()
 {
   if (ranks)
-    ranks->gather(sent, of_ranks);
+    ranks->gather(own_part, gathered);
   else
-    of_ranks = sent;
+    gathered = own_part;
 }
 
 bool EnvelopeFactors::factorize()
@@ -200,14 +200,14 @@ bool EnvelopeFactors::factorize()
   for (int which = 0; which < 2; which++)
     if (is_mine(which) && !half[which].factorize()) good = false;
   if (!has_halves()) return good;
-  sent.clear();
+  own_part.clear();
   for (int which = 0; which < 2; which++) {
     if (!is_mine(which)) continue;
-    sent.push_back(good);
-    half[which].give_rest(sent);
+    own_part.push_back(good);
+    half[which].give_rest(own_part);
   }
   gather();
-  const double *of = of_ranks.data();
+  const double *of = gathered.data();
   for (int which = 0; which < 2; which++) {
     good = good && *of++ == 1.0;
     middle.add(of);
@@ -231,32 +231,32 @@ void EnvelopeFactors::solve(const double *b, double *x)
   const auto end_of = [this](int which) {
     return part[which] - begin_of(which);
   };
-  sent.clear();
+  own_part.clear();
   for (int which = 0; which < 2; which++) {
     if (!is_mine(which)) continue;
     auto &own = of_half[which];
     own.assign(y + begin_of(which), y + part[which]);
     own.resize(end_of(which) + between, 0.0);
     half[which].solve_forward(own.data());
-    sent.insert(sent.end(), own.begin() + end_of(which), own.end());
+    own_part.insert(own_part.end(), own.begin() + end_of(which), own.end());
   }
   gather();
   double *const inner = y + part[1];
   for (int which = 0; which < 2; which++)
-    for (int k = 0; k < between; k++) inner[k] += of_ranks[(std::size_t) between * which + k];
+    for (int k = 0; k < between; k++) inner[k] += gathered[(std::size_t) between * which + k];
   middle.solve_forward(inner);
   middle.solve_backward(inner);
-  sent.clear();
+  own_part.clear();
   for (int which = 0; which < 2; which++) {
     if (!is_mine(which)) continue;
     auto &own = of_half[which];
     std::copy_n(inner, between, own.begin() + end_of(which));
     half[which].solve_backward(own.data());
-    sent.insert(sent.end(), own.begin(), own.begin() + end_of(which));
+    own_part.insert(own_part.end(), own.begin(), own.begin() + end_of(which));
   }
   gather();
   for (int k = 0; k < unknowns; k++)
-    x[k] = number[k] < part[1] ? of_ranks[number[k]] : y[number[k]];
+    x[k] = number[k] < part[1] ? gathered[number[k]] : y[number[k]];
 }
 
 double EnvelopeFactors::memory_usage() const
@@ -264,7 +264,7 @@ double EnvelopeFactors::memory_usage() const
   double bytes = half[0].memory_usage() + half[1].memory_usage() + middle.memory_usage();
   for (const auto *list : {&number, &queue, &layer, &unused})
     bytes += list->capacity() * sizeof(int);
-  for (const auto *list : {&solution, &sent, &of_ranks, &of_half[0], &of_half[1]})
+  for (const auto *list : {&solution, &own_part, &gathered, &of_half[0], &of_half[1]})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -74,7 +74,7 @@ class EnvelopeFactors {
   std::vector<int> unused;          // places without an unknown
   std::vector<double> solution;     // [place]
   std::vector<double> of_half[2];    // solutions of each half, with those of the middle
-  std::vector<double> sent, of_ranks;
+  std::vector<double> own_part, gathered;
 
   bool is_mine(int which) const;
   void put_in_layers(const Sparse &);

@@ -43,7 +43,7 @@ void FineSmoother::find_rim(const LatticeNodes &everywhere, const std::vector<ch
     owned.push_back(node);
     list.push_back(found->second);
   }
-  of_ranks = ranks.gather(list);
+  all_numbers = ranks.gather(list);
   std::vector<MatrixBlock> mine_tied;
   for (const auto &tie : nodes.ties) {
     const int other = rim.find(tie.other);
@@ -126,9 +126,9 @@ bool FineSmoother::factorize(const double *mass)
     }
   });
   means.clear();
-  const auto of_all = ranks.gather(blocks.list);
+  const auto gathered = ranks.gather(blocks.list);
   blocks = {};
-  for (const auto &b : of_all) factors.add(b.row, b.column, b.value);
+  for (const auto &b : gathered) factors.add(b.row, b.column, b.value);
   const bool usable = factors.factorize();
   rim_b.resize(rim.index.size() * w);
   rim_x.resize(rim.index.size() * w);
@@ -166,9 +166,9 @@ void FineSmoother::apply(const double *r, double *z)
       std::copy_n(r + owned[k] * w, w, partial.data() + k * w);
     else
       nodes.project(owned[k], r + owned[k] * w, true, partial.data() + k * w);
-  ranks.gather(partial, of_all);
-  for (std::size_t k = 0; k < of_ranks.size(); k++)
-    for (int a = 0; a < w; a++) rim_b[of_ranks[k] * w + a] = of_all[k * w + a];
+  ranks.gather(partial, gathered);
+  for (std::size_t k = 0; k < all_numbers.size(); k++)
+    for (int a = 0; a < w; a++) rim_b[all_numbers[k] * w + a] = gathered[k * w + a];
   tie_rim(rim_b, true);
   factors.solve(rim_b.data(), rim_x.data());
   tie_rim(rim_x, false);
@@ -214,10 +214,10 @@ double FineSmoother::memory_usage() const
 {
   double bytes = factors.memory_usage() + blocks.memory_usage() + means.memory_usage() +
       parts.memory_usage() + (rim_ties.capacity() + fixed.capacity()) * sizeof(MatrixBlock) +
-      owned.capacity() * sizeof(int64_t) + (number.capacity() + of_ranks.capacity()) * sizeof(int) +
-      node_list_bytes(rim);
+      owned.capacity() * sizeof(int64_t) +
+      (number.capacity() + all_numbers.capacity()) * sizeof(int) + node_list_bytes(rim);
   for (const auto *list :
-       {&inverse, &rim_x, &rim_b, &partial, &of_all, &work[0], &work[1], &work[2]})
+       {&inverse, &rim_x, &rim_b, &partial, &gathered, &work[0], &work[1], &work[2]})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -61,13 +61,13 @@ class FineSmoother {
   LatticeNodes rim;
   std::vector<int> number;              // [node] in the rim, -1: not in it
   std::vector<int64_t> owned;           // nodes of the rim that this rank owns
-  std::vector<int> of_ranks;            // those of all ranks, by their number
+  std::vector<int> all_numbers;         // those of all ranks, by their number
   std::vector<MatrixBlock> rim_ties;    // of all ranks: row u, column x of u = P x
   std::vector<MatrixBlock> fixed;       // what stands for what is fixed in the rim, one triangle
   std::vector<double> inverse;          // [node][width][width], 0 in the rim
   BlockList blocks;
   RimFactors factors;
-  std::vector<double> rim_x, rim_b, partial, of_all, work[3];
+  std::vector<double> rim_x, rim_b, partial, gathered, work[3];
 
   void tie_rim(std::vector<double> &x, bool transposed) const;
   void apply(const double *r, double *z);

@@ -40,17 +40,17 @@ class SharedNodes {
   /** Gathers values of owned nodes, [owned][width] in the order of mine, from all ranks to all
    *  [size()][width], in the common order. The result is the same on all ranks, bit by bit.
    *  Collective. */
-  void gather(const std::vector<double> &of_owned, int width, std::vector<double> &all);
+  void gather(const std::vector<double> &owned_values, int width, std::vector<double> &all);
 
   double memory_usage() const;
 
  private:
   LatticeRanks &ranks;
   LatticeNodes nodes;
-  std::vector<int> place;       // places of nodes of this rank
-  std::vector<int> of_ranks;    // places of owned nodes, rank by rank
-  std::vector<int> counts;      // [rank] number of owned nodes
-  std::vector<int> sizes;       // [rank] bytes of a message
+  std::vector<int> place;         // places of nodes of this rank
+  std::vector<int> all_places;    // places of owned nodes, rank by rank
+  std::vector<int> counts;        // [rank] number of owned nodes
+  std::vector<int> sizes;         // [rank] bytes of a message
 
   bool find(const std::vector<LatticeIndex> &mine, std::vector<int> &to) const;
   void take(std::vector<int> &found, std::size_t owned);

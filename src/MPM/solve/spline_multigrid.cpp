@@ -173,8 +173,8 @@ std::vector<MatrixBlock> SplineMultigrid::Levels::numbered_blocks()
     std::copy_n(turned, w * w, b.value);
   }
   int mine_too = !means.heads.empty();
-  const auto of_ranks = ranks.gather(std::vector<int>{mine_too});
-  if (std::find(of_ranks.begin(), of_ranks.end(), 1) == of_ranks.end()) return sent;
+  const auto any_rank = ranks.gather(std::vector<int>{mine_too});
+  if (std::find(any_rank.begin(), any_rank.end(), 1) == any_rank.end()) return sent;
   MeanTerms numbered = means;
   for (auto &value : numbered.values) value.node = number[value.node];
   BlockList more;

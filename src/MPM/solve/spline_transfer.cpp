@@ -78,7 +78,7 @@ LatticeNodes SplineTransfer::number_nodes(const std::vector<char> &used, std::ve
       number[k] = found->second;
       list.push_back(found->second);
     }
-  of_ranks = ranks.gather(list);
+  all_numbers = ranks.gather(list);
   return all;
 }
 
@@ -107,10 +107,10 @@ void SplineTransfer::restriction(const double *r, const double *done,
       kept++;
     }
   partial.resize(kept * w);
-  ranks.gather(partial, of_all);
+  ranks.gather(partial, gathered);
   std::fill(b.begin(), b.end(), 0.0);
-  for (std::size_t k = 0; k < of_ranks.size(); k++)
-    for (int a = 0; a < w; a++) b[of_ranks[k] * w + a] += of_all[k * w + a];
+  for (std::size_t k = 0; k < all_numbers.size(); k++)
+    for (int a = 0; a < w; a++) b[all_numbers[k] * w + a] += gathered[k * w + a];
 }
 
 void SplineTransfer::prolongation(const std::vector<double> &x, const std::vector<char> &in_system,

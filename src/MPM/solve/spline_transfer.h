@@ -51,16 +51,16 @@ class SplineTransfer {
   double memory_usage() const
   {
     return parts.memory_usage() + constrained.memory_usage() + node_list_bytes(mine) +
-        (number.capacity() + of_ranks.capacity()) * sizeof(int) +
-        (partial.capacity() + of_all.capacity()) * sizeof(double);
+        (number.capacity() + all_numbers.capacity()) * sizeof(int) +
+        (partial.capacity() + gathered.capacity()) * sizeof(double);
   }
 
  private:
   const NodeConstraints &nodes;
   LatticeRanks &ranks;
   const int order;
-  std::vector<int> of_ranks;    // nodes of the level that ranks have a part of, rank by rank
-  std::vector<double> partial, of_all;
+  std::vector<int> all_numbers;    // nodes of the level that ranks have a part of, rank by rank
+  std::vector<double> partial, gathered;
 };
 
 }    // namespace MPM_NS
