@@ -111,10 +111,10 @@ bool FineSmoother::factorize(const double *mass)
           add_product(w, i.W, j.W, mass[node], blocks.at(i.node, j.node).value);
       });
   }
-  for (const auto &held : fixed) {
-    if (!factors.together(held.row, held.column)) continue;
-    auto &to = blocks.at(held.row, held.column);
-    for (int ab = 0; ab < w * w; ab++) to.value[ab] += held.value[ab];
+  for (const auto &b : fixed) {
+    if (!factors.together(b.row, b.column)) continue;
+    auto &to = blocks.at(b.row, b.column);
+    for (int ab = 0; ab < w * w; ab++) to.value[ab] += b.value[ab];
   }
   means.each_of_all(ranks, [&](const NodeValue *begin, const NodeValue *end, double c) {
     BlockList more;

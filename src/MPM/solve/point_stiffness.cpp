@@ -82,8 +82,8 @@ void PointStiffness::start(int n, const int64_t *of)
     held = held || !constraints.plain[node];
     const auto add = [&](int at) {
       const bool known = place[at] >= 0;
-      // of a transfer.whole, nodes as they are: images of one in a narrow periodic box become one when they
-      // are projected
+      // a whole system has nodes as they are: images of one in a narrow periodic box become one
+      // when they are projected
       if (transfer.whole) held = held || known;
       if (known && !transfer.whole) return;
       place[at] = local.size();
