@@ -276,8 +276,8 @@ bool PairMPMSheet::tell_first(const Passages::Sight *found, const char *what) co
   MPI_Bcast(&passage, sizeof(passage), MPI_BYTE, first, world);
   if (comm->me == 0)    // which has the log file
     error->warning(FLERR, "Pair style mpm/sheet: node {} {}", passage.node,
-                   fmt::format(fmt::runtime(what), passage.face / 2, bodies[passage.body].elements->id,
-                               update->ntimestep));
+                   fmt::format(fmt::runtime(what), passage.face / 2,
+                               bodies[passage.body].elements->id, update->ntimestep));
   return true;
 }
 
