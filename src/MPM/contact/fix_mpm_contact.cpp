@@ -49,15 +49,16 @@
 #include "elements/fix_mpm_elements.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_node_sums.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_refined_body.h"
 #include "field/mpm_stencil.h"
 #include "force.h"
 #include "math_extra.h"
 #include "modify.h"
-#include "refine/fix_mpm_refine.h"
 #include "update.h"
 #include "walls/fix_mpm_boundary.h"
 
@@ -269,7 +270,7 @@ void FixMPMContact::check_refined(Body &body)
 {
   body.refined = nullptr;
   const std::string name = body.field->id();
-  for (auto *fix : find_fixes<FixMPMRefine>(lmp))
+  for (auto *fix : find_fixes<MPMRefinedBody>(lmp))
     if (fix->has(name)) body.refined = fix;
   if (!body.refined) return;
   body.finer = body.refined->finer_than(name);
@@ -516,8 +517,7 @@ bool FixMPMContact::map_bodies()
     foresee_walls(body);
     map_content(body);
     body.water.clear();
-    if (pressure_of_physics(*body.field))
-      surface_force_of_physics(*body.field, body.near, body.water);
+    if (pore_pressure(*body.field)) pore_surface_force(*body.field, body.near, body.water);
   }
   return true;
 }
@@ -972,7 +972,7 @@ void FixMPMContact::report_missed_water()
 {
   constexpr double MOST = 0.05;
   if (told_of_water || std::all_of(bodies.begin(), bodies.end(), [](const Body &body) {
-        return !pressure_of_physics(*body.field);
+        return !pore_pressure(*body.field);
       }))
     return;
   double all[2];

@@ -55,6 +55,9 @@ class FixMPMMaterial : public FixMPMState {
 
   /** Index of a history variable; -1 if the law has none of this name. */
   int find_history(const std::string &) const;
+  /** Index of the temperature among the history variables, and of the molten share; -1: there is none. */
+  int temperature() const { return find_history("temperature"); }
+  int molten() const { return find_history("molten"); }
 
   bool mass_varies = false;    ///< the mass of points changes with the water in their pores
   bool watching;               ///< is there a range of validity whose exit was not reported yet?

@@ -22,6 +22,7 @@
 #include "base/mpm_state.h"
 #include "field/mpm_every.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
@@ -48,7 +49,7 @@ MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
     Pointers(lmp), field(field)
 {
   state.declare(C, "mpm:C", size(), [this](int, double *row) {
-    if (!this->field.running) row[0] = NAN;    // not known, for fit()
+    if (!this->field.is_running()) row[0] = NAN;    // not known, for fit()
   });
   if (field.options.polypic) state.declare(Q, "mpm:Q", poly_size(field.lattice.dim));
 }
@@ -118,20 +119,20 @@ void MPMAffine::fit()
   enum { M = 0, X = 1, V = 4, VX = 7, XX = 16, NREAL = 22 };    // sums of mass times ...
   std::vector<double> sums(field.grid.nnodes() * NREAL, 0.0);
 
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++)
-      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        double *const s = &sums[node.number * NREAL];
-        const double *const r = node.r;
-        const double m = node.weight * atom->rmass[i], *v = atom->v[i];
-        s[M] += m;
-        for (int a = 0, k = 0; a < dim; a++) {
-          s[X + a] += m * r[a];
-          s[V + a] += m * v[a];
-          for (int b = 0; b < dim; b++) s[VX + 3 * a + b] += m * v[a] * r[b];
-          for (int b = 0; b <= a; b++) s[XX + k++] += m * r[a] * r[b];
-        }
-      });
+  each_point(field, [&](const MPMPointMap::Run &run, int i) {
+    stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+      double *const s = &sums[node.number * NREAL];
+      const double *const r = node.r;
+      const double m = node.weight * atom->rmass[i], *v = atom->v[i];
+      s[M] += m;
+      for (int a = 0, k = 0; a < dim; a++) {
+        s[X + a] += m * r[a];
+        s[V + a] += m * v[a];
+        for (int b = 0; b < dim; b++) s[VX + 3 * a + b] += m * v[a] * r[b];
+        for (int b = 0; b <= a; b++) s[XX + k++] += m * r[a] * r[b];
+      }
+    });
+  });
   field.nodes.sum(sums.data(), NREAL, 0, NREAL);
   field.nodes.complete(sums.data(), NREAL, NREAL);
 

@@ -24,6 +24,7 @@
 #include "field/mpm_every.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_point_map.h"
 #include "transfer/cpdi.h"
 #include "utils.h"
@@ -60,8 +61,9 @@ double LAMMPS_NS::half_size(const MPMField &field, int i)
 void MPMBoxes::update()
 {
   sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) size_of(i, &sizes[3 * (std::size_t) i]);
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    size_of(i, &sizes[3 * (std::size_t) i]);
+  });
 }
 
 void MPMBoxes::size_of(int i, double *size) const
@@ -259,15 +261,14 @@ void MPMCpdi::limit(int i)
 void MPMCpdi::check_corners()
 {
   const int n = 1 << field.lattice.dim;
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) {
-      double x[24], w[8];
-      const double size = corners_of(i, x, w);
-      if (size > 0.0 && *std::min_element(w, w + n) >= 0.0) continue;
-      field.guard->point_is_bad(i, "has a domain that is turned inside out",
-                                "it becomes the parallelogram of F");
-      if (field.options.bad == MPMFieldOptions::WARN) corners_of_box(i, corners[i]);
-    }
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    double x[24], w[8];
+    const double size = corners_of(i, x, w);
+    if (size > 0.0 && *std::min_element(w, w + n) >= 0.0) return;
+    field.guard->point_is_bad(i, "has a domain that is turned inside out",
+                              "it becomes the parallelogram of F");
+    if (field.options.bad == MPMFieldOptions::WARN) corners_of_box(i, corners[i]);
+  });
 }
 
 /* ---------------------------------------------------------------------- */

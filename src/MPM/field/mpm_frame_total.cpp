@@ -49,7 +49,7 @@ MPMFrameTotal::MPMFrameTotal(LAMMPS *lmp, MPMField &field, MPMPointState &state)
 {
   state.declare(X, "mpm:X", 3, [this](int i, double *row) {
     memcpy(row, atom->x[i], 3 * sizeof(double));
-    if (!this->field.running) row[0] = NAN;    // not known, for setup()
+    if (!this->field.is_running()) row[0] = NAN;    // not known, for setup()
   });
   if (field.options.most_distorted > 0.0)
     state.declare(R, "mpm:R", 9, [](int, double *row) {

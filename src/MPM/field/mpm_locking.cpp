@@ -14,7 +14,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"
-#include "step/mpm_stages.h"
+#include "field/mpm_strain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,11 +85,10 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
   auto &work = field.work;
   work.vectors.resize(3 * (std::size_t) atom->nmax);
   work.weights.resize(std::max(work.weights.size(), (std::size_t) atom->nmax));
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      value(i, work.vectors[3 * i], work.weights[i]);
-      work.vectors[3 * i + 1] = work.vectors[3 * i + 2] = 0.0;
-    }
+  each_point(field, [&](const MPMPointMap::Run &, bigint i) {
+    value(i, work.vectors[3 * i], work.weights[i]);
+    work.vectors[3 * i + 1] = work.vectors[3 * i + 2] = 0.0;
+  });
 
   const auto &pic = field.pic;
   const PointRows r = field.rows_at_rest(work.vectors.data(), work.weights.data());
@@ -137,24 +136,22 @@ void MPMLocking::strain(const double *L, double dt)
 
   const PointRows r = field.rows();
   double averaged[9 * BATCH];
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i += BATCH) {
-      const int n = std::min(BATCH, run.last - i);
-      std::copy_n(L + nL * (bigint) i, nL * n, averaged);
-      for (int p = 0; p < n; p++) {
-        const double mine = frame.volume_change(i + p, averaged + nL * p, dt);
-        double more = 0.0;    // scale - 1
-        if (volume[i + p] > 0.0) {
-          const double mean = average[3 * (bigint) (i + p)];
-          const double change = J ? mean / field.points->jacobian(i + p) - 1.0 : mean;
-          const double q = (change - mine) / (1.0 + mine);
-          const double root = plane ? std::sqrt(1.0 + q) : std::cbrt(1.0 + q);
-          more = q / (plane ? root + 1.0 : root * (root + 1.0) + 1.0);
-        }
-        frame.stretch(i + p, more, dt, averaged + nL * p);
+  each_point_batch(field, [&](const MPMPointMap::Run &run, int i, int n) {
+    std::copy_n(L + nL * (bigint) i, nL * n, averaged);
+    for (int p = 0; p < n; p++) {
+      const double mine = frame.volume_change(i + p, averaged + nL * p, dt);
+      double more = 0.0;    // scale - 1
+      if (volume[i + p] > 0.0) {
+        const double mean = average[3 * (bigint) (i + p)];
+        const double change = J ? mean / field.points->jacobian(i + p) - 1.0 : mean;
+        const double q = (change - mine) / (1.0 + mine);
+        const double root = plane ? std::sqrt(1.0 + q) : std::cbrt(1.0 + q);
+        more = q / (plane ? root + 1.0 : root * (root + 1.0) + 1.0);
       }
-      MPMStages::update_stress(field, r, run, i, n, averaged, dt);
+      frame.stretch(i + p, more, dt, averaged + nL * p);
     }
+    update_stress(field, r, run, i, n, averaged, dt);
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -177,9 +174,8 @@ void MPMLocking::average_pressure()
     V = atom->vfrac[i] * J;
   });
 
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      const double more = volume[i] / atom->vfrac[i] * pressure[3 * i] - mean(own[i]);
-      for (int c = 0; c < 6; c++) tau[6 * i + c] = own[i][c] + (c < 3 ? more : 0.0);
-    }
+  each_point(field, [&](const MPMPointMap::Run &, bigint i) {
+    const double more = volume[i] / atom->vfrac[i] * pressure[3 * i] - mean(own[i]);
+    for (int c = 0; c < 6; c++) tau[6 * i + c] = own[i][c] + (c < 3 ? more : 0.0);
+  });
 }

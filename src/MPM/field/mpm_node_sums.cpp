@@ -292,6 +292,7 @@ void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
   });
 
   share.resize(nmax);
-  for (const auto &run : map.runs)
-    for (int i = run.first; i < run.last; i++) share[i] = values[3 * (std::size_t) i];
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    share[i] = values[3 * (std::size_t) i];
+  });
 }

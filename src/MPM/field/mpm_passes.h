@@ -21,6 +21,21 @@
 
 namespace LAMMPS_NS {
 
+/** Calls use(run, i) for each point i of the field. */
+template <class Use> void each_point(const MPMField &field, const Use &use)
+{
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++) use(run, i);
+}
+
+/** Calls use(run, first, n) for n <= BATCH points of a run at a time. */
+template <class Use> void each_point_batch(const MPMField &field, const Use &use)
+{
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i += MPM_NS::BATCH)
+      use(run, i, std::min(MPM_NS::BATCH, run.last - i));
+}
+
 /** Makes a range of base nodes in a tile empty: lower bounds in box[0..2], upper bounds in box[3..5]. */
 inline void reset_box(int box[6])
 {

@@ -10,23 +10,38 @@
 #define LMP_MPM_PLAN_H
 
 #include "field/mpm_node_action.h"
+#include "field/mpm_stage_data.h"
+#include "field/mpm_watch.h"
 #include "pointers.h"
-#include "watch/mpm_energy_watch.h"
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMAddedStress;
 class MPMField;
+class MPMLoad;
 class MPMPhysics;
+class MPMPorePressure;
 
 /** The step of all fields as a list of named stages, which is made once at the start of a run. Each of the
  *  four schemes is one such list, see mpm_step.cpp. The cost of each stage is measured. */
 class MPMPlan : protected Pointers {
  public:
   using Each = std::function<void(MPMField &)>;
+  using Data = MPMStageData;
   using Wanted = std::function<bool(const MPMField &)>;
+
+  struct Stage {
+    std::string name;
+    Each run;
+    Data reads, writes;
+    std::vector<MPMField *> fields;    ///< the first one only, if it is run once
+    bool once;
+    std::vector<double> seconds;    ///< [field], spent in this stage
+  };
 
   /** Places in each list where other physics can add stages. Physics adds them in the order of definition. */
   enum Place {
@@ -42,31 +57,43 @@ class MPMPlan : protected Pointers {
 
   std::vector<MPMField *> fields;
   std::vector<MPMNodeAction *> actions;    ///< in the order in which they act
-  std::vector<MPMPhysics *> physics;       ///< in the order of definition
+  // in the order of definition
+  std::vector<MPMPhysics *> physics;
+  std::vector<MPMAddedStress *> added_stresses;
+  std::vector<MPMLoad *> loads;
+  std::vector<MPMPorePressure *> pore_pressures;
 
-  MPMEnergyWatch watch;
+  std::unique_ptr<MPMWatch> watch;    ///< of all fields
 
-  explicit MPMPlan(class LAMMPS *lmp) : Pointers(lmp), watch(lmp, fields) {}
+  explicit MPMPlan(class LAMMPS *lmp) : Pointers(lmp) {}
 
-  /** Find all fields, node actions, and physics, and make the list. */
-  void make();
+  /** Find all fields, node actions, and physics, and make the list of stages with the scheme. */
+  void make(const std::function<void(MPMPlan &)> &scheme);
 
   /** Append a stage that runs for each field for which wanted is true (null: for all). There is no such stage
    *  if no field wants it. */
-  void each(const std::string &name, Each run, Wanted wanted = nullptr);
+  void each(const std::string &name, const Data &reads, const Data &writes, Each run,
+            Wanted wanted = nullptr);
   /** Append a stage that runs once for all fields, if any field wants it. */
-  void together(const std::string &name, const std::function<void()> &run, Wanted wanted = nullptr);
+  void together(const std::string &name, const Data &reads, const Data &writes,
+                const std::function<void()> &run, Wanted wanted = nullptr);
   /** Append the node actions of one stage, if there are any. */
   void node_actions(MPMNodeAction::Stage, Wanted wanted = nullptr);
   /** Append the stages that other physics has at this place. */
   void place(Place);
 
+  /** The list of this run. */
+  const std::vector<Stage> &list() const { return stages; }
+  /** From now on, calls a function before (done is false) and after each stage. */
+  using Observer = std::function<void(const Stage &, const MPMField &, bool done)>;
+  void observe(Observer use) { observer = std::move(use); }
+
   /** Start of a run. */
   void start();
   /** Called in each step of LAMMPS; runs the stages if a step of the cycle is due. */
   void step();
-  /** Writes the summary of a run for one field to screen and log file: state, energy, and cost. */
-  void report(const MPMField &, double bytes_per_point) const;
+  /** Writes the summary of a run for one field to screen and log file: state (a text), energy, and cost. */
+  void report(const MPMField &, double bytes_per_point, const std::string &state) const;
 
   /** Find the blocks in reach of points, for all fields whose points have moved in memory or out of reach. */
   void find_blocks();
@@ -80,28 +107,16 @@ class MPMPlan : protected Pointers {
   void act_on_nodes(MPMNodeAction::Stage);
 
  private:
-  struct Stage {
-    std::string name;
-    Each run;
-    std::vector<MPMField *> fields;    // the first one only, if it is run once
-    bool once;
-    std::vector<double> seconds;    // [field], spent in this stage
-  };
   struct Cost {
     std::string stage;
     double time;    // [ns] per step and point of one process
   };
   std::vector<Stage> stages;
+  Observer observer;
   bool physics_looks_beyond() const;
   std::vector<Cost> costs(const MPMField &, double scale) const;
   double wall_start = 0.0, cpu_start = 0.0;    // at the start of the run [s]
 };
-
-/** Make the list of stages of one scheme. */
-void make_usl(MPMPlan &);
-void make_usf(MPMPlan &);
-void make_musl(MPMPlan &);
-void make_usavg(MPMPlan &);
 
 }    // namespace LAMMPS_NS
 #endif

@@ -11,13 +11,14 @@
 #include "atom.h"
 #include "base/mpm_points.h"
 #include "comm.h"
-#include "elements/fix_mpm_elements.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_cpdi.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_internal_force.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
@@ -205,26 +206,26 @@ double MPMTimeLimit::share_of_thin_nodes() const
   const MPMStencil stencil(field);
   constexpr int NREAL = 2;
   std::vector<double> sums(grid.nnodes() * NREAL, 0.0);
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++)
-      stencil.visit(grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        const double weight = node.weight, *const r = node.r;
-        if (weight <= 0.0) return;
-        double slope = 0.0;    // square of (grad N)/N
-        int index[3];
-        grid.node_index(node.number, index);
-        for (int d = 0; d < field.lattice.dim; d++) {
-          const double a = fabs(r[d]);
-          if (!bernstein)
-            slope += 1.0 / ((1.0 - a) * (1.0 - a));
-          else if (index[d] % 2)
-            slope += 4.0 * a * a / ((1.0 - a * a) * (1.0 - a * a));
-          else
-            slope += 1.0 / ((1.0 - 0.5 * a) * (1.0 - 0.5 * a));
-        }
-        sums[node.number * NREAL] += atom->vfrac[i] * weight;
-        sums[node.number * NREAL + 1] += atom->vfrac[i] * weight * weight * slope;
-      });
+  each_point(field, [&](const MPMPointMap::Run &run, int i) {
+    stencil.visit(grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+      const double weight = node.weight, *const r = node.r;
+      if (weight <= 0.0) return;
+      double slope = 0.0;    // square of (grad N)/N
+      int index[3];
+      grid.node_index(node.number, index);
+      for (int d = 0; d < field.lattice.dim; d++) {
+        const double a = fabs(r[d]);
+        if (!bernstein)
+          slope += 1.0 / ((1.0 - a) * (1.0 - a));
+        else if (index[d] % 2)
+          slope += 4.0 * a * a / ((1.0 - a * a) * (1.0 - a * a));
+        else
+          slope += 1.0 / ((1.0 - 0.5 * a) * (1.0 - 0.5 * a));
+      }
+      sums[node.number * NREAL] += atom->vfrac[i] * weight;
+      sums[node.number * NREAL + 1] += atom->vfrac[i] * weight * weight * slope;
+    });
+  });
   field.nodes.sum(sums.data(), NREAL, 0, NREAL);
   double mine = 0.0, all;
   for (std::size_t k = 0; k < sums.size(); k += NREAL)

@@ -46,7 +46,7 @@ void MPMTransferHeat::init() const
 {
   const bool taken =
       std::any_of(field.materials.begin(), field.materials.end(), [](auto *material) {
-        return material->find_history("heat") >= 0 || material->find_history("temperature") >= 0;
+        return material->find_history("heat") >= 0 || material->temperature() >= 0;
       });
   if (!taken && comm->me == 0)
     error->warning(FLERR,

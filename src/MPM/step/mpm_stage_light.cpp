@@ -15,6 +15,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_passes.h"
+#include "field/mpm_strain.h"
 #include "step/mpm_stages.h"
 
 using namespace LAMMPS_NS;
@@ -57,9 +58,9 @@ void MPMStages::blend_light_nodes(MPMField &field)
   const MPMFrame &frame = *field.frame;
   const MPMRows places = frame.places();
   volumes.resize(field.atom->nmax);
-  for (const auto &run : map.runs)
-    for (int i = run.first; i < run.last; i++)
-      volumes[i] = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(places[i][0]);
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    volumes[i] = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(places[i][0]);
+  });
   PointRows r = field.rows();
   r.mass = volumes.data();
   const TransferStep s = field.step_data();
