@@ -39,7 +39,7 @@
 #include "field/mpm_point_batches.h"
 #include "field/mpm_stencil.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 
 #include <algorithm>

@@ -67,7 +67,7 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_point_batches.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "update.h"

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 #include "transfer/isa.h"
 

@@ -6,11 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Compiled once for each instruction set (MPM_ISA: base, v3, v4), see material/batch.cpp.
+// Compiled once for each instruction set (MPM_ISA: base, v3, v4), see material/batch_kernels.cpp.
 // Rows of LAMMPS arrays to columns of a batch and back: four points at a time by transposing
 // 4x4 pieces in registers, the last few one by one.
 
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "math/matrix.h"
 #include "transfer/isa.h"
 #include "transfer/vector.h"
