@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
 // License, version 2; see the file LICENSE.
 
-// labels: unit input physics
+// labels: unit input physics ranks
 // mpi: 1 4
 
 // create_points ... split: points whose distance is a function of the place.

@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
 // License, version 2; see the file LICENSE.
 
-// labels: unit physics restart
+// labels: unit physics restart ranks
 // mpi: 1 2
 
 // Random fields: moments, correlation, and that they depend on nothing but position, length, and

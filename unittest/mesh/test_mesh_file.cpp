@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
 // License, version 2; see the file LICENSE.
 
-// labels: unit
+// labels: unit ranks
 // mpi: 1 3
 
 // One mesh in the files of several programs: the same points, and what the file says of them.

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// labels: physics mpi restart input
+// labels: physics mpi restart input ranks
 // mpi: 1 3
 
 // Polynomial particle in cell with bilinear modes: transfer polypic.
