@@ -237,6 +237,7 @@ TEST(ThinElements, WovenTrellis)
 // sag .39978 for EA/W = 102
 SERIAL_TEST(ThinElements, Catenary)
 {
+  LONG_CASE();
   double sag[2];
   for (const int fine : {0, 1}) {
     const double h = fine ? 0.01 : 0.02;
@@ -497,8 +498,9 @@ SERIAL_TEST(Bending, FreeVibrations)
 // cells before the rim, as the manual advises
 SERIAL_TEST(ThinElements, HenckysMembrane)
 {
+  LONG_CASE();
   const double h = 0.05, a = 0.5;
-  for (const double off : first_of(1, {0.013, 0.0})) {
+  for (const double off : {0.0, 0.013}) {
     ScratchFile file("membrane.msh", disk(12, 0.62, {off, 0.7 * off, 0.4 * off}));
     Scene run(
         MPM_TEST::box(3, "si", "f f f", "-0.76 0.76 -0.76 0.76 -0.16 0.16", 1, 0.5 * h) +

@@ -348,6 +348,7 @@ SERIAL_TEST(Shear, Poiseuille)
 // one stress
 SERIAL_TEST(Shear, Decay)
 {
+  LONG_CASE();
   for (const bool implicit : {false, true}) {
     const int n = 16;
     const Layers layers = {n, 2, 1, n / 2 + 0.5, {1.0, 4.0}, {1.0, 0.5}};

@@ -121,7 +121,7 @@ SERIAL_TEST(Formulations, DifferInDamping)
 // Terzaghi's column at T = 0.2, as without inertia
 SERIAL_TEST(Consolidation, Terzaghi)
 {
-  for (const double Kf : {2.2e8, 2.2e9}) {
+  for (const double Kf : first_of(1, {2.2e8, 2.2e9})) {
     const auto result = consolidate(20, MOVES + "yhi pressure 0", 1.0, 0.0, Kf);
     EXPECT_LT(measured(strprintf("Kf %g, rms", Kf), result.rms), 0.01);
     EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
@@ -134,6 +134,7 @@ SERIAL_TEST(Consolidation, Terzaghi)
 // of an order above one, as without inertia of the water
 SERIAL_TEST(Consolidation, Converges)
 {
+  LONG_CASE();
   double rms[2];
   for (const bool fine : {false, true})
     rms[fine] = measured(

@@ -95,6 +95,7 @@ PARAMETER_TEST(Conservation, MassAndMomentum, std::string, ValuesIn(all_variants
 
 PARAMETER_TEST(NoiseAtRest, DoesNotGrow, std::string, ValuesIn(all_variants()))
 {
+  LONG_AFTER(26);
   Scene run(rectangle("-0.43 0.37 -0.2 0.2", GetParam()) + "compute e all mpm/energy\n");
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> uniform(-1.0e-3, 1.0e-3);
