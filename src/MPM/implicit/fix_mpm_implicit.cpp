@@ -37,92 +37,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/implicit static|euler|newmark|midpoint|alpha|hht keyword value ...
-------------------------------------------------------------------------- */
-
-Options MPMImplicitOptions::declare()
-{
-  using namespace option;
-  Options options("fix mpm/implicit");
-  options.argument(word(
-      time,
-      {{"static", STATIC, "without inertia: each step ends in equilibrium"},
-       {"euler", EULER, "backward Euler: first order in time, damps fast motion"},
-       {"newmark", NEWMARK, "Newmark's method: second order and without damping for gamma = 1/2"},
-       {"midpoint", MIDPOINT,
-        "mid-point rule: second order, without damping, keeps angular momentum"},
-       {"alpha", ALPHA, "generalized alpha method: second order, damps high frequencies only"},
-       {"hht", HHT,
-        "method of Hilber, Hughes, and Taylor: as alpha, with more damping of medium "
-        "frequencies"}}));
-  options.add("gamma",
-              {number(gamma, "G", {0.5, 1.0, true, true}, "",
-                      "parameter gamma of Newmark's method; values above 1/2 damp, with "
-                      "first-order accuracy")});
-  options.add("rho",
-              {number(rho, "R", {0.0, 1.0, true, true}, "",
-                      "parameter rho of alpha and hht: the share of the highest frequencies that "
-                      "is left after a step")});
-  options.add("tolerance",
-              {number(tolerance, "R", {0.0, 1.0, false, false}, "",
-                      "forces are balanced when the residual is below this share of all forces")});
-  options
-      .add("absolute",
-           {number(absolute, "F", NOT_NEGATIVE, "force",
-                   "forces are also balanced when the sum of the residual is below this force")})
-      .standard("0 (not used)");
-  options.add(
-      "iterations",
-      {integer(most_iterations, "N", POSITIVE, "largest number of Newton iterations in a step")});
-  options.add(
-      "parts",
-      {integer(most_parts, "N", POSITIVE,
-               "a step that does not converge is divided into parts, down to 1/N of the step")});
-  options.add("linear",
-              {integer(most_linear, "N", POSITIVE,
-                       "largest number of iterations of the linear solver in a Newton iteration")});
-  options.add("accuracy",
-              {number(least_accuracy, "R", {0.0, 1.0, false, false}, "",
-                      "largest relative residual of the linear solutions")});
-  options.add(
-      "solver",
-      {word(
-          preconditioner,
-          {{"blocks", BLOCKS,
-            "conjugate gradients, preconditioned with the stiffness of each node by itself"},
-           {"multigrid", MULTIGRID,
-            "the same on a sequence of lattices, each with twice the spacing: for many cells"}})});
-  options
-      .add("slip",
-           {number(slip, "D", POSITIVE, "distance",
-                   "walls reach full Coulomb friction where surfaces slip by much more than this "
-                   "in a step")})
-      .standard("1e-5 node spacings");
-  options
-      .add("stabilize",
-           {number(stabilize, "C", NOT_NEGATIVE, "",
-                   "stiffness of nodes that points barely reach, relative to the modulus of these "
-                   "points")})
-      .then([this] {
-        stabilize_is_given = true;
-      })
-      .standard("0 until a step does not converge, then 1");
-  options.add("report", {yes_no(report)},
-              "print the forces before each Newton iteration to the screen and the log file");
-  options.refuse([=] {
-    return OptionRules{
-        {time != NEWMARK, "gamma", "is of Newmark's method: use newmark, or remove it"},
-        {stabilize > 0.0 && time != STATIC && time != EULER, "stabilize",
-         "is for static and euler: remove it"},
-        {!keeps_acceleration(), "rho",
-         "is of the methods with a damping of high frequencies: use alpha or hht, or remove it"},
-        {time == HHT && rho < 0.5, "rho",
-         "is at least 0.5 in the method of Hilber, Hughes, and Taylor: use alpha for {rho}"}};
-  });
-  return options;
-}
-
 FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   if (igroup != 0)
@@ -136,7 +50,7 @@ FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
   restart_global = 1;
   time_depend = 1;
   dynamic_group_allow = 1;
-  if (keeps_acceleration()) state.declare(kept.rows, "acceleration", domain->dimension);
+  if (time.keeps_acceleration()) state.declare(kept.rows, "acceleration", domain->dimension);
   keep_arrays();
 }
 
@@ -175,7 +89,8 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
   auto *const field = &of;
   const auto &options = field->options;
   for (auto *other : plan.physics)
-    if (other->joins_motion() && (time == NEWMARK || time == MIDPOINT))
+    if (other->joins_motion() &&
+        (time.kind == MPMTimeMethod::NEWMARK || time.kind == MPMTimeMethod::MIDPOINT))
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/implicit solves for the pressure of fix {} {} at the end of a step, which "
@@ -187,15 +102,16 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
         "implicit steps end with the stress that goes with their velocities: use scheme usl"},
        {options.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
         "forces are balanced with the lumped mass: use transfer apic or flip"},
-       {time == STATIC && adds_change(options.transfer), "transfer flip",
+       {time.is_static() && adds_change(options.transfer), "transfer flip",
         "points have no velocity in statics: use transfer pic, which has the same forces, or apic"},
-       {(time == NEWMARK || keeps_acceleration()) &&
+       {(time.kind == MPMTimeMethod::NEWMARK || time.keeps_acceleration()) &&
             !(options.transfer == FLIP && options.flip == 1.0),
         "this transfer",
         "points move with another velocity than they have at the end of the step: use transfer "
         "flip 1.0, "
         "or euler or midpoint instead"},
-       {time == MIDPOINT && !(options.transfer == FLIP && options.flip == 1.0) &&
+       {time.kind == MPMTimeMethod::MIDPOINT &&
+            !(options.transfer == FLIP && options.flip == 1.0) &&
             !(options.transfer == APIC && is_mls(options.shape, options.transfer) &&
               !options.strains_by_gradient() && !field->frame->is_total()),
         "this transfer",
@@ -293,7 +209,7 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
           "mpm/contact names, but there are {} of these and {} of those, and fix mpm {}: let "
           "bodies share a fix mpm, name all of them in one fix mpm/contact, or use explicit steps",
           fields.size(), contacts.size(), field->id());
-  if (keeps_acceleration())
+  if (time.keeps_acceleration())
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/implicit alpha and hht keep accelerations of points, whose part in the "
                "force between bodies (fix mpm/contact {}) would not be told: use newmark or "
@@ -330,7 +246,7 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
 /** Can nodes that points barely reach get a stiffness of their own? */
 bool FixMPMImplicit::may_stabilize(const MPMField &of) const
 {
-  return (time == STATIC || time == EULER) &&
+  return !time.moves_by_mean() &&
       (of.options.shape == MPM_NS::QUADRATIC || of.options.shape == MPM_NS::CUBIC) &&
       !of.options.axisymmetric && of.elements.empty();
 }
@@ -354,7 +270,7 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("implicit step", [this]() {
       step();
     });
-  if (place == MPMPlan::AFTER_ACTIONS && time == STATIC)
+  if (place == MPMPlan::AFTER_ACTIONS && time.is_static())
     plan.together("implicit step", [this]() {
       solver->set_velocities();
     });
@@ -366,11 +282,11 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
     plan.together("implicit step", [this]() {
       solver->check_contacts();
     });
-  if (place == MPMPlan::AFTER_MOTION && time == STATIC)
+  if (place == MPMPlan::AFTER_MOTION && time.is_static())
     plan.together("implicit step", [this]() {
       rest();
     });
-  if (place == MPMPlan::AFTER_MOTION && time == MIDPOINT &&
+  if (place == MPMPlan::AFTER_MOTION && time.kind == MPMTimeMethod::MIDPOINT &&
       std::any_of(fields.begin(), fields.end(), [](const MPMField *of) {
         return (bool) of->affine;
       }))
@@ -396,11 +312,11 @@ void FixMPMImplicit::setup(int)
 
 void FixMPMImplicit::step()
 {
-  if (time == STATIC && !told_of_turns) tell_of_turns();
+  if (time.is_static() && !told_of_turns) tell_of_turns();
   const double begin = platform::walltime();
   const std::vector<double> energies = solver->step(fields[0]->step_dt());
   seconds += platform::walltime() - begin;
-  for (std::size_t k = 0; k < fields.size() && time == STATIC; k++) {
+  for (std::size_t k = 0; k < fields.size() && time.is_static(); k++) {
     fields[k]->ledger.take(-energies[k] * force->mvv2e);
     taken[0] -= energies[k] * force->mvv2e;
   }
@@ -482,13 +398,13 @@ void FixMPMImplicit::tell_of_turns()
 
 std::vector<MPMPhysics::Account> FixMPMImplicit::accounts() const
 {
-  if (time != STATIC) return {};
+  if (!time.is_static()) return {};
   return {{"rest", false}, {"work at rest", false, true}};
 }
 
 void FixMPMImplicit::account(double *values) const
 {
-  for (int k = 0; k < 2 && time == STATIC; k++) values[k] -= taken[k];
+  for (int k = 0; k < 2 && time.is_static(); k++) values[k] -= taken[k];
 }
 
 /* ---------------------------------------------------------------------- */
@@ -504,14 +420,14 @@ void FixMPMImplicit::post_run()
   const double made = total[MADE] - at_start[MADE];
   const std::string levels = made > 0.0 ? fmt::format("; multigrid made {} times", (int64_t) made)
                                         : "";
-  static constexpr const char *PARTS_OF_STEP[MPMImplicit::NPARTS] = {
+  static constexpr const char *PARTS_OF_STEP[MPMImplicitTimes::NPARTS] = {
       "forces", "tangents", "preconditioners", "linear systems"};
   std::string parts;
-  for (int k = 0; k < MPMImplicit::NPARTS; k++)
-    parts +=
-        fmt::format("{}{:.0f} % {}", k ? ", " : "",
-                    100.0 * solver->seconds_of((MPMImplicit::Part) k) / std::max(seconds, 1.0e-300),
-                    PARTS_OF_STEP[k]);
+  for (int k = 0; k < MPMImplicitTimes::NPARTS; k++)
+    parts += fmt::format("{}{:.0f} % {}", k ? ", " : "",
+                         100.0 * solver->seconds_of((MPMImplicitTimes::Part) k) /
+                             std::max(seconds, 1.0e-300),
+                         PARTS_OF_STEP[k]);
   utils::logmesg(lmp,
                  "Fix mpm/implicit {}: {:.2f} Newton iterations in a step, {:.1f} of the linear "
                  "solver in each; "
@@ -564,5 +480,5 @@ void FixMPMImplicit::restart(char *buf)
   std::copy_n(list, (int) NTOTAL, total);
   if (comm->me == 0) std::copy_n(list + NTOTAL, 2, taken);
   std::copy_n(list + NTOTAL + 2, (int) NLAST, last);
-  kept.known = keeps_acceleration() && list[NTOTAL + 2 + NLAST] != 0.0;
+  kept.known = time.keeps_acceleration() && list[NTOTAL + 2 + NLAST] != 0.0;
 }

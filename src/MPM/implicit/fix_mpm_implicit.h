@@ -43,14 +43,14 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   bool looks_beyond_points() const override { return false; }
   /** True except for the mid-point rule, which keeps angular momentum with moving least squares. */
-  bool brings_to_rest() const override { return time != MIDPOINT; }
+  bool brings_to_rest() const override { return time.kind != MPMTimeMethod::MIDPOINT; }
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
  private:
   std::vector<MPMField *> fields;
   std::unique_ptr<MPMImplicit> solver;
-  MPMImplicit::Accelerations kept;    // of points, for methods that need those of the previous step
+  MPMPointAccelerations kept;    // of points, for methods that need those of the previous step
   enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, MADE, STUCK, NTOTAL };
   double total[NTOTAL] = {};    // counts so far
   enum {

@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_LOOSE_NODES_H
-#define LMP_MPM_LOOSE_NODES_H
+#ifndef LMP_MPM_NODE_STABILIZATION_H
+#define LMP_MPM_NODE_STABILIZATION_H
 
 #include "field/mpm_stencil.h"
 #include "pointers.h"
@@ -30,12 +30,12 @@ class MPMField;
  *  Here M is the modulus of the point, and s is the amount, as a share, by which the volume of the node falls
  *  short of a tenth of that of the fullest node. Linear motions, and motions of nodes with enough points, have
  *  no such energy, and each step begins without any. */
-class MPMLooseNodes : protected Pointers {
+class MPMNodeStabilization : protected Pointers {
  public:
-  MPMLooseNodes(class LAMMPS *lmp, MPMField &field);
+  MPMNodeStabilization(class LAMMPS *lmp, MPMField &field);
 
   /** Start of a step. c: factor of the energy; moduli: M [n] of points. Collective. */
-  void begin(double c, const std::vector<double> &moduli);
+  void begin_step(double c, const std::vector<double> &moduli);
   /** Adds the forces after the motion u [node][dim]. As they are linear in u, these are also the change of the
    *  forces for a change u [mass acceleration]. Collective. */
   void add_forces(const double *u, double *force);

@@ -16,7 +16,7 @@
 
    where accelerations are those by all other forces. With beta = 1/4 and gamma = 1/2, u = dt (v0 + v)/2, and
    a wall changes the energy by its force times the gap that it closes, which takes energy. The reactions that
-   Newton's method finds for beta m a1 are larger than f by the factor (1 - of_inertia)/(2 beta).
+   Newton's method finds for beta m a1 are larger than f by the factor (1 - alpha_m)/(2 beta).
 
    Nodes that come to a wall would leave it with the opposite velocity, and bounce in each step. An impulse at
    the end of the step gives them the velocity of the wall, as in RATTLE in comparison to SHAKE (H.C.
@@ -33,67 +33,50 @@
    too.
 ------------------------------------------------------------------------- */
 
-#include "implicit/mpm_implicit.h"
+#include "implicit/mpm_step_motion.h"
 
-#include "field/mpm_field.h"
-#include "field/mpm_trial_contact.h"
+#include "implicit/mpm_constraints.h"
+#include "implicit/mpm_force_balance.h"
+#include "implicit/mpm_newton.h"
+#include "implicit/mpm_solved_nodes.h"
 
 using namespace LAMMPS_NS;
-using namespace MPM_NS;
-
-double MPMImplicitOptions::share_of_end() const
-{
-  if (!moves_by_mean()) return 1.0;
-  if (time == MIDPOINT) return 0.5;
-  const auto with = coefficients();
-  return with.beta / with.gamma;
-}
-
-/** Share of the reactions in the balance of forces that changes the momentum in the step. */
-double MPMImplicit::share_of_contact() const
-{
-  if (options.time == MPMImplicitOptions::MIDPOINT) return 1.0;
-  const auto with = options.coefficients();
-  return 2.0 * with.beta / (1.0 - with.of_inertia);
-}
 
 /** Is friction part of the accelerations at both ends? In the first step the friction at its start is
  *  unknown. */
-bool MPMImplicit::accelerates_by_friction() const
+bool MPMStepMotion::accelerates_by_friction() const
 {
-  return impacts && options.keeps_acceleration() && kept.known;
+  return impacts && time.keeps_acceleration() && kept.known;
 }
 
-/** Called when velocities and accelerations of the start, and u*, are known. */
-void MPMImplicit::begin_impacts()
+/** Called when velocities and accelerations of the start are known. With contact, what slips is the velocity at the
+ *  end after the motion u, times dt and scaled so that u has the factor one. */
+void MPMStepMotion::set_friction()
 {
-  const double share = options.share_of_end();
-  offset.resize(nreals());
-  for (int64_t k = 0; k < nreals(); k++) offset[k] = dt * (share - 1.0) * start[k];
+  if (!impacts) return constraints.set_friction(1.0, {});
+  const double share = time.end_velocity_share();
+  std::vector<double> offset(nodes.nreals());
+  for (int64_t k = 0; k < nodes.nreals(); k++) offset[k] = dt * (share - 1.0) * start[k];
   if (accelerates_by_friction())
-    for (int64_t k = 0; k < nreals(); k++) offset[k] += dt * dt * (share - 0.5) * acceleration[k];
-}
-
-/** Velocity at the end after the motion u, times dt and scaled so that u has the factor one. */
-const double *MPMImplicit::slide_of(const std::vector<double> &u)
-{
-  if (!impacts) return u.data();
-  slide.resize(u.size());
-  for (std::size_t k = 0; k < u.size(); k++) slide[k] = u[k] + offset[k];
-  return slide.data();
+    for (int64_t k = 0; k < nodes.nreals(); k++)
+      offset[k] += dt * dt * (share - 0.5) * acceleration[k];
+  constraints.set_friction(accelerates_by_friction() ? time.reaction_share() : 1.0,
+                           std::move(offset));
 }
 
 /** Sets velocities, and accelerations that are kept, at the end of the step. Collective. */
-void MPMImplicit::end_impacts(const std::vector<double> &u)
+void MPMStepMotion::end_contact(const std::vector<double> &u)
 {
-  const bool midpoint = options.time == MPMImplicitOptions::MIDPOINT,
-             keeps = options.keeps_acceleration(), with_friction = accelerates_by_friction();
-  const auto with = options.coefficients();
-  const double of_contact = share_of_contact();
-  ending.assign(nreals(), 0.0);
-  if (keeps) next.assign(nreals(), 0.0);
-  for (int64_t k = 0; k < nreals(); k++) {
-    const double m = mass[k / width];
+  const bool midpoint = time.kind == MPMTimeMethod::MIDPOINT, keeps = time.keeps_acceleration(),
+             with_friction = accelerates_by_friction(), rubs = constraints.rubs();
+  const auto with = time.coefficients();
+  const double share = time.reaction_share();
+  const auto &residual = newton.residual(), &free = newton.free_forces(),
+             &friction = constraints.friction_forces();
+  ending.assign(nodes.nreals(), 0.0);
+  if (keeps) end_acceleration.assign(nodes.nreals(), 0.0);
+  for (int64_t k = 0; k < nodes.nreals(); k++) {
+    const double m = nodes.mass[k / nodes.width];
     if (!(m > 0.0)) continue;
     if (midpoint) {
       ending[k] = 2.0 * u[k] / dt - start[k];
@@ -101,14 +84,13 @@ void MPMImplicit::end_impacts(const std::vector<double> &u)
     }
     const double rubbing = rubs ? friction[k] / m : 0.0,
                  contact = (free[k] - residual[k]) / m - (with_friction ? rubbing : 0.0),
-                 end = (inertia * (u[k] - from[k]) - contact - with.of_inertia * acceleration[k]) /
-        (1.0 - with.of_inertia);
-    ending[k] = start[k] + dt * ((1.0 - with.gamma) * acceleration[k] + with.gamma * end) +
-        dt * of_contact * contact;
-    if (keeps) next[k] = end + (with_friction ? 0.0 : of_contact * rubbing);
+                 pull = balance.inertia_per_mass() * (u[k] - balance.predictor[k]),
+                 end = with.end_acceleration(pull - contact, acceleration[k]);
+    ending[k] = start[k] + with.velocity_change(dt, acceleration[k], end) + dt * share * contact;
+    if (keeps) end_acceleration[k] = end + (with_friction ? 0.0 : share * rubbing);
   }
   stopped = ending;
-  act(stopped.data());
-  for (auto *contact : contacts) contact->take_stop();
-  if (keeps) project(next.data());
+  constraints.act(stopped.data());
+  constraints.take_stop();
+  if (keeps) constraints.project(end_acceleration.data());
 }
