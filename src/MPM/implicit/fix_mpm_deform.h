@@ -18,6 +18,8 @@ FixStyle(mpm/deform,FixMPMDeform);
 #include "declare/option.h"
 #include "field/mpm_physics.h"
 
+#include "implicit/mpm_mean_deformation.h"
+
 #include "fix.h"
 
 namespace LAMMPS_NS {
@@ -25,11 +27,10 @@ class MPMField;
 
 /** Keywords of fix mpm/deform. */
 struct MPMDeformOptions {
-  enum Drive { HELD, ERATE, TRATE, STRAIN, STRESS };
-  static constexpr int NPART = 6;    ///< xx yy zz xy xz yz
+  static constexpr int NPART = MPMMeanDeformation::NPART;
 
-  Drive drive[NPART] = {HELD, HELD, HELD, HELD, HELD, HELD};
-  MPM_NS::NumberOrVariable wanted[NPART];    ///< rate, strain, or stress
+  MPMMeanDeformation::Drive drive[NPART] = {};    ///< HELD
+  MPM_NS::NumberOrVariable wanted[NPART];         ///< rate, strain, or stress
 
   MPM_NS::Options declare(int dimension);
 };
@@ -46,7 +47,7 @@ class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
   int setmask() override { return 0; }
   void init() override;
   int modify_param(int, char **) override;
-  double compute_scalar() override { return past.work; }
+  double compute_scalar() override { return cell.past.work; }
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -58,30 +59,13 @@ class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
  private:
   std::vector<MPMField *> fields;
 
-  // state in restart files, the same on all ranks
-  struct {
-    double F[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};    // mean, row-major
-    // components with a given stress: rate of the deformation [1/time]; lack of stress in the last step; deformation and time
-    // since the last change of sign of that lack
-    double speed[NPART] = {}, lack[NPART] = {}, way[NPART] = {}, time[NPART] = {};
-    double tau[6] = {};    // mean Kirchhoff stress over the cell before deformation [pressure]
-    double P[9] = {};      // first Piola-Kirchhoff stress, the same mean
-    double work = 0.0;     // work of the mean deformation so far [energy]
-    double known = 0.0;    // 1: the stress is known
-  } past;
-  static constexpr int NREAL = 9 + 4 * NPART + 6 + 9 + 2;
-  double *reals() { return past.F; }
-
-  double next[9];    // F at the end of the step
-  double rate[9];    // rate of F in this step, as seen by the frames
+  MPMMeanDeformation cell;    // the same on all ranks
 
   double volume() const;
-  double length(int axis) const;
-  double stress(int part) const;
   void refuse_combinations() const;
   void warn_of_strain() const;
   void find_motion();
-  void find_stress();
+  void find_stress(double *mean_tau, double *mean_P);
   void end_motion();
 };
 

@@ -9,17 +9,14 @@
 #include "implicit/fix_mpm_implicit.h"
 
 #include "base/mpm_options.h"
-#include "contact/fix_mpm_contact.h"
 #include "elements/fix_mpm_elements.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_ledger.h"
-#include "field/mpm_node_action.h"
 #include "field/mpm_rest.h"
 #include "field/mpm_time_limit.h"
-#include "field/mpm_trial_contact.h"
-#include "implicit/mpm_mls_turn.h"
+#include "implicit/mpm_mls_rotation.h"
 #include "transfer/kernels.h"
 
 #include "atom.h"
@@ -81,166 +78,6 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
   }
   const MPMImplicitOptions &mine = *this;
   solver = std::make_unique<MPMImplicit>(lmp, fields, mine, kept);
-}
-
-/** Refuses what implicit steps of a field do not support. */
-void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
-{
-  auto *const field = &of;
-  const auto &options = field->options;
-  for (auto *other : plan.physics)
-    if (other->joins_motion() &&
-        (time.kind == MPMTimeMethod::NEWMARK || time.kind == MPMTimeMethod::MIDPOINT))
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit solves for the pressure of fix {} {} at the end of a step, which "
-          "newmark and midpoint are not made of: use static or euler",
-          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
-  refuse_field(
-      lmp, *this, *field,
-      {{options.scheme != MPMFieldOptions::USL, "scheme",
-        "implicit steps end with the stress that goes with their velocities: use scheme usl"},
-       {options.series != MPMFieldOptions::LUMPED, "transfer xpic and fmpm",
-        "forces are balanced with the lumped mass: use transfer apic or flip"},
-       {time.is_static() && adds_change(options.transfer), "transfer flip",
-        "points have no velocity in statics: use transfer pic, which has the same forces, or apic"},
-       {(time.kind == MPMTimeMethod::NEWMARK || time.keeps_acceleration()) &&
-            !(options.transfer == FLIP && options.flip == 1.0),
-        "this transfer",
-        "points move with another velocity than they have at the end of the step: use transfer "
-        "flip 1.0, "
-        "or euler or midpoint instead"},
-       {time.kind == MPMTimeMethod::MIDPOINT &&
-            !(options.transfer == FLIP && options.flip == 1.0) &&
-            !(options.transfer == APIC && is_mls(options.shape, options.transfer) &&
-              !options.strains_by_gradient() && !field->frame->is_total()),
-        "this transfer",
-        "points move with another velocity than they have at the end of the step: use transfer "
-        "flip "
-        "1.0, in the updated frame also transfer apic with shape quadratic or cubic and stress "
-        "mls"},
-       {options.averages_strain(), "locking fbar and both",
-        "their motions of points are not those that forces belong to: use locking pressure"},
-       {options.modified_edges, "edges modified", "use edges plain, the default"},
-       {options.smooths_volumes(), "smooth", "it is for fluids in explicit steps"},
-       {options.has_light_nodes(), "light",
-        "nodes with next to no mass are no problem in implicit steps: remove it"},
-       {options.heats(), "heat", "the time step is not in its balance: remove it"},
-       {options.every > 1, "every", "implicit steps are long already: use every 1"}});
-  if (stabilize > 0.0 && !may_stabilize(*field))
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/implicit stabilize is for points of shape quadratic or cubic of fix mpm {}, "
-        "without fix mpm/elements, and not around an axis: remove it",
-        field->id());
-  for (auto *other : plan.physics)
-    if (stabilize > 0.0 && other->node_pressure(*field))
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit stabilize knows nothing of the pressure of fix {} {}: remove it",
-                 dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
-  for (auto *other : plan.physics)
-    if (other != this && !other->only_loads() && !other->precedes_motion() &&
-        !other->joins_motion())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
-          "computes in explicit steps would not be in its balance: remove one of them",
-          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
-  for (const auto *elements : field->elements) {
-    if (!elements->is_thin())
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit knows the forces of surfaces and lines, but not those of the "
-                 "solid elements of fix mpm/elements {}: use points instead, or explicit steps",
-                 elements->id);
-    if (preconditioner == MULTIGRID)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit solver multigrid is made of the stiffness of points, and knows "
-                 "nothing of that of fix mpm/elements {}: use solver blocks",
-                 elements->id);
-    for (auto *other : plan.physics)
-      if (other->node_pressure(*field))
-        error->all(FLERR, Error::NOLASTLINE,
-                   "Fix mpm/implicit cannot solve for the pressure of fix {} {} together with the "
-                   "elements of fix mpm/elements {}: use explicit steps",
-                   dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id, elements->id);
-  }
-  bool rubs = false;
-  for (auto *action : plan.actions) {
-    if (action->is_projection()) continue;
-    const auto *const style = dynamic_cast<Fix *>(action)->style,
-                      *const name = dynamic_cast<Fix *>(action)->id;
-    auto *const contact = action->trial_contact();
-    if (!contact)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit holds nodes by walls, and knows nothing of what fix {} {} does: "
-                 "use fix mpm/boundary, with a region that moves for a rigid body, or explicit "
-                 "steps",
-                 style, name);
-    for (auto *other : plan.physics)
-      if (other->node_pressure(*field))
-        error->all(
-            FLERR, Error::NOLASTLINE,
-            "Fix mpm/implicit finds no contact and friction of walls together with the water "
-            "of fix {} {}, and fix {} {} has one of these: use stick, or slip without "
-            "friction",
-            dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id, style, name);
-    rubs = rubs || (contact->has_friction() && contact->is_regularised());
-  }
-  if (slip > 0.0 && !rubs)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/implicit slip is of walls with friction, and there are none: remove it");
-  if (options.shape == MPM_NS::LINEAR && !field->frame->is_total() && comm->me == 0)
-    error->warning(FLERR,
-                   "Fix mpm/implicit: with shape linear in the updated frame, forces jump when "
-                   "points go from cell to cell, and can be wrong by 17 % in runs of many steps: "
-                   "use shape quadratic of fix mpm {}, or frame total",
-                   field->id());
-}
-
-/** Refuses what is not made for several fields, which are bodies that touch each other. */
-void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
-{
-  const auto contacts = find_fixes<FixMPMContact>(lmp);
-  for (const auto *field : fields)
-    if (contacts.size() != 1 || !contacts[0]->touches(field->id()))
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit solves for the nodes of one fix mpm, or of all that one fix "
-          "mpm/contact names, but there are {} of these and {} of those, and fix mpm {}: let "
-          "bodies share a fix mpm, name all of them in one fix mpm/contact, or use explicit steps",
-          fields.size(), contacts.size(), field->id());
-  if (time.keeps_acceleration())
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/implicit alpha and hht keep accelerations of points, whose part in the "
-               "force between bodies (fix mpm/contact {}) would not be told: use newmark or "
-               "midpoint",
-               contacts[0]->id);
-  if (preconditioner == MULTIGRID)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/implicit solver multigrid knows one fix mpm, and there are {}, which fix "
-               "mpm/contact {} joins: use solver blocks",
-               fields.size(), contacts[0]->id);
-  for (const auto *field : fields)
-    refuse_field(lmp, *this, *field,
-                 {{field->domains != nullptr, "shape cpdi and cpdi2",
-                   "bodies that touch by fix mpm/contact need functions of nodes: use shape "
-                   "quadratic"},
-                  {!field->elements.empty(), "fix mpm/elements",
-                   "contact of elements is for explicit steps: use points"},
-                  {field->options.shape == MPM_NS::LINEAR, "shape linear",
-                   "forces between bodies jump when points go from cell to cell: use shape "
-                   "quadratic"}});
-  for (auto *action : plan.actions) {
-    auto *const contact = action->trial_contact();
-    if (!contact || dynamic_cast<MPMBodyContact *>(contact)) continue;
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/implicit knows walls that hold bodies together with fix mpm/contact {}, but "
-        "not yet those that separate, have friction, or are regions that move, such as fix "
-        "mpm/boundary {}: use stick or slip at faces or regions at rest, or a body of its "
-        "own (fix mpm) for the wall",
-        contacts[0]->id, dynamic_cast<Fix *>(action)->id);
-  }
 }
 
 /** Can nodes that points barely reach get a stiffness of their own? */
@@ -312,7 +149,7 @@ void FixMPMImplicit::setup(int)
 
 void FixMPMImplicit::step()
 {
-  if (time.is_static() && !told_of_turns) tell_of_turns();
+  if (time.is_static() && !warned_of_rotation) warn_of_rotation();
   const double begin = platform::walltime();
   const std::vector<double> energies = solver->step(fields[0]->step_dt());
   seconds += platform::walltime() - begin;
@@ -384,14 +221,14 @@ void FixMPMImplicit::rest()
 
 /** Warns once of bodies that are turned. Called at the start of steps: the step in which a body turns for the
  *  first time has no such error. */
-void FixMPMImplicit::tell_of_turns()
+void FixMPMImplicit::warn_of_rotation()
 {
   for (const auto *field : fields) {
-    const double turn = turn_with_mls(*field);
-    if (!is_turned(turn)) continue;
-    told_of_turns = true;
+    const double rotation = mls_rotation(*field);
+    if (!is_large_rotation(rotation)) continue;
+    warned_of_rotation = true;
     if (comm->me == 0)
-      error->warning(FLERR, "Fix mpm/implicit {}: {}", id, about_turn_with_mls(turn, field->id()));
+      error->warning(FLERR, "Fix mpm/implicit {}: {}", id, warning_of_mls_rotation(rotation, field->id()));
     return;
   }
 }

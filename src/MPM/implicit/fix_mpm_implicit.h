@@ -70,15 +70,20 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
       {};    // static: kinetic energy taken from points, and work in a step; this rank's share [energy]
   double at_start[NTOTAL] = {};    // total[] at the start of this run
   double seconds = 0.0;            // time spent in the solver in this run
-  bool told_of_turns = false;      // was it reported that rotated bodies yield with stress mls?
+  bool warned_of_rotation = false;      // was it reported that rotated bodies yield with stress mls?
 
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;
+  void check_physics(const MPMPlan &) const;
+  void check_transfer(MPMField &) const;
+  void check_stabilization(const MPMPlan &, MPMField &) const;
+  void check_elements(const MPMPlan &, MPMField &) const;
+  void check_actions(const MPMPlan &, const MPMField &) const;
   bool may_stabilize(const MPMField &) const;
   void choose_stabilize(const MPMPlan &);
   void step();
   void rest();
-  void tell_of_turns();
+  void warn_of_rotation();
 };
 
 }    // namespace LAMMPS_NS
