@@ -149,7 +149,7 @@ TEST(KineticDamping, FastModeAlone)
     v = 0.0;
     damping.rest();
   }
-  EXPECT_GT(most, 5.0);
+  EXPECT_GT(most, 2.0);
   EXPECT_EQ(damping.grows, 1.0);
   EXPECT_LT(std::fabs(x), 1.0e-9);
 }
