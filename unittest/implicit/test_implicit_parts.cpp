@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// Parts of implicit steps and of relaxation that need neither points nor nodes: methods of time integration, kinetic
-// damping, and the mean deformation of a periodic cell.
+// Parts of implicit steps and of relaxation that need neither points nor nodes: methods of time
+// integration, kinetic damping, and the mean deformation of a periodic cell.
 
 #include "implicit/mpm_kinetic_damping.h"
 #include "implicit/mpm_mean_deformation.h"

@@ -302,7 +302,8 @@ void FixMPMDeform::restart(char *buf)
 }
 
 /* ----------------------------------------------------------------------
-   mean deformation gradient, mean true stress, and mean nominal stress, at the end of the last step: xx yy zz xy xz yz
+   mean deformation gradient, mean true stress, and mean nominal stress, at the end of the last
+   step: xx yy zz xy xz yz
 ------------------------------------------------------------------------- */
 
 double FixMPMDeform::compute_vector(int n)

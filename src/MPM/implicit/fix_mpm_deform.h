@@ -35,11 +35,13 @@ struct MPMDeformOptions {
   MPM_NS::Options declare(int dimension);
 };
 
-/** The mean deformation of a periodic cell, along a path of strain or stress, component by component.
+/** The mean deformation of a periodic cell, along a path of strain or stress, component by
+ *  component.
  *
- *  The position is x = Fm X + u with the mean deformation gradient Fm, an upper triangular matrix as for the box of fix
- *  deform, and the periodic displacement u. Points and nodes move only with u, so that box and lattice stay as they
- *  are. The rate of Fm is added to the velocity gradients that points get from the nodes. */
+ *  The position is x = Fm X + u with the mean deformation gradient Fm, an upper triangular matrix
+ *  as for the box of fix deform, and the periodic displacement u. Points and nodes move only with
+ *  u, so that box and lattice stay as they are. The rate of Fm is added to the velocity gradients
+ *  that points get from the nodes. */
 class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
  public:
   FixMPMDeform(class LAMMPS *, int, char **);

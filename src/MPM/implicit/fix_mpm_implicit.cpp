@@ -88,8 +88,8 @@ bool FixMPMImplicit::may_stabilize(const MPMField &of) const
       !of.options.axisymmetric && of.elements.empty();
 }
 
-/** By default, nodes get such a stiffness from the first step on that finds no balance without it, also after
- *  a restart. */
+/** By default, nodes get such a stiffness from the first step on that finds no balance without it,
+ *  also after a restart. */
 void FixMPMImplicit::choose_stabilize(const MPMPlan &plan)
 {
   const auto &only = *fields[0];
@@ -212,15 +212,15 @@ void FixMPMImplicit::step()
                    now.indefinite, list);
 }
 
-/** Statics: puts points to rest after they have moved. In step(), nodes got what points had, less what
- *  transfers lose. */
+/** Statics: puts points to rest after they have moved. In step(), nodes got what points had, less
+ *  what transfers lose. */
 void FixMPMImplicit::rest()
 {
   for (auto *field : fields) put_to_rest(*field, taken);
 }
 
-/** Warns once of bodies that are turned. Called at the start of steps: the step in which a body turns for the
- *  first time has no such error. */
+/** Warns once of bodies that are turned. Called at the start of steps: the step in which a body
+ *  turns for the first time has no such error. */
 void FixMPMImplicit::warn_of_rotation()
 {
   for (const auto *field : fields) {
@@ -228,7 +228,8 @@ void FixMPMImplicit::warn_of_rotation()
     if (!is_large_rotation(rotation)) continue;
     warned_of_rotation = true;
     if (comm->me == 0)
-      error->warning(FLERR, "Fix mpm/implicit {}: {}", id, warning_of_mls_rotation(rotation, field->id()));
+      error->warning(FLERR, "Fix mpm/implicit {}: {}", id,
+                     warning_of_mls_rotation(rotation, field->id()));
     return;
   }
 }

@@ -24,8 +24,9 @@ FixStyle(mpm/implicit,FixMPMImplicit);
 
 namespace LAMMPS_NS {
 
-/** Implicit steps of a field, or of several fields in contact. In place of the explicit momentum equation, it solves for
- *  the velocities of nodes with the stress at the end of the step, with inertia or as a sequence of equilibrium states. */
+/** Implicit steps of a field, or of several fields in contact. In place of the explicit momentum
+ *  equation, it solves for the velocities of nodes with the stress at the end of the step, with
+ *  inertia or as a sequence of equilibrium states. */
 class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplicitOptions {
  public:
   FixMPMImplicit(class LAMMPS *, int, char **);
@@ -66,11 +67,11 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
     NLAST
   };
   double last[NLAST] = {};    // of the last step, also in a previous run
-  double taken[2] =
-      {};    // static: kinetic energy taken from points, and work in a step; this rank's share [energy]
-  double at_start[NTOTAL] = {};    // total[] at the start of this run
-  double seconds = 0.0;            // time spent in the solver in this run
-  bool warned_of_rotation = false;      // was it reported that rotated bodies yield with stress mls?
+  // static: kinetic energy taken from points, and work in a step; this rank's share [energy]
+  double taken[2] = {};
+  double at_start[NTOTAL] = {};       // total[] at the start of this run
+  double seconds = 0.0;               // time spent in the solver in this run
+  bool warned_of_rotation = false;    // was it reported that rotated bodies yield with stress mls?
 
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;

@@ -7,9 +7,10 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Forces on a node are balanced if its velocity does not change: m dv/dt, with the reactions of walls and
-   contacts, which have changed velocities in the same step. They are compared with the forces that the
-   stress of points brings to nodes, sum_p V_p |sigma_p|/h, which cancel in equilibrium.
+   Forces on a node are balanced if its velocity does not change: m dv/dt, with the reactions of
+   walls and contacts, which have changed velocities in the same step. They are compared with the
+   forces that the stress of points brings to nodes, sum_p V_p |sigma_p|/h, which cancel in
+   equilibrium.
 ------------------------------------------------------------------------- */
 
 #include "implicit/fix_mpm_relax.h"
@@ -94,7 +95,8 @@ void FixMPMRelax::init_physics(MPMPlan &plan)
   may_start_by_half = can_start_by_half(plan);
 }
 
-/** Half of the velocities is what holds at nodes, too, where walls are at rest and other physics does not look at these. */
+/** Half of the velocities is what holds at nodes, too, where walls are at rest and other physics
+ *  does not look at these. */
 bool FixMPMRelax::can_start_by_half(const MPMPlan &plan) const
 {
   const bool simple_fields = std::none_of(fields.begin(), fields.end(), [](const MPMField *field) {
@@ -132,8 +134,9 @@ void FixMPMRelax::setup(int)
 
 /* ---------------------------------------------------------------------- */
 
-/** Half a step from rest to the middle of this one: walls and contacts have had the forces of all of it. Of this, the ledger has the energy
- *  that nodes lose; the watch, which has the work of forces at the mean velocities of points, the rest. */
+/** Half a step from rest to the middle of this one: walls and contacts have had the forces of all
+ *  of it. Of this, the ledger has the energy that nodes lose; the watch, which has the work of
+ *  forces at the mean velocities of points, the rest. */
 void FixMPMRelax::start_by_half()
 {
   for (auto *field : fields) {
@@ -232,8 +235,8 @@ void FixMPMRelax::warn_of_rotation()
 }
 
 /* ----------------------------------------------------------------------
-   the run ends as with fix halt, a step after it is known that it does, so that there is thermodynamic
-   output of the last one
+   the run ends as with fix halt, a step after it is known that it does, so that there is
+   thermodynamic output of the last one
 ------------------------------------------------------------------------- */
 
 void FixMPMRelax::end_of_step()

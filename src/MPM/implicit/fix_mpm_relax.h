@@ -31,9 +31,10 @@ struct MPMRelaxOptions {
   MPM_NS::Options declare();
 };
 
-/** Brings all material points to rest in equilibrium by dynamic relaxation with kinetic damping: velocities are
- *  set to zero whenever the kinetic energy has passed a maximum, until the forces on the nodes are balanced
- *  (P.A. Cundall, 1976; M.R. Barnes, Computers and Structures 30, 685-695, 1988). */
+/** Brings all material points to rest in equilibrium by dynamic relaxation with kinetic damping:
+ *  velocities are set to zero whenever the kinetic energy has passed a maximum, until the forces on
+ *  the nodes are balanced (P.A. Cundall, 1976; M.R. Barnes, Computers and Structures 30, 685-695,
+ *  1988). */
 class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
  public:
   FixMPMRelax(class LAMMPS *, int, char **);
@@ -67,7 +68,8 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   double unbalanced = 0.0;      // sum of forces on nodes, on all ranks [force]
   double carried = 0.0;         // sum of forces on nodes by the stress of points [force]
   double ratio = 0.0;           // unbalanced over carried; UNKNOWN before the first check
-  // energies taken so far, this rank's share; in restart files of all ranks: kinetic energy, and work in a step
+  // energies taken so far, this rank's share; in restart files of all ranks: kinetic energy, and
+  // work in a step
   double taken[2] = {0.0, 0.0};
   bool falls = false;    // does the kinetic energy fall in this step?
   std::vector<MPMField *> fields;

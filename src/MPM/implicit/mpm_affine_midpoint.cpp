@@ -7,17 +7,18 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The mid-point rule with affine points. Nodes move by u = dt (v0 + v1)/2, and forces are those after u/2.
-   They have no torque about the places of nodes at that time, sum (x_i + u_i/2) x f_i = 0, because Kirchhoff
-   stress is symmetric, so that sum (x_i + u_i) x m v1_i = sum x_i x m v0_i. Points have moved with the mean
-   velocity u/dt, and their matrices are those of this velocity; here they get the rest w = v1 - u/dt. The
-   angular momentum of the nodes at their new places is that of the points if the matrix D C of a point has
+   The mid-point rule with affine points. Nodes move by u = dt (v0 + v1)/2, and forces are those
+   after u/2. They have no torque about the places of nodes at that time, sum (x_i + u_i/2) x f_i =
+   0, because Kirchhoff stress is symmetric, so that sum (x_i + u_i) x m v1_i = sum x_i x m v0_i.
+   Points have moved with the mean velocity u/dt, and their matrices are those of this velocity;
+   here they get the rest w = v1 - u/dt. The angular momentum of the nodes at their new places is
+   that of the points if the matrix D C of a point has
 
      sum_i N_ip v1_i (x_i + u_i - x_p - u_p)^T
 
-   as its part that is not symmetric, as in the matrices of C. Jiang, C. Schroeder, J. Teran, J. Comput. Phys.
-   338 (2017) 137 for steps of this kind. For backward Euler, u = dt v1, the part with u is symmetric by
-   itself.
+   as its part that is not symmetric, as in the matrices of C. Jiang, C. Schroeder, J. Teran, J.
+   Comput. Phys. 338 (2017) 137 for steps of this kind. For backward Euler, u = dt v1, the part with
+   u is symmetric by itself.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_affine_midpoint.h"

@@ -15,15 +15,15 @@
 
 namespace LAMMPS_NS {
 
-/** The end of a step of the mid-point rule for points of affine transfers, so that it keeps their angular momentum
- *  (see mpm_affine_midpoint.cpp). */
+/** The end of a step of the mid-point rule for points of affine transfers, so that it keeps their
+ *  angular momentum (see mpm_affine_midpoint.cpp). */
 class MPMAffineMidpoint {
  public:
   explicit MPMAffineMidpoint(MPMSolvedNodes &nodes) : nodes(nodes) {}
 
-  /** Finds the changes of velocities and matrices of points, where these are before they move in the step of
-   *  duration dt. velocity: that they move with; rest: what nodes lack of their velocity at the end, [node][dim].
-   *  Collective. */
+  /** Finds the changes of velocities and matrices of points, where these are before they move in
+   *  the step of duration dt. velocity: that they move with; rest: what nodes lack of their
+   *  velocity at the end, [node][dim]. Collective. */
   void find_changes(double dt, const std::vector<double> &velocity,
                     const std::vector<double> &rest);
   /** Gives points these changes, after they have moved. */

@@ -63,9 +63,9 @@ void MPMConstraints::set_friction(double factor, std::vector<double> offset)
 }
 
 /* ----------------------------------------------------------------------
-   Walls that meet act one after the other, and the last one may undo part of what the first one did. When they
-   are repeated, orthogonal projections converge to the projection onto what all of them leave free (J. von
-   Neumann, 1933).
+   Walls that meet act one after the other, and the last one may undo part of what the first one
+   did. When they are repeated, orthogonal projections converge to the projection onto what all of
+   them leave free (J. von Neumann, 1933).
 ------------------------------------------------------------------------- */
 
 bool MPMConstraints::find()
@@ -153,8 +153,8 @@ void MPMConstraints::find_touching()
   ties->factorize();
 }
 
-/** x <- P x by an action x -> P x + w. Where walls move, x is scaled to the size of their velocity, so that the
- *  difference keeps its digits. */
+/** x <- P x by an action x -> P x + w. Where walls move, x is scaled to the size of their velocity,
+ *  so that the difference keeps its digits. */
 template <class Action>
 void MPMConstraints::apply_linear(double *x, const std::vector<double> &w, double speed,
                                   const Action &action)
@@ -203,7 +203,8 @@ void MPMConstraints::project_forces(double *f)
   });
 }
 
-/** Displacements that bring nodes to the walls that hold them, where they were not at the start of the step. */
+/** Displacements that bring nodes to the walls that hold them, where they were not at the start of
+ *  the step. */
 void MPMConstraints::find_gap_closure()
 {
   if (contacts.empty()) return;
@@ -260,8 +261,8 @@ const double *MPMConstraints::slip_of(const std::vector<double> &u)
   return slipped.data();
 }
 
-/** Friction after the motion u, from the pressing forces in the residual, which contains the friction of other
- *  walls. */
+/** Friction after the motion u, from the pressing forces in the residual, which contains the
+ *  friction of other walls. */
 void MPMConstraints::find_friction(const std::vector<double> &u,
                                    const std::vector<double> &residual)
 {
@@ -273,7 +274,8 @@ void MPMConstraints::find_friction(const std::vector<double> &u,
     std::fill(friction.begin(), friction.end(), 0.0);
     for (auto *contact : contacts) {
       contact->take_forces(reaction_scale);
-      // bodies that stick have no slip in u, so the slip of sliding ones has to be measured in the same way
+      // bodies that stick have no slip in u, so the slip of sliding ones has to be measured in the
+      // same way
       contact->add_friction(contact->is_regularised() ? slip_of(u) : u.data(), friction.data());
     }
     for (double &force : friction) force *= friction_share;

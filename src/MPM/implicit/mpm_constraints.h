@@ -19,13 +19,13 @@ class MPMBodyContact;
 class MPMTies;
 class MPMTrialContact;
 
-/** Constraints of an implicit step: the effect v -> P v + w of all node actions on velocities, and the contact and
- *  friction among them. Walls do no work on motions that P leaves free, so that P^T r = 0 is what remains to be
- *  solved for a residual r, and P^T = M P M^-1 with the masses M.
+/** Constraints of an implicit step: the effect v -> P v + w of all node actions on velocities, and
+ *  the contact and friction among them. Walls do no work on motions that P leaves free, so that P^T
+ *  r = 0 is what remains to be solved for a residual r, and P^T = M P M^-1 with the masses M.
  *
- *  Bodies that are separate fields touch each other by fix mpm/contact: C v = g where they touch, with one row
- *  of C for each line of nodes through the interface. If walls map velocities to P_w v + w, P is the orthogonal
- *  projection on the motions that both leave free,
+ *  Bodies that are separate fields touch each other by fix mpm/contact: C v = g where they touch,
+ *  with one row of C for each line of nodes through the interface. If walls map velocities to P_w v
+ *  + w, P is the orthogonal projection on the motions that both leave free,
  *      P = P_w - P_w M^-1 C^T S^-1 C P_w,   S = C P_w M^-1 C^T
  *  It uses factors of S (MPMTies), which is close to diagonal. */
 class MPMConstraints {
@@ -38,10 +38,11 @@ class MPMConstraints {
   explicit MPMConstraints(MPMSolvedNodes &);
   ~MPMConstraints();
 
-  /** Start of a step of duration dt: takes the contacts of node actions. slip_time, slip, rests: see
-   *  MPMTrialContact::begin_trials(). Collective. */
+  /** Start of a step of duration dt: takes the contacts of node actions. slip_time, slip, rests:
+   *  see MPMTrialContact::begin_trials(). Collective. */
   void begin_step(double dt, double slip_time, double slip, bool rests);
-  /** Friction enters the balance with this factor, and acts against u plus this addition, unless that is empty. */
+  /** Friction enters the balance with this factor, and acts against u plus this addition, unless
+   *  that is empty. */
   void set_friction(double factor, std::vector<double> offset);
   /** Finds P, w, and the closing of gaps. False if walls contradict each other. Collective. */
   bool find();
@@ -52,27 +53,29 @@ class MPMConstraints {
   void project(double *x);
   /** f <- P^T f. Collective. */
   void project_forces(double *f);
-  /** free <- P^T (residual plus friction after the motion u), with the reactions that contacts have in it.
-   *  Collective. */
+  /** free <- P^T (residual plus friction after the motion u), with the reactions that contacts have
+   *  in it. Collective. */
   void find_free_forces(const std::vector<double> &u, const std::vector<double> &residual,
                         std::vector<double> &free);
-  /** dforce <- dforce minus the change of friction for a change du of the motion, when other forces change by -dforce.
-   *  Collective. */
+  /** dforce <- dforce minus the change of friction for a change du of the motion, when other forces
+   *  change by -dforce. Collective. */
   void subtract_friction_change(const double *du, double asymmetry, double *dforce);
-  /** Do linear systems keep pressing forces fixed, so that sliding bodies leave them symmetric? The balance of
-   *  forces has friction by the present pressing forces. The iterations converge to it if friction changes these
-   *  forces by less than they change friction. asymmetry: of the tangents. */
+  /** Do linear systems keep pressing forces fixed, so that sliding bodies leave them symmetric? The
+   *  balance of forces has friction by the present pressing forces. The iterations converge to it
+   *  if friction changes these forces by less than they change friction. asymmetry: of the
+   *  tangents. */
   bool fixes_pressing_forces(double asymmetry) const;
   /** Adds the stiffness of friction to blocks [node][dim][dim]. */
   void add_friction_blocks(double *blocks) const;
   /** Adds the same as one number for each node. */
   void add_friction_stiffness(double *stiffness) const;
 
-  /** Moves u to what walls allow after this share of their way in the step. If that is far, u stays as it is and
-   *  the way is added to prescribed: true, on all ranks. Collective. */
+  /** Moves u to what walls allow after this share of their way in the step. If that is far, u stays
+   *  as it is and the way is added to prescribed: true, on all ranks. Collective. */
   bool meet_walls(std::vector<double> &u, double share, std::vector<double> &prescribed);
-  /** Updates the active set of contacts after the motion u; unbalanced: see MPMTrialContact::decide(). Returns
-   *  whether it has changed, on all ranks; find() must follow. Collective. */
+  /** Updates the active set of contacts after the motion u; unbalanced: see
+   *  MPMTrialContact::decide(). Returns whether it has changed, on all ranks; find() must follow.
+   *  Collective. */
   bool update_active_set(const std::vector<double> &u, double unbalanced);
   /** The correction du has been found. */
   void correct(const double *du) const;
@@ -81,12 +84,13 @@ class MPMConstraints {
   /** Points have moved: walls check the new positions. Collective. */
   void check_positions() const;
 
-  /** Points that walls carry as a whole, see MPMTrialContact::find_carried(); left [point]: share of their
-   *  volume outside of walls. True if there may be any, on any rank. */
+  /** Points that walls carry as a whole, see MPMTrialContact::find_carried(); left [point]: share
+   *  of their volume outside of walls. True if there may be any, on any rank. */
   bool find_carried_points(std::vector<double> &left) const;
   /** Walls carry these forces on nodes: finds where they do no work on free motions. */
   void carry(double *force) const;
-  /** Sets the velocities that nodes will have when contacts act on them next, with this share of friction. */
+  /** Sets the velocities that nodes will have when contacts act on them next, with this share of
+   *  friction. */
   void set_final_velocities(const double *v, double share) const;
   /** Contacts get the impulses of the last act(), which brought nodes to rest at walls. */
   void take_stop() const;
@@ -106,7 +110,8 @@ class MPMConstraints {
   double speed() const { return wall_speed; }
   /** Slip above which friction is that of Coulomb [distance]. */
   double slip_width() const { return slip; }
-  /** Friction of the last find_free_forces() [node][dim], if rubs(), and its factor in the balance. */
+  /** Friction of the last find_free_forces() [node][dim], if rubs(), and its factor in the
+   *  balance. */
   const std::vector<double> &friction_forces() const { return friction; }
   double friction_factor() const { return friction_share; }
   double memory_usage() const;

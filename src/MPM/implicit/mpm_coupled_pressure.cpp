@@ -7,35 +7,37 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Newton's method for motion and pressure together. With the stiffness K of the soil, the forces Q p of the
-   pressure, and the matrix A of the equations of the pressure when nothing moves, corrections of both solve
+   Newton's method for motion and pressure together. With the stiffness K of the soil, the forces Q
+   p of the pressure, and the matrix A of the equations of the pressure when nothing moves,
+   corrections of both solve
 
      K du - Q dp = f,   Q^T du + A dp = g.
 
-   This is solved as a whole: in steps in which pore water first bears nearly all load and then no_pressure,
-   iterations between the two would converge slowly in one or the other. The solver is GMRES, because flow
-   through surfaces makes A unsymmetric. Its preconditioner is a step of the fixed-stress split (J. Kim, H.A.
-   Tchelepi, R. Juanes, Comput. Methods Appl. Mech. Eng. 200 (2011) 1591; J.A. White, N. Castelletto, H.A.
-   Tchelepi, ibid. 303 (2016) 55): du = K^-1 f, and then dp = (A + a^2/M)^-1 (g - Q^T du), where the modulus M
-   of soil that cannot widen stands for Q^T K^-1 Q. K^-1 is a few iterations of the linear solver for the
-   motion alone, and the other inverse is by levels, or factors, for one value at each node. The number of
-   iterations then depends neither on the stiffness of the water nor on the length of the step.
+   This is solved as a whole: in steps in which pore water first bears nearly all load and then
+   no_pressure, iterations between the two would converge slowly in one or the other. The solver is
+   GMRES, because flow through surfaces makes A unsymmetric. Its preconditioner is a step of the
+   fixed-stress split (J. Kim, H.A. Tchelepi, R. Juanes, Comput. Methods Appl. Mech. Eng. 200 (2011)
+   1591; J.A. White, N. Castelletto, H.A. Tchelepi, ibid. 303 (2016) 55): du = K^-1 f, and then dp =
+   (A + a^2/M)^-1 (g - Q^T du), where the modulus M of soil that cannot widen stands for Q^T K^-1 Q.
+   K^-1 is a few iterations of the linear solver for the motion alone, and the other inverse is by
+   levels, or factors, for one value at each node. The number of iterations then depends neither on
+   the stiffness of the water nor on the length of the step.
 
-   The term a^2/M has to be the matrix of sums over points, sum_p V_p N_ip N_jp a^2/M, and not one sum for
-   each node: pressures that alternate from node to node are small between nodes (0.13 of the mean square
-   along a line, 0.0024 in space), and so is what the soil takes up of them. With one sum for each node, a
-   disc of 200 points of nearly incompressible water needed 45 iterations of GMRES for six digits, and a
-   sphere did not converge; the disc now needs 8.
+   The term a^2/M has to be the matrix of sums over points, sum_p V_p N_ip N_jp a^2/M, and not one
+   sum for each node: pressures that alternate from node to node are small between nodes (0.13 of
+   the mean square along a line, 0.0024 in space), and so is what the soil takes up of them. With
+   one sum for each node, a disc of 200 points of nearly incompressible water needed 45 iterations
+   of GMRES for six digits, and a sphere did not converge; the disc now needs 8.
 
-   The preconditioner needs a positive definite K, which K need not be: a fixed pressure pushes soil aside
-   where the surface of the soil tilts under a load that does not tilt. In the plane, a half-space of soil
-   with the shear modulus G and no Poisson's effect stands at most 2 G/3 of such a pressure, and 2 G with
-   water that has no time to leave. From the first K on that is not positive definite, the preconditioner uses
-   K without the pressures for the rest of the step. Short steps need this after a sudden load of half of the
-   soil's modulus.
+   The preconditioner needs a positive definite K, which K need not be: a fixed pressure pushes soil
+   aside where the surface of the soil tilts under a load that does not tilt. In the plane, a
+   half-space of soil with the shear modulus G and no Poisson's effect stands at most 2 G/3 of such
+   a pressure, and 2 G with water that has no time to leave. From the first K on that is not
+   positive definite, the preconditioner uses K without the pressures for the rest of the step.
+   Short steps need this after a sudden load of half of the soil's modulus.
 
-   Vectors are compared in a norm in which volumes count as much as forces, both relative to what may be left
-   of them.
+   Vectors are compared in a norm in which volumes count as much as forces, both relative to what
+   may be left of them.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_coupled_pressure.h"
@@ -134,8 +136,9 @@ void MPMCoupledPressure::begin_step(double dt)
   volume = all[1];
 }
 
-/** In statics, a body that nothing holds along an axis of a periodic box can be anywhere along it. Its
- *  stiffness is singular, and round-off in this motion would be large compared with the rest of a solution. */
+/** In statics, a body that nothing holds along an axis of a periodic box can be anywhere along it.
+ *  Its stiffness is singular, and round-off in this motion would be large compared with the rest of
+ *  a solution. */
 void MPMCoupledPressure::find_free_axes()
 {
   free_axes.clear();
@@ -186,15 +189,15 @@ double MPMCoupledPressure::find_residual(const std::vector<double> &u, double fo
   return sum <= round_off ? 0.0 : sum / carried;
 }
 
-/** Sum of volumes that may be unbalanced. Where all water is at rest, pressures are noise up to this small part of
- *  the stress. */
+/** Sum of volumes that may be unbalanced. Where all water is at rest, pressures are noise up to
+ *  this small part of the stress. */
 double MPMCoupledPressure::enough() const
 {
   return std::max(std::max(options.tolerance, LEAST) * carried, round_off);
 }
 
-/** Forces also count as noise relative to those of pressures that carry as much water: where soil is at rest
- *  and without stress, water that comes through its surface is all there is at first. */
+/** Forces also count as noise relative to those of pressures that carry as much water: where soil
+ *  is at rest and without stress, water that comes through its surface is all there is at first. */
 double MPMCoupledPressure::negligible_forces() const
 {
   const double pressure = SMALL * options.tolerance * carried / response;
@@ -224,7 +227,8 @@ void MPMCoupledPressure::move(double s)
 
 /* ---------------------------------------------------------------------- */
 
-/** Builds the levels of the pressure with the moduli of the first tangents of a step, which serve all of it. */
+/** Builds the levels of the pressure with the moduli of the first tangents of a step, which serve
+ *  all of it. */
 void MPMCoupledPressure::prepare()
 {
   const Clock timed(times, MPMImplicitTimes::PRECONDITIONERS);

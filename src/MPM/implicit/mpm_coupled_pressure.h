@@ -25,9 +25,9 @@ class MPMNodePressure;
 class MPMSolvedNodes;
 class MPMTangent;
 
-/** The part of implicit steps that belongs to a pressure of nodes: its values p, the residual of its equations,
- *  and the joint linear system with the motion. Vectors of that system are [node][dim] displacements, followed
- *  by [node] pressures. */
+/** The part of implicit steps that belongs to a pressure of nodes: its values p, the residual of
+ *  its equations, and the joint linear system with the motion. Vectors of that system are
+ *  [node][dim] displacements, followed by [node] pressures. */
 class MPMCoupledPressure : public MPM_NS::LinearSystem {
  public:
   MPMCoupledPressure(MPMSolvedNodes &, MPMForceBalance &, MPMConstraints &, MPMMotionSystem &,
@@ -45,13 +45,14 @@ class MPMCoupledPressure : public MPM_NS::LinearSystem {
   double find_residual(const std::vector<double> &u, double forces);
   /** Sets the sum of unbalanced forces that is allowed. */
   void allow_force(double enough) { enough_force = enough; }
-  /** excess(): the larger of the residuals of forces and of volumes, each relative to the residual allowed.
-   *  enough(): the residual of volumes that is allowed. */
+  /** excess(): the larger of the residuals of forces and of volumes, each relative to the residual
+   *  allowed. enough(): the residual of volumes that is allowed. */
   double excess() const;
   double enough() const;
   /** Sum of unbalanced forces that is allowed however small all forces are. */
   double negligible_forces() const;
-  /** Moves the nodes that walls hold first, and finds the change of forces and volumes that this causes. */
+  /** Moves the nodes that walls hold first, and finds the change of forces and volumes that this
+   *  causes. */
   void move_walls(const std::vector<double> &u, double *forces);
   /** Solves for the corrections of both at the motion u, du for the given forces. */
   MPM_NS::SolveReport solve(const std::vector<double> &u, const std::vector<double> &forces,
@@ -59,7 +60,8 @@ class MPMCoupledPressure : public MPM_NS::LinearSystem {
   /** p <- p + s times its correction. */
   void move(double s);
 
-  // parts of a step, see MPMNewton::solve_in_parts(): values at the start of the next part, and the initial residual
+  // parts of a step, see MPMNewton::solve_in_parts(): values at the start of the next part, and the
+  // initial residual
 
   void keep() { kept = p; }
   void go_back() { p = kept; }

@@ -176,9 +176,9 @@ void MPMForceBalance::add_stiffness(SplineMultigrid &levels)
   if (is_stabilized()) stabilizations[0]->each_term(add);
 }
 
-/** That of a strain, and of the part of the strain that comes from motions larger than a node spacing. The
- *  motion is a mean over the mass, because nodes at the very end of the functions of points have next to no mass
- *  and move far. */
+/** That of a strain, and of the part of the strain that comes from motions larger than a node
+ *  spacing. The motion is a mean over the mass, because nodes at the very end of the functions of
+ *  points have next to no mass and move far. */
 double MPMForceBalance::negligible_forces(const std::vector<double> &u, double stiffness) const
 {
   return ROUND_OFF * stiffness * std::max(1.0, 4.0 * nodes.mean_size(u) / nodes.spacing());

@@ -23,12 +23,12 @@ class SplineMultigrid;
 
 namespace LAMMPS_NS {
 
-/** The balance of forces of an implicit step without constraints. With the displacement u of nodes in the step,
- *  its residual is
+/** The balance of forces of an implicit step without constraints. With the displacement u of nodes
+ *  in the step, its residual is
  *      r(u) = f_ext + (1 - alpha_f) f_int(s u) + alpha_f (f_0 - f_ext) - c m (u - u*)
- *  where f_int is that of MPMTangent, f_0 are all forces at the start of the step, and c, s, alpha_f, and the
- *  predictor u* depend on the method of time integration (MPMTimeMethod). Forces are in units of mass times
- *  acceleration. */
+ *  where f_int is that of MPMTangent, f_0 are all forces at the start of the step, and c, s,
+ *  alpha_f, and the predictor u* depend on the method of time integration (MPMTimeMethod). Forces
+ *  are in units of mass times acceleration. */
 class MPMForceBalance {
  public:
   MPMForceBalance(MPMSolvedNodes &, const MPMTimeMethod &);
@@ -39,16 +39,17 @@ class MPMForceBalance {
   void begin_step(double dt);
   /** Finds f_ext from the forces on points. Collective. */
   void find_external_forces();
-  /** Gives nodes that points barely reach a stiffness of their own, by the moduli at the start of the step and
-   *  times this factor. Collective. */
+  /** Gives nodes that points barely reach a stiffness of their own, by the moduli at the start of
+   *  the step and times this factor. Collective. */
   void stabilize(double factor);
 
-  /** Takes the forces at the start of the step from the velocities before and after the momentum equation; f_ext
-   *  must be known. */
+  /** Takes the forces at the start of the step from the velocities before and after the momentum
+   *  equation; f_ext must be known. */
   void find_start_forces();
 
-  /** Finds r(u), and the inertia forces in it. stress: sum of the sizes of forces by stress on this rank. False,
-   *  on all ranks, where points are inside out or have no finite stress. Collective. */
+  /** Finds r(u), and the inertia forces in it. stress: sum of the sizes of forces by stress on this
+   *  rank. False, on all ranks, where points are inside out or have no finite stress.
+   *  Collective. */
   bool find_residual(const std::vector<double> &u, std::vector<double> &residual,
                      std::vector<double> &inertia_forces, double &stress);
   /** Finds the tangents at the motion u and their asymmetry; returns the stiffness, see
@@ -62,14 +63,15 @@ class MPMForceBalance {
   void find_blocks(std::vector<double> &blocks);
   /** Gives levels that have begun the stiffness of the points of the first field. */
   void add_stiffness(MPM_NS::SplineMultigrid &);
-  /** Sum of forces that counts as round-off after the motion u, for tangents of this stiffness. Collective. */
+  /** Sum of forces that counts as round-off after the motion u, for tangents of this stiffness.
+   *  Collective. */
   double negligible_forces(const std::vector<double> &u, double stiffness) const;
 
-  /** At the end of a step: forces of loads that follow points, at its start and their change at its end.
-   *  Collective. */
+  /** At the end of a step: forces of loads that follow points, at its start and their change at its
+   *  end. Collective. */
   void find_loads(const std::vector<double> &u);
-  /** At the end of a step: forces of the stiffness of nodes that points barely reach, and their energy [mass
-   *  velocity^2]. Collective. */
+  /** At the end of a step: forces of the stiffness of nodes that points barely reach, and their
+   *  energy [mass velocity^2]. Collective. */
   double find_stabilizing_forces(const std::vector<double> &u);
 
   /** c m of node n. */

@@ -7,9 +7,10 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Statics: a body that walls do not hold along an axis has no stiffness along it, and no equilibrium if
-   forces push it that way. This is found before anything is solved: nodes that share points form bodies, and
-   what walls take from the motion of a body as a whole is zero along its free axes.
+   Statics: a body that walls do not hold along an axis has no stiffness along it, and no
+   equilibrium if forces push it that way. This is found before anything is solved: nodes that share
+   points form bodies, and what walls take from the motion of a body as a whole is zero along its
+   free axes.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_free_bodies.h"
@@ -51,8 +52,8 @@ uint64_t set_of(const Label &label)
 
 }    // namespace
 
-/** Numbers the body of each node, from 0 on and the same on all ranks; -1: none. Returns the number of
- *  bodies. Collective. */
+/** Numbers the body of each node, from 0 on and the same on all ranks; -1: none. Returns the number
+ *  of bodies. Collective. */
 static int find_bodies(MPMSolvedNodes &nodes, LatticeRanks &ranks, std::vector<int> &body)
 {
   auto &field = nodes.field;
@@ -106,7 +107,8 @@ std::string LAMMPS_NS::find_free_body(MPMSolvedNodes &nodes, MPMConstraints &con
   const int nbodies = find_bodies(nodes, ranks, body), w = nodes.width,
             first = nodes.field.options.axisymmetric ? 1 : 0;
 
-  // sums for each body: products [w][w] of what walls take from unit motions; force; its size; place; nodes
+  // sums for each body: products [w][w] of what walls take from unit motions; force; its size;
+  // place; nodes
 
   const int NSUM = w * w + 2 * w + 2;
   std::vector<double> mine((std::size_t) nbodies * NSUM, 0.0), sums, taken[3];

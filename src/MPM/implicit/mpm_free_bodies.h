@@ -18,8 +18,8 @@ namespace LAMMPS_NS {
 class MPMConstraints;
 class MPMSolvedNodes;
 
-/** Statics: is there a body in the first field that no wall holds along the external forces [node][dim] on it?
- *  Returns what is wrong, or nothing. Collective. */
+/** Statics: is there a body in the first field that no wall holds along the external forces
+ *  [node][dim] on it? Returns what is wrong, or nothing. Collective. */
 std::string find_free_body(MPMSolvedNodes &, MPMConstraints &, MPM_NS::LatticeRanks &,
                            const std::vector<double> &external);
 

@@ -48,24 +48,25 @@ bool MPMImplicit::can_keep() const
       !pressure && !constraints.has_contacts();
 }
 
-/** Finds points that walls carry as a whole; true if there may be any, on any rank. There are none with
- *  averages of stress, a pressure of nodes, or forces of the start of the step, which do not account for
- *  them. */
+/** Finds points that walls carry as a whole; true if there may be any, on any rank. There are none
+ *  with averages of stress, a pressure of nodes, or forces of the start of the step, which do not
+ *  account for them. */
 bool MPMImplicit::find_carried_points()
 {
-  std::vector<MPMTangent::Part> parts;
+  std::vector<MPMTangent::CarriedPoint> carried;
   bool any = false;
   if (!pressure && !nodes.field.options.averages_stress() && !options.time.moves_by_mean()) {
     std::vector<double> left;
     any = constraints.find_carried_points(left);
     for (std::size_t i = 0; i < left.size(); i++)
-      if (left[i] < 1.0) parts.push_back({(bigint) i, left[i]});
+      if (left[i] < 1.0) carried.push_back({(bigint) i, left[i]});
   }
-  balance.tangent().set_parts(std::move(parts));
+  balance.tangent().set_carried(std::move(carried));
   return any;
 }
 
-/** Finds constraints and external forces. False where it is clear that there is no balance. Collective. */
+/** Finds constraints and external forces. False where it is clear that there is no balance.
+ *  Collective. */
 bool MPMImplicit::begin_step(double dt)
 {
   const bool rests = options.time.is_static();
@@ -83,7 +84,7 @@ bool MPMImplicit::begin_step(double dt)
   if (carries) {    // walls bear the loads on these points
     std::vector<double> on_them(nodes.nreals());
     auto &external = balance.external;
-    balance.tangent().forces_on_rest(on_them.data());
+    balance.tangent().forces_on_carried(on_them.data());
     for (int64_t k = 0; k < nodes.nreals(); k++) external[k] -= on_them[k];
     constraints.carry(on_them.data());
     for (int64_t k = 0; k < nodes.nreals(); k++) external[k] += on_them[k];

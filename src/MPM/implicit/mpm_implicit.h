@@ -27,37 +27,40 @@ namespace LAMMPS_NS {
 
 /** Implicit step of one or more fields. The displacements u of their nodes in a step solve
  *      P^T r(u) = 0,   u = P u + dt w
- *  Its parts are the balance of forces r (MPMForceBalance), the constraints P and w (MPMConstraints), Newton's
- *  method (MPMNewton) with its linear systems (MPMMotionSystem), factors kept from earlier steps
- *  (MPMKeptFactors), a pressure of nodes that is found together with u (MPMCoupledPressure), and velocities
- *  at both ends of the step by a method of time integration (MPMStepMotion). */
+ *  Its parts are the balance of forces r (MPMForceBalance), the constraints P and w
+ *  (MPMConstraints), Newton's method (MPMNewton) with its linear systems (MPMMotionSystem), factors
+ *  kept from earlier steps (MPMKeptFactors), a pressure of nodes that is found together with u
+ *  (MPMCoupledPressure), and velocities at both ends of the step by a method of time integration
+ *  (MPMStepMotion). */
 class MPMImplicit {
  public:
-  /** Several fields are allowed for static and euler, without multigrid, a pressure of nodes, elements, and
-   *  points with domains. The accelerations are those of points, for methods that keep them. */
+  /** Several fields are allowed for static and euler, without multigrid, a pressure of nodes,
+   *  elements, and points with domains. The accelerations are those of points, for methods that
+   *  keep them. */
   MPMImplicit(class LAMMPS *, const std::vector<MPMField *> &, const MPMImplicitOptions &,
               MPMPointAccelerations &);
   ~MPMImplicit();
 
   /** Start of a run. */
   void init();
-  /** Solves for u, starting from nodes with the velocities of the momentum equation, and gives the nodes the
-   *  velocities from which node actions make those of the step, see MPMStepMotion::end_step(). */
+  /** Solves for u, starting from nodes with the velocities of the momentum equation, and gives the
+   *  nodes the velocities from which node actions make those of the step, see
+   *  MPMStepMotion::end_step(). */
   std::vector<double> step(double dt);
   /** Called after node actions have acted: sets the velocities of the step at the nodes. */
   void set_velocities() { motion.set_velocities(); }
   /** The same, and accounts for works of forces that the ledger does not know. */
   void finish() { motion.finish(); }
-  /** Called after points have moved: gives points of affine transfers the difference between their velocities
-   *  at the end of the step and the mean velocities that they moved with. */
+  /** Called after points have moved: gives points of affine transfers the difference between their
+   *  velocities at the end of the step and the mean velocities that they moved with. */
   void end_motion() { motion.end_motion(); }
   /** Called after points have moved: walls check the new positions. Collective. */
   void check_contacts() { constraints.check_positions(); }
   const MPMImplicitReport &report() const { return now; }
   /** Time of a part of the steps since the start of the run, of this rank [s]. */
   double seconds_of(MPMImplicitTimes::Part which) const { return times.seconds[which]; }
-  /** Discards what earlier steps have learned, for steps that must continue as from a restart file, which does
-   *  not store it. */
+  /** Discards what earlier steps have learned, for steps that must continue as from a restart file,
+   *  which does not store it. */
   void forget() { factors.clear(); }
   double memory_usage() const;
 

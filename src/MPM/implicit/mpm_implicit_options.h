@@ -27,7 +27,8 @@ struct MPMImplicitOptions {
   double least_accuracy = 1.0e-3;    ///< largest relative residual of linear solutions
   enum Preconditioner { BLOCKS, MULTIGRID };
   Preconditioner preconditioner = BLOCKS;
-  /** Slip in a step above which friction is that of Coulomb [distance]; 0: a share of the node spacing. */
+  /** Slip in a step above which friction is that of Coulomb [distance]; 0: a share of the node
+   *  spacing. */
   double slip = 0.0;
   /** Stiffness of nodes that points barely reach, relative to the modulus. */
   double stabilize = 0.0;

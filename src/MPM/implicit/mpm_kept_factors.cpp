@@ -7,17 +7,17 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Steps with inertia are much alike, and tangents cost more than forces. The tangents of a step are therefore
-   kept for the next ones, as factors, and corrected by what each iteration shows: the change of the forces
-   that its correction of the motion made (H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613;
-   see QuasiNewton). An iteration then costs the forces of the points and a solution with factors. It
-   converges to the same result as Newton's method.
+   Steps with inertia are much alike, and tangents cost more than forces. The tangents of a step are
+   therefore kept for the next ones, as factors, and corrected by what each iteration shows: the
+   change of the forces that its correction of the motion made (H. Matthies, G. Strang, Int. J.
+   Numer. Methods Eng. 14 (1979) 1613; see QuasiNewton). An iteration then costs the forces of the
+   points and a solution with factors. It converges to the same result as Newton's method.
 
-   What changes most is the orientation of the body: the stiffness of a beam along its axis is a thousand
-   times that across it, and some degrees of rotation bring much of one into the other. Factors therefore turn
-   with the body. A rotation of the whole body turns the stiffness by just this rotation. Where rotations R
-   differ between parts of the body, R K^-1 R^T is near the inverse of the stiffness as long as R changes
-   little within a cell.
+   What changes most is the orientation of the body: the stiffness of a beam along its axis is a
+   thousand times that across it, and some degrees of rotation bring much of one into the other.
+   Factors therefore turn with the body. A rotation of the whole body turns the stiffness by just
+   this rotation. Where rotations R differ between parts of the body, R K^-1 R^T is near the inverse
+   of the stiffness as long as R changes little within a cell.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_kept_factors.h"
@@ -78,7 +78,8 @@ bool MPMKeptFactors::walls_are_same(const std::vector<double> &walls) const
   return true;
 }
 
-/** Checks that what was kept belongs to these nodes and walls; otherwise it is dropped. Collective. */
+/** Checks that what was kept belongs to these nodes and walls; otherwise it is dropped.
+ *  Collective. */
 void MPMKeptFactors::check()
 {
   std::vector<uint64_t> blocks;
@@ -216,8 +217,8 @@ template <int W> static void turn(const double *R, bool back, const double *from
   }
 }
 
-/** Shares the residual, turned back to the orientation of the factors, its solution with them, and the last
- *  correction, of all nodes. Collective. */
+/** Shares the residual, turned back to the orientation of the factors, its solution with them, and
+ *  the last correction, of all nodes. Collective. */
 void MPMKeptFactors::solve_with_factors()
 {
   const int w = nodes.width, each = taken != 0.0 ? 2 * w : w;
@@ -267,8 +268,8 @@ void MPMKeptFactors::solve_with_factors()
   taken = 0.0;
 }
 
-/** Finds the correction of the motion for the residual, in change, from factors of a tangent and the pairs
- *  that correct them. */
+/** Finds the correction of the motion for the residual, in change, from factors of a tangent and
+ *  the pairs that correct them. */
 void MPMKeptFactors::find_correction()
 {
   const Clock timed(times, MPMImplicitTimes::SYSTEMS);
@@ -302,8 +303,8 @@ void MPMKeptFactors::learn()
   kept.pairs.settle(forces.data(), solved.data());
 }
 
-/** Finds the end of the step with kept factors. False if it was not found: Newton's method then goes from the
- *  start of the step. */
+/** Finds the end of the step with kept factors. False if it was not found: Newton's method then
+ *  goes from the start of the step. */
 bool MPMKeptFactors::iterate(std::vector<double> &u)
 {
   double size;
@@ -353,8 +354,8 @@ bool MPMKeptFactors::iterate(std::vector<double> &u)
   return true;
 }
 
-/** Solves the step with what earlier steps have left. False, with u as it was, if this does not lead to its
- *  end. */
+/** Solves the step with what earlier steps have left. False, with u as it was, if this does not
+ *  lead to its end. */
 bool MPMKeptFactors::solve(std::vector<double> &u, double step_dt)
 {
   dt = step_dt;

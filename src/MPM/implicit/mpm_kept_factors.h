@@ -25,16 +25,16 @@ class MPMNewton;
 class MPMSolvedNodes;
 class MPMTangent;
 
-/** Solves steps with inertia with what earlier steps have left: an extrapolation of their motions as the first
- *  guess, and factors of an earlier tangent, which quasi-Newton corrections bring up to date (see
- *  mpm_kept_factors.cpp). One field, without contact. */
+/** Solves steps with inertia with what earlier steps have left: an extrapolation of their motions
+ *  as the first guess, and factors of an earlier tangent, which quasi-Newton corrections bring up
+ *  to date (see mpm_kept_factors.cpp). One field, without contact. */
 class MPMKeptFactors {
  public:
   MPMKeptFactors(MPMSolvedNodes &, MPMForceBalance &, MPMConstraints &, MPMMotionSystem &,
                  MPMNewton &, const MPMImplicitOptions &, MPMImplicitReport &, MPMImplicitTimes &);
 
-  /** Solves a step of duration dt from the guess u. False, with u as it was, if this does not lead to its end.
-   *  Collective. */
+  /** Solves a step of duration dt from the guess u. False, with u as it was, if this does not lead
+   *  to its end. Collective. */
   bool solve(std::vector<double> &u, double dt);
   /** Stores the motion u of a step that has been solved, in one way or another. Collective. */
   void store(const std::vector<double> &u);

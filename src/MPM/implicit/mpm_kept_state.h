@@ -17,11 +17,12 @@
 
 namespace LAMMPS_NS {
 
-/** What implicit steps with inertia keep for the next steps, as long as the nodes stay the same and walls hold
- *  the same motions: the motions of the last steps, from which the next one is predicted; whether factors of a
- *  tangent exist; and what corrections have revealed about changes of the tangent since these were made. This
- *  affects only the path of the iterations, not the result that a step converges to. Vectors have the nodes of
- *  all ranks in the order of SharedNodes, because nodes may move to other ranks. */
+/** What implicit steps with inertia keep for the next steps, as long as the nodes stay the same and
+ *  walls hold the same motions: the motions of the last steps, from which the next one is
+ *  predicted; whether factors of a tangent exist; and what corrections have revealed about changes
+ *  of the tangent since these were made. This affects only the path of the iterations, not the
+ *  result that a step converges to. Vectors have the nodes of all ranks in the order of
+ *  SharedNodes, because nodes may move to other ranks. */
 struct MPMKeptState {
   bool known = false;    // is anything stored?
   // blocks, the nodes of each that this rank owns, and those with a mass

@@ -7,26 +7,29 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   A cell of a periodic body, in the total frame. With the mean deformation gradient Fm, and the velocity v of points and
-   nodes without the mean motion,
+   A cell of a periodic body, in the total frame. With the mean deformation gradient Fm, and the
+   velocity v of points and nodes without the mean motion,
 
      F <- F + dt (dv/dX + dFm/dt),   f_i = -sum V0 P dN_i/dX
 
-   Periodic v do no work against the mean stress, so that (R. Hill, J. Mech. Phys. Solids 11 (1963) 357)
+   Periodic v do no work against the mean stress, so that (R. Hill, J. Mech. Phys. Solids 11 (1963)
+   357)
 
      <P> : dFm/dt = <P : dF/dt>,   <.> = sum over points, with V0, over the volume of the cell
 
-   up to the inertia of v, and the work of the mean motion is that of the mean stress <P>. Empty places have no stress. The inertia
-   of the mean motion itself, which in a cell of a large body is that of the whole body, is left out.
+   up to the inertia of v, and the work of the mean motion is that of the mean stress <P>. Empty
+   places have no stress. The inertia of the mean motion itself, which in a cell of a large body is
+   that of the whole body, is left out.
 
-   A component with a stress s* moves like a mass of the inertia rho L^2 for each volume, with the mean density rho and the longest
-   edge L of the cell,
+   A component with a stress s* moves like a mass of the inertia rho L^2 for each volume, with the
+   mean density rho and the longest edge L of the cell,
 
      rho L^2 de/dt = s* - s
 
-   so that it swings 2 pi times slower than the slowest wave in the cell, whatever its stiffness is. Whenever it passes s*, it goes on with the mean
-   speed since it has done so before: a swing about a stress at rest ends at once, one about a stress or another strain that goes on keeps up with it. As
-   with kinetic damping (fix mpm/relax), no coefficient has to be chosen.
+   so that it swings 2 pi times slower than the slowest wave in the cell, whatever its stiffness is.
+   Whenever it passes s*, it goes on with the mean speed since it has done so before: a swing about
+   a stress at rest ends at once, one about a stress or another strain that goes on keeps up with
+   it. As with kinetic damping (fix mpm/relax), no coefficient has to be chosen.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_mean_deformation.h"

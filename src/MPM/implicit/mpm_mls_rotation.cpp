@@ -7,11 +7,12 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Stress mls has the integral of N (x_i - x)/D over a body in the place of that of the gradient of N. Both are along the
-   normal of a surface that is along the lattice; next to an inclined one that of mls is not, so that stress along a free surface pulls at
-   its nodes. Points move to undo that, come to other places, and the skin of a body loses stress in each static step, and on the whole
-   way of a dynamic relaxation, which takes many more steps for it.
-   The rotation is the mean over points by their equivalent stress: fluids, and what has failed, have none.
+   Stress mls has the integral of N (x_i - x)/D over a body in the place of that of the gradient of
+   N. Both are along the normal of a surface that is along the lattice; next to an inclined one that
+   of mls is not, so that stress along a free surface pulls at its nodes. Points move to undo that,
+   come to other places, and the skin of a body loses stress in each static step, and on the whole
+   way of a dynamic relaxation, which takes many more steps for it. The rotation is the mean over
+   points by their equivalent stress: fluids, and what has failed, have none.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_mls_rotation.h"

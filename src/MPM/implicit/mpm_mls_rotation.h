@@ -14,9 +14,9 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Measure of an error of statics for bodies that have turned while forces use moving least squares in the
- *  updated frame (mpm_mls_rotation.cpp): the rotation of the points of a field [rad], averaged with the equivalent
- *  stress as weight; 0 with other forces. Collective. */
+/** Measure of an error of statics for bodies that have turned while forces use moving least squares
+ *  in the updated frame (mpm_mls_rotation.cpp): the rotation of the points of a field [rad],
+ *  averaged with the equivalent stress as weight; 0 with other forces. Collective. */
 double mls_rotation(const MPMField &);
 
 /** Is this rotation large enough for a warning? */

@@ -62,7 +62,8 @@ void MPMMotionSystem::products(int n, const double *const *a, const double *cons
 
 void MPMMotionSystem::apply(const double *x, double *y)
 {
-  // levels know what walls leave free only node by node: their vectors are not quite in the range of P
+  // levels know what walls leave free only node by node: their vectors are not quite in the range
+  // of P
   if (by_levels) {
     allowed.assign(x, x + nodes.nreals());
     constraints.project(allowed.data());
@@ -94,7 +95,8 @@ void MPMMotionSystem::precondition(const double *r, double *z)
   constraints.project(z);
 }
 
-/** Inverts a symmetric matrix in place, by its Cholesky factors or, where it has none, by its diagonal. */
+/** Inverts a symmetric matrix in place, by its Cholesky factors or, where it has none, by its
+ *  diagonal. */
 static void invert(int n, double *A)
 {
   double L[3][3] = {{0.0}}, inverse[3][3] = {{0.0}};
@@ -167,10 +169,10 @@ void MPMMotionSystem::make_levels(bool same_structure)
   fill_levels();
 }
 
-/** Begins levels with the blocks of the diagonal. Unit vectors show what walls leave free of each node. Where
- *  walls hold nodes together (find_tied_nodes()), this is the freedom of all of these nodes. Pairs of mirror nodes
- *  at faces, and bodies that touch, do not quite fit this scheme: levels then take the heavier node of a pair as
- *  free, and the lighter one as held. */
+/** Begins levels with the blocks of the diagonal. Unit vectors show what walls leave free of each
+ *  node. Where walls hold nodes together (find_tied_nodes()), this is the freedom of all of these
+ *  nodes. Pairs of mirror nodes at faces, and bodies that touch, do not quite fit this scheme:
+ *  levels then take the heavier node of a pair as free, and the lighter one as held. */
 void MPMMotionSystem::begin_levels()
 {
   const Clock timed(times, MPMImplicitTimes::PRECONDITIONERS);
@@ -207,7 +209,8 @@ void MPMMotionSystem::fill_levels()
       *this, balance.inertia_per_mass() > 0.0 || constraints.rubs() ? stiff.data() : nullptr);
 }
 
-/** For tangents that are not symmetric. GMRES with restarts can reach a state in which it gains nothing any more. */
+/** For tangents that are not symmetric. GMRES with restarts can reach a state in which it gains
+ *  nothing any more. */
 SolveReport MPMMotionSystem::solve_general(const double *b, double *x, const SolveGoal &goal)
 {
   SolveReport solved;
@@ -222,9 +225,9 @@ SolveReport MPMMotionSystem::solve_general(const double *b, double *x, const Sol
   return solved;
 }
 
-/** Levels take longer to make than to use: those of the first tangents of a step serve all of its iterations as
- *  long as they do well. Nothing outlives the step, because a run that continues from a restart file must take the
- *  same way. */
+/** Levels take longer to make than to use: those of the first tangents of a step serve all of its
+ *  iterations as long as they do well. Nothing outlives the step, because a run that continues from
+ *  a restart file must take the same way. */
 SolveReport MPMMotionSystem::solve(const double *b, double *x, const SolveGoal &goal)
 {
   const Clock timed(times, MPMImplicitTimes::SYSTEMS);

@@ -25,10 +25,10 @@ class MPMConstraints;
 class MPMForceBalance;
 class MPMSolvedNodes;
 
-/** The linear system of an iteration for the motion, P^T (c m + K) P with K = -df_int/du, its preconditioners, and
- *  its solution by conjugate gradients or, where tangents are not symmetric, by GMRES. The preconditioner is either
- *  the inverse of the diagonal block of each node, or levels of lattices, which are the factors of the whole matrix
- *  where it is small. */
+/** The linear system of an iteration for the motion, P^T (c m + K) P with K = -df_int/du, its
+ *  preconditioners, and its solution by conjugate gradients or, where tangents are not symmetric,
+ *  by GMRES. The preconditioner is either the inverse of the diagonal block of each node, or levels
+ *  of lattices, which are the factors of the whole matrix where it is small. */
 class MPMMotionSystem : public MPM_NS::LinearSystem {
  public:
   MPMMotionSystem(MPMSolvedNodes &, MPMForceBalance &, MPMConstraints &, const MPMImplicitOptions &,
@@ -47,8 +47,8 @@ class MPMMotionSystem : public MPM_NS::LinearSystem {
   /** Are levels the preconditioner now? */
   bool uses_levels() const { return by_levels; }
   void use_levels(bool yes) { by_levels = yes; }
-  /** Makes levels of the present tangents. same_structure: those made before are for the same nodes and walls.
-   *  Collective. */
+  /** Makes levels of the present tangents. same_structure: those made before are for the same nodes
+   *  and walls. Collective. */
   void make_levels(bool same_structure = false);
   MPMLatticeRanks &lattice_ranks() { return ranks; }
   double memory_usage() const;
@@ -64,7 +64,8 @@ class MPMMotionSystem : public MPM_NS::LinearSystem {
   MPM_NS::ConjugateGradients conjugate_gradients;
   MPM_NS::FlexibleGMRES gmres{100};
   std::unique_ptr<MPM_NS::SplineMultigrid> multigrid;
-  // are pressures averaged around each point? The system is then asymmetric where moduli of these points differ
+  // are pressures averaged around each point? The system is then asymmetric where moduli of these
+  // points differ
   const bool averages;
   bool by_levels = false;
   std::vector<double> blocks, allowed;

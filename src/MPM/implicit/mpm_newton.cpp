@@ -93,8 +93,9 @@ bool MPMNewton::find_residual(const std::vector<double> &u, double &size,
 }
 
 /* ----------------------------------------------------------------------
-   A step s du is too long if the forces along it have changed sign and are as large as before. Forces that grow
-   without a change of sign are accepted: this happens where a solid softens first (P2 of the benchmarks).
+   A step s du is too long if the forces along it have changed sign and are as large as before.
+   Forces that grow without a change of sign are accepted: this happens where a solid softens first
+   (P2 of the benchmarks).
 ------------------------------------------------------------------------- */
 
 bool MPMNewton::line_search(std::vector<double> &u, double &size)
@@ -125,9 +126,9 @@ bool MPMNewton::line_search(std::vector<double> &u, double &size)
 }
 
 /* ----------------------------------------------------------------------
-   u and p <- u + s du, p + s dp. Motion and pressure have no common energy with a minimum, so the residual
-   has to decrease. Where it does not for any share s, because soil yields, the share that leaves least is
-   taken if this is not much more than before.
+   u and p <- u + s du, p + s dp. Motion and pressure have no common energy with a minimum, so the
+   residual has to decrease. Where it does not for any share s, because soil yields, the share that
+   leaves least is taken if this is not much more than before.
 ------------------------------------------------------------------------- */
 
 bool MPMNewton::search_jointly(std::vector<double> &u, double &size)
@@ -161,8 +162,8 @@ bool MPMNewton::search_jointly(std::vector<double> &u, double &size)
   return false;
 }
 
-/** Moves what is prescribed along its way, and all the rest with it, by the largest of the shares 1, 1/2, ... after
- *  which no point is inside out. False if there is none. */
+/** Moves what is prescribed along its way, and all the rest with it, by the largest of the shares
+ *  1, 1/2, ... after which no point is inside out. False if there is none. */
 bool MPMNewton::close_gaps(std::vector<double> &u, double &size, double &reached)
 {
   const std::vector<double> begin = u;
@@ -176,8 +177,8 @@ bool MPMNewton::close_gaps(std::vector<double> &u, double &size, double &reached
   return false;
 }
 
-/** Friction begins soft, so that what slips and what sticks changes little at a time, and walls do not tear what
- *  they drag. */
+/** Friction begins soft, so that what slips and what sticks changes little at a time, and walls do
+ *  not tear what they drag. */
 void MPMNewton::soften_friction(Progress &at)
 {
   if (!constraints.has_regularized_friction()) return;
@@ -201,7 +202,8 @@ bool MPMNewton::harden_friction(const std::vector<double> &u, Progress &at)
   return true;
 }
 
-/** Updates the active set where forces are in balance; bodies do so early, as long as it changes. */
+/** Updates the active set where forces are in balance; bodies do so early, as long as it
+ *  changes. */
 MPMNewton::Contact MPMNewton::update_contact(std::vector<double> &u, Progress &at)
 {
   const bool converged = at.left <= at.enough, bodies = constraints.between_bodies();
@@ -220,8 +222,8 @@ MPMNewton::Contact MPMNewton::update_contact(std::vector<double> &u, Progress &a
   return find_residual(u, at.size) ? CHANGED : INSIDE_OUT;
 }
 
-/** Forcing of S.C. Eisenstat, H.F. Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2: quadratic convergence
- *  without linear solutions that are more accurate than the tangent is worth. */
+/** Forcing of S.C. Eisenstat, H.F. Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2: quadratic
+ *  convergence without linear solutions that are more accurate than the tangent is worth. */
 void MPMNewton::choose_accuracy(Progress &at) const
 {
   if (at.last > 0.0) {
@@ -265,8 +267,9 @@ SolveReport MPMNewton::find_correction(const std::vector<double> &u, Progress &a
                                : system.solve(free.data(), du.data(), goal);
   report.linear += solved.iterations;
   report.iterations++;
-  // the energy has no minimum along some direction, for example near an unstable state: the solution goes as
-  // far as it had one, and at least down the slope (T. Steihaug, SIAM J. Numer. Anal. 20 (1983) 626)
+  // the energy has no minimum along some direction, for example near an unstable state: the
+  // solution goes as far as it had one, and at least down the slope (T. Steihaug, SIAM J. Numer.
+  // Anal. 20 (1983) 626)
   if (solved.outcome == SolveReport::INDEFINITE) {
     report.indefinite++;
     if (solved.iterations == 0) system.precondition(free.data(), du.data());
@@ -320,7 +323,8 @@ MPMNewton::Outcome MPMNewton::iterate(std::vector<double> &u, int most_iteration
                           balance.negligible_forces(u, at.stiffness),
                           pressure ? pressure->negligible_forces() : 0.0});
     at.left = report.unbalanced;
-    // with a pressure, the larger one of the residuals of forces and volumes, relative to what may be left
+    // with a pressure, the larger one of the residuals of forces and volumes, relative to what may
+    // be left
     if (pressure) {
       pressure->allow_force(at.enough);
       at.left = pressure->excess() * at.enough;
@@ -347,10 +351,11 @@ MPMNewton::Outcome MPMNewton::iterate(std::vector<double> &u, int most_iteration
 }
 
 /* ----------------------------------------------------------------------
-   Where Newton's method does not find the end of the step at once, it goes there in parts: for shares s that
-   grow to one, it solves r(u) = (1 - s) r0, where r0 is the residual at the start, and walls go a share of
-   their way. Changes by loads, gravity, ramps, and walls then come in small portions. The laws see one step
-   from its start to u as always, so that parts lead to the same end where they are not needed.
+   Where Newton's method does not find the end of the step at once, it goes there in parts: for
+   shares s that grow to one, it solves r(u) = (1 - s) r0, where r0 is the residual at the start,
+   and walls go a share of their way. Changes by loads, gravity, ramps, and walls then come in small
+   portions. The laws see one step from its start to u as always, so that parts lead to the same end
+   where they are not needed.
 ------------------------------------------------------------------------- */
 
 void MPMNewton::solve_in_parts(std::vector<double> &u)

@@ -24,8 +24,9 @@ class MPMSolvedNodes;
 
 /** Newton's method for the displacements u of an implicit step,
  *      P^T r(u) = 0,   u = P u + dt w
- *  with the residual r of MPMForceBalance, and P and w of MPMConstraints. It has the line search, updates of the
- *  active set of contacts, and a division of the step into parts where it does not converge at once. */
+ *  with the residual r of MPMForceBalance, and P and w of MPMConstraints. It has the line search,
+ *  updates of the active set of contacts, and a division of the step into parts where it does not
+ *  converge at once. */
 class MPMNewton {
  public:
   enum Outcome { CONVERGED, FAILED, HOPELESS };    ///< HOPELESS: parts of the step would fail, too
@@ -33,19 +34,22 @@ class MPMNewton {
   MPMNewton(MPMSolvedNodes &, MPMForceBalance &, MPMConstraints &, MPMMotionSystem &,
             const MPMImplicitOptions &, MPMImplicitReport &, MPMImplicitTimes &);
 
-  /** Start of a step of duration dt. pressure: that of nodes, which is found together with u; null: none. */
+  /** Start of a step of duration dt. pressure: that of nodes, which is found together with u; null:
+   *  none. */
   void begin_step(double dt, MPMCoupledPressure *pressure);
   /** Iterates from u to the balance of forces. Collective. */
   Outcome iterate(std::vector<double> &u, int most_iterations);
   /** The same in as few parts of the step as possible; the report has the result. Collective. */
   void solve_in_parts(std::vector<double> &u);
 
-  /** Finds the residual after the motion u, and without reactions in free_forces(). size: sum of the sizes of all
-   *  forces. along: product of the free forces with the given vector, if there is one. False, on all ranks, where
-   *  points are inside out or anything is not finite. Collective. */
+  /** Finds the residual after the motion u, and without reactions in free_forces(). size: sum of
+   *  the sizes of all forces. along: product of the free forces with the given vector, if there is
+   *  one. False, on all ranks, where points are inside out or anything is not finite.
+   *  Collective. */
   bool find_residual(const std::vector<double> &u, double &size,
                      const std::vector<double> *vector = nullptr, double *along = nullptr);
-  /** u <- u + s du with du in change() and the largest s that is not too far. False if there is none. Collective. */
+  /** u <- u + s du with du in change() and the largest s that is not too far. False if there is
+   *  none. Collective. */
   bool line_search(std::vector<double> &u, double &size);
 
   /** r, [node][dim]. */

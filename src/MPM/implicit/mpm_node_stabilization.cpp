@@ -70,7 +70,8 @@ void MPMNodeStabilization::begin_step(double c, const std::vector<double> &modul
   field.nodes.sum(stiffness.data(), 1, 0, 1);
 }
 
-/** With W = diag(N), S = diag(s), and the linear motion v = A u, in which A is the projection for which W A is symmetric, forces are -k (1 - A)^T W S (1 - A) u. */
+/** With W = diag(N), S = diag(s), and the linear motion v = A u, in which A is the projection for
+ *  which W A is symmetric, forces are -k (1 - A)^T W S (1 - A) u. */
 template <int DIM> void MPMNodeStabilization::add_forces_of_points()
 {
   const double m = shape_constants[field.options.shape].inv_moment;

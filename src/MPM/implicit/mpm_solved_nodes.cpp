@@ -72,10 +72,11 @@ void MPMSolvedNodes::find_active()
 }
 
 /* ----------------------------------------------------------------------
-   A node that corners of domains, or nodes of elements, reach with a small share e has forces of the order e
-   and a stiffness of the order e^2: it moves 1/e times as far as these corners do. Its forces divided by e
-   show how well the forces of the corners are in balance. Where e is only round-off of the places of corners,
-   which may lie on a plane of nodes, the node is left alone: corners then do not move by this share.
+   A node that corners of domains, or nodes of elements, reach with a small share e has forces of
+   the order e and a stiffness of the order e^2: it moves 1/e times as far as these corners do. Its
+   forces divided by e show how well the forces of the corners are in balance. Where e is only
+   round-off of the places of corners, which may lie on a plane of nodes, the node is left alone:
+   corners then do not move by this share.
 ------------------------------------------------------------------------- */
 
 void MPMSolvedNodes::find_reach()

@@ -18,8 +18,9 @@
 
 namespace LAMMPS_NS {
 
-/** The nodes of all fields that an implicit step solves for. Vectors are [node][dim], one field after the
- *  other, and zero at nodes without a mass. Each node counts once in sums, on the rank that owns it. */
+/** The nodes of all fields that an implicit step solves for. Vectors are [node][dim], one field
+ *  after the other, and zero at nodes without a mass. Each node counts once in sums, on the rank
+ *  that owns it. */
 class MPMSolvedNodes {
  public:
   /** A field and the range of its nodes in vectors. */
@@ -37,7 +38,8 @@ class MPMSolvedNodes {
   void init();
   /** Start of a step: reads masses and velocities from the records of nodes. Collective. */
   void begin_step();
-  /** Restores the records of nodes, which hold trial motions during the step, to the start of the step. */
+  /** Restores the records of nodes, which hold trial motions during the step, to the start of the
+   *  step. */
   void restore_records();
 
   class LAMMPS *const lmp;
@@ -76,8 +78,8 @@ class MPMSolvedNodes {
   double largest(double mine) const;
   /** Sum of the lengths of the vectors of the nodes that this rank owns. */
   double sum_of_lengths(const std::vector<double> &f) const;
-  /** The same for forces that are to be in balance: those of domains are seen by the corners of these, see
-   *  find_reach(). */
+  /** The same for forces that are to be in balance: those of domains are seen by the corners of
+   *  these, see find_reach(). */
   double sum_of_residuals(const std::vector<double> &f) const;
   /** Root of the mean square of a motion, with the mass as weight. Collective. */
   double mean_size(const std::vector<double> &u) const;
@@ -96,8 +98,8 @@ class MPMSolvedNodes {
   {
     for (std::size_t k = 0; k < nowned; k++) use(active[k]);
   }
-  /** Calls use(n, k) for all entries k of vectors that belong to nodes n with a mass. The width is a constant
-   *  in the innermost loop. */
+  /** Calls use(n, k) for all entries k of vectors that belong to nodes n with a mass. The width is
+   *  a constant in the innermost loop. */
   template <class Use> void each_entry(const Use &use) const
   {
     const auto all = [&](auto dim) {

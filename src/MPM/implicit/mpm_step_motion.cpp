@@ -80,13 +80,14 @@ void MPMStepMotion::keep_accelerations()
 }
 
 /* ----------------------------------------------------------------------
-   Velocities that node actions turn into those of the step, and with which reactions and works are counted as
-   always: the part of the residual that is left is no impulse.
+   Velocities that node actions turn into those of the step, and with which reactions and works are
+   counted as always: the part of the residual that is left is no impulse.
 
-   Points move with the value in the place of the new velocity, u/dt. With FLIP, their velocity changes by the
-   difference from the value in the place of the old one. In statics both are the same, so that forces work
-   with the displacement. The ledger counts the work of forces with the stress at the start of the step and
-   the mean of old and new velocity; account() adds the difference.
+   Points move with the value in the place of the new velocity, u/dt. With FLIP, their velocity
+   changes by the difference from the value in the place of the old one. In statics both are the
+   same, so that forces work with the displacement. The ledger counts the work of forces with the
+   stress at the start of the step and the mean of old and new velocity; account() adds the
+   difference.
 ------------------------------------------------------------------------- */
 
 std::vector<double> MPMStepMotion::end_step(const std::vector<double> &u)
@@ -153,10 +154,10 @@ void MPMStepMotion::set_record(int64_t n, double *record, const std::vector<doub
 }
 
 /* ----------------------------------------------------------------------
-   For a while, the reactions of walls are velocities of the size dt f/m, which can be large in statics with
-   its time steps of any length. What node actions make of them is v with a rounding error of that size.
-   Points therefore get v itself. So does the ledger in statics: it would have that error times the impulses
-   of forces, which are proportional to the length of the step.
+   For a while, the reactions of walls are velocities of the size dt f/m, which can be large in
+   statics with its time steps of any length. What node actions make of them is v with a rounding
+   error of that size. Points therefore get v itself. So does the ledger in statics: it would have
+   that error times the impulses of forces, which are proportional to the length of the step.
 ------------------------------------------------------------------------- */
 
 void MPMStepMotion::set_velocities()

@@ -21,25 +21,25 @@ class MPMForceBalance;
 class MPMNewton;
 class MPMSolvedNodes;
 
-/** Velocities and accelerations of nodes at both ends of an implicit step, by its method of time integration: the
- *  predictor at the start, and at the end the velocities that nodes give to points, with the works that the ledger
- *  has to know. */
+/** Velocities and accelerations of nodes at both ends of an implicit step, by its method of time
+ *  integration: the predictor at the start, and at the end the velocities that nodes give to
+ *  points, with the works that the ledger has to know. */
 class MPMStepMotion {
  public:
   MPMStepMotion(MPMSolvedNodes &, MPMForceBalance &, MPMConstraints &, MPMNewton &,
                 const MPMTimeMethod &, MPMPointAccelerations &);
 
-  /** Start of a step of duration dt, with constraints: finds the predictor of the balance, and a first guess of
-   *  the displacements u. Collective. */
+  /** Start of a step of duration dt, with constraints: finds the predictor of the balance, and a
+   *  first guess of the displacements u. Collective. */
   void begin_step(double dt, std::vector<double> &u);
-  /** The motion u has been found: gives nodes the velocities from which node actions make those of the step, with
-   *  all the impulses that these take. Returns for each field, in statics, the fictitious kinetic energy of nodes
-   *  that this rank owns [mass velocity^2]. Collective. */
+  /** The motion u has been found: gives nodes the velocities from which node actions make those of
+   *  the step, with all the impulses that these take. Returns for each field, in statics, the
+   *  fictitious kinetic energy of nodes that this rank owns [mass velocity^2]. Collective. */
   std::vector<double> end_step(const std::vector<double> &u);
   /** Node actions have acted: sets the velocities of the step at the nodes. */
   void set_velocities();
-  /** The same, accounts for works of forces that the ledger does not know, and finds what points get besides the
-   *  velocities that they move with. Collective. */
+  /** The same, accounts for works of forces that the ledger does not know, and finds what points
+   *  get besides the velocities that they move with. Collective. */
   void finish();
   /** Points of affine transfers have moved: they get this, in the mid-point rule. */
   void end_motion() { affine.change_points(); }

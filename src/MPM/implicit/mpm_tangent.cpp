@@ -7,10 +7,11 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The forces of a trial motion are those of the total frame whose reference is where points are at the start of the step:
-   f_i = -sum_p V_p P dN_ip/dX, so that kernels of that frame serve. With the gradients of the same transfer in both
-   directions they are the derivatives of the stored energy by u, as far as there is one, and the matrix of second
-   derivatives is never made: its product with a vector is a way from nodes to points and back.
+   The forces of a trial motion are those of the total frame whose reference is where points are at
+   the start of the step: f_i = -sum_p V_p P dN_ip/dX, so that kernels of that frame serve. With the
+   gradients of the same transfer in both directions they are the derivatives of the stored energy
+   by u, as far as there is one, and the matrix of second derivatives is never made: its product
+   with a vector is a way from nodes to points and back.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_tangent.h"
@@ -135,16 +136,16 @@ void MPMTangent::move_points(const double *u)
     point_motion[3 * i + 2] = 0.0;
 }
 
-/** In sum_forces: those of loads that follow, and the change since the start of the step of those between points. False, on this rank,
- *  where they are not finite. */
-bool MPMTangent::add_between(const double *u, double &carried)
+/** In sum_forces: those of loads that follow, and the change since the start of the step of those
+ *  between points. False, on this rank, where they are not finite. */
+bool MPMTangent::add_between(const double *u, double &size)
 {
   bool good = true;
   sum_forces = loaded ? load_forces : no_force;
   move_points(u);
   point_forces.resize(3 * (std::size_t) atom->nmax);
   for (auto *forces : between) {
-    if (!forces->forces_after(point_motion.data(), point_forces.data(), carried)) good = false;
+    if (!forces->forces_after(point_motion.data(), point_forces.data(), size)) good = false;
     const double *const before = forces->forces();
     for (std::size_t k = 0; k < 3 * (std::size_t) atom->nlocal; k++)
       sum_forces[k] += point_forces[k] - before[k];
@@ -153,7 +154,8 @@ bool MPMTangent::add_between(const double *u, double &carried)
 }
 
 /* ----------------------------------------------------------------------
-   deformation of the places of the lattice after H [n][nH] of n points from first on, as in MPMFrame
+   deformation of the places of the lattice after H [n][nH] of n points from first on, as in
+   MPMFrame
 ------------------------------------------------------------------------- */
 
 void MPMTangent::lattice_F(int first, int n, const double *H, double *F) const
@@ -202,7 +204,8 @@ void MPMTangent::deform(int first, int n, const double *H)
       atom->vfrac + row, nH > nL ? hoop : nullptr);
 }
 
-/** P [n][DIM*DIM] of the stress in a batch, whose F is that of the places of the lattice; or that is unity and H, where this is given. */
+/** P [n][DIM*DIM] of the stress in a batch, whose F is that of the places of the lattice; or that
+ *  is unity and H, where this is given. */
 template <int DIM> static void piola_of_batch(const Batch &b, int n, const double *H, double *P)
 {
   constexpr int SIZE = DIM * DIM;
@@ -329,27 +332,27 @@ void MPMTangent::external_forces(double *force)
   scatter(f, force);
 }
 
-void MPMTangent::forces_on_rest(double *force)
+void MPMTangent::forces_on_carried(double *force)
 {
   std::vector<double> forces(no_force.size(), 0.0);
   const double *const f = field.rows().f;
-  for (const auto &[i, share] : parts)
+  for (const auto &[i, share] : carried)
     for (int d = 0; d < 3; d++) forces[3 * i + d] = (1.0 - share) * f[3 * i + d];
   std::fill(P.begin(), P.end(), 0.0);
   std::fill(hoop_stress.begin(), hoop_stress.end(), 0.0);
   scatter(forces.data(), force);
 }
 
-void MPMTangent::take_parts()
+void MPMTangent::reduce_carried()
 {
-  for (const auto &[i, share] : parts) {
+  for (const auto &[i, share] : carried) {
     for (int k = 0; k < nL; k++) P[nL * i + k] *= share;
     if (nH > nL) hoop_stress[i] *= share;
     for (int d = 0; d < 3 && loaded; d++) load_forces[3 * i + d] *= share;
   }
 }
 
-bool MPMTangent::forces(const double *u, double dt, double *force, double &carried)
+bool MPMTangent::forces(const double *u, double dt, double *force, double &size)
 {
   int bad = 0, any;
   double sum = 0.0, stresses[10 * BATCH + 8];
@@ -371,11 +374,11 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
       hoop_stress[first + p] = stresses[nH * p + nL];
     }
   });
-  carried = sum * field.step_data().stress_scale / field.lattice.h;
+  size = sum * field.step_data().stress_scale / field.lattice.h;
   if (!between.empty()) {
     double sizes = 0.0;
     if (!add_between(u, sizes)) bad = 1;
-    carried += sizes * field.step_data().force_scale;
+    size += sizes * field.step_data().force_scale;
   }
   MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
   if (any) return false;
@@ -385,7 +388,7 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &carri
       for (bigint i = run.first; i < run.last; i++) added[i] = -pressure[i];
     add_to_stress(u);
   }
-  take_parts();
+  reduce_carried();
   scatter(!between.empty() ? sum_forces.data()
               : loaded     ? load_forces.data()
                            : no_force.data(),

@@ -7,9 +7,10 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Derivatives of the stress of points, and the product of all of them with a motion. By the tangent of the material:
-   with F that of the places, dP = (dtau - tau l^T) F^-T, and for a change of H_rc, of which l has the row r of dF F^-1,
-   l_rs = (F^-1)_cs. Materials without a tangent have central differences.
+   Derivatives of the stress of points, and the product of all of them with a motion. By the tangent
+   of the material: with F that of the places, dP = (dtau - tau l^T) F^-T, and for a change of H_rc,
+   of which l has the row r of dF F^-1, l_rs = (F^-1)_cs. Materials without a tangent have central
+   differences.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_tangent.h"
@@ -130,7 +131,7 @@ double MPMTangent::linearize(const double *u, double dt)
     if (adds()) differentiate_added(first, n, H);
     if (follows(first, n)) differentiate_loads(first, n, H);
   });
-  for (const auto &[i, share] : parts) {
+  for (const auto &[i, share] : carried) {
     for (int k = 0; k < nH * nH; k++) tangents[nH * nH * i + k] *= share;
     for (int k = 0; k < 3 * nH && loaded; k++) load_tangents[3 * nH * i + k] *= share;
   }

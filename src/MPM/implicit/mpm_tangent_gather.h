@@ -20,7 +20,8 @@
 
 namespace LAMMPS_NS {
 
-/** Calls use(run, first, n, H) with the gradients H [n][nH] of the motion u for up to BATCH points from first on. */
+/** Calls use(run, first, n, H) with the gradients H [n][nH] of the motion u for up to BATCH points
+ *  from first on. */
 template <class Use> void MPMTangent::gather(const double *u, const Use &use)
 {
   // all but the motion stays zero

@@ -6,9 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Loads that follow the deformation of points (MPMPhysics::follow()), with their derivatives: the pressure on a surface that
-// becomes larger and turns in the step. Forces of such loads on points depend on H as stress does, but not as derivatives of
-// an energy of these points: systems are not symmetric.
+// Loads that follow the deformation of points (MPMPhysics::follow()), with their derivatives: the
+// pressure on a surface that becomes larger and turns in the step. Forces of such loads on points
+// depend on H as stress does, but not as derivatives of an energy of these points: systems are not
+// symmetric.
 
 #include "implicit/mpm_tangent.h"
 

@@ -7,7 +7,8 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Entries of the matrix, for preconditioners: blocks of its diagonal, and what each point contributes.
+   Entries of the matrix, for preconditioners: blocks of its diagonal, and what each point
+   contributes.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_tangent.h"
@@ -23,13 +24,15 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Gradients of moving least squares are weights times distances [node spacings] times minus this. */
+/** Gradients of moving least squares are weights times distances [node spacings] times minus
+ *  this. */
 double MPMTangent::mls_moment() const
 {
   return mls ? shape_constants[field.options.shape].inv_moment / field.lattice.h : 0.0;
 }
 
-/** The nodes of point i, each of them once, by their numbers where corners of a domain see one of them together. */
+/** The nodes of point i, each of them once, by their numbers where corners of a domain see one of
+ *  them together. */
 static void collect(const MPMStencil &stencil, const MPMField &field, int slot, int i,
                     std::vector<MPMStencil::Node> &nodes)
 {
@@ -85,7 +88,8 @@ void MPMTangent::each_point(const UsePoint &use) const
     }
 }
 
-/** A mean pressure p_I = sum_p N_Ip v_p dp_p/v_I works with the change of volume sum_p N_Ip V_p J G_p . H_p around its node. */
+/** A mean pressure p_I = sum_p N_Ip v_p dp_p/v_I works with the change of volume sum_p N_Ip V_p J
+ *  G_p . H_p around its node. */
 void MPMTangent::each_mean(const UseMean &use) const
 {
   struct Mean {
@@ -152,8 +156,8 @@ void MPMTangent::each_mean(const UseMean &use) const
   }
 }
 
-/** Adds to the block [DIM][DIM] of a node minus its force by its own motion: g: gradient of its function at a point with the tangents K;
- *  turn: H_zz for a unit of u_r; V: volume. */
+/** Adds to the block [DIM][DIM] of a node minus its force by its own motion: g: gradient of its
+ *  function at a point with the tangents K; turn: H_zz for a unit of u_r; V: volume. */
 template <int DIM, int NH>
 static void add_block(const double *K, const double *g, double turn, double V, double *block)
 {

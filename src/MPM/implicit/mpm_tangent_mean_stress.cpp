@@ -7,10 +7,10 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Pressures that points have besides the stress of their material: averages of it around points (locking pressure), and
-   that of nodes. Averages S p of the mean stress p take the place of that of the points, P <- P + c J G with c = S p - p
-   and G = F^-T. Their derivative is that with c as it is, which is in the tangents, and J G (S dp - dp), which points
-   around have a part in.
+   Pressures that points have besides the stress of their material: averages of it around points
+   (locking pressure), and that of nodes. Averages S p of the mean stress p take the place of that
+   of the points, P <- P + c J G with c = S p - p and G = F^-T. Their derivative is that with c as
+   it is, which is in the tangents, and J G (S dp - dp), which points around have a part in.
 ------------------------------------------------------------------------- */
 
 #include "implicit/mpm_tangent.h"

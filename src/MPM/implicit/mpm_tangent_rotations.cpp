@@ -19,7 +19,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** The rotation in the deformation F, of dim times dim, in its place; in the plane, in that of its parts c and s. Unity where there is none. */
+/** The rotation in the deformation F, of dim times dim, in its place; in the plane, in that of its
+ *  parts c and s. Unity where there is none. */
 static void take_rotation(int dim, double *F)
 {
   if (dim == 2) {
@@ -38,7 +39,8 @@ static void take_rotation(int dim, double *F)
   of = R;
 }
 
-/** As forces on points. In the plane, a rotation is the direction of F_xx + F_yy and F_yx - F_xy; in space there is one force for each row of F. */
+/** As forces on points. In the plane, a rotation is the direction of F_xx + F_yy and F_yx - F_xy;
+ *  in space there is one force for each row of F. */
 void MPMTangent::keep_deformations(int first, int n, const double *H)
 {
   double F[9 * BATCH];

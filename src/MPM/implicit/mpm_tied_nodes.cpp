@@ -73,7 +73,8 @@ class TiedNodes {
   bool is_large(const std::vector<int> &cluster) const { return (int) cluster.size() > MOST_TIED; }
 };
 
-/** Groups of all ranks: each begins with an index whose first entry is the number of indices that follow. */
+/** Groups of all ranks: each begins with an index whose first entry is the number of indices that
+ *  follow. */
 std::vector<LatticeIndex> TiedNodes::gather_groups(const std::vector<int64_t> &groups)
 {
   std::vector<LatticeIndex> mine;

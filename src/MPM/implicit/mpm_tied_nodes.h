@@ -18,10 +18,11 @@ namespace LAMMPS_NS {
 class MPMConstraints;
 class MPMSolvedNodes;
 
-/** Finds groups of nodes that walls hold together, along lines through surfaces and faces (MPMLineTies), and the
- *  part of P within each group, from unit vectors of one node of each group at a time. Where lines of several
- *  surfaces chain many nodes together along edges, each node has the part of the nodes near it. The result has the
- *  nodes of this rank, in their order. Collective. */
+/** Finds groups of nodes that walls hold together, along lines through surfaces and faces
+ *  (MPMLineTies), and the part of P within each group, from unit vectors of one node of each group
+ *  at a time. Where lines of several surfaces chain many nodes together along edges, each node has
+ *  the part of the nodes near it. The result has the nodes of this rank, in their order.
+ *  Collective. */
 std::vector<MPM_NS::SplineMultigrid::Tie> find_tied_nodes(MPMSolvedNodes &, MPMConstraints &,
                                                           MPM_NS::LatticeRanks &);
 
