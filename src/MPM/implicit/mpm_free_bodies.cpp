@@ -16,6 +16,7 @@
 #include "implicit/mpm_free_bodies.h"
 
 #include "comm.h"
+#include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 #include "fmt/format.h"
 #include "force.h"

@@ -8,6 +8,7 @@
 
 #include "implicit/mpm_point_accelerations.h"
 
+#include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 #include "implicit/mpm_solved_nodes.h"
 

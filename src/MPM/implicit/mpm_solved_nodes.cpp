@@ -9,6 +9,7 @@
 #include "implicit/mpm_solved_nodes.h"
 
 #include "field/mpm_node_system.h"
+#include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 
 #include <algorithm>

@@ -15,6 +15,7 @@
 
 #include "implicit/mpm_tangent.h"
 
+#include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
