@@ -65,7 +65,7 @@ class MPMCoupledPressure : public MPM_NS::LinearSystem {
 
   void keep() { kept = p; }
   void go_back() { p = kept; }
-  void set_first() { first = left; }
+  void set_first() { first = unbalanced; }
   void set_part(double aim) { part_left = 1.0 - aim; }
 
   double memory_usage() const;
@@ -98,7 +98,7 @@ class MPMCoupledPressure : public MPM_NS::LinearSystem {
   std::vector<double> rhs, solution, room, no_pressure;
   std::vector<double> point_pressure, dp, dV;    // [n]
   std::vector<double> softness;                  // [n] softness of the soil, for the levels
-      // [node][dim] motions of the whole body that nothing resists
+  // [node][dim] motions of the whole body that nothing resists
   std::vector<std::vector<double>> free_axes;
 
   int64_t nnodes() const { return (int64_t) p.size(); }
