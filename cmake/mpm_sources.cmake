@@ -29,7 +29,7 @@ foreach(source ${sources})
   endif()
 endforeach()
 # those that know which instruction sets there are, see transfer/isa.h
-set(MPM_SELECT_SOURCES ${MPM_DIR}/transfer/isa.cpp ${MPM_DIR}/law/registry.cpp ${MPM_DIR}/material/batch.cpp
+set(MPM_SELECT_SOURCES ${MPM_DIR}/transfer/isa.cpp ${MPM_DIR}/law/registry.cpp ${MPM_DIR}/material/batch_kernels.cpp
     ${MPM_DIR}/solve/block_kernels.cpp)
 list(REMOVE_ITEM MPM_CORE_SOURCES ${MPM_SELECT_SOURCES})
 file(GLOB MPM_HEADERS CONFIGURE_DEPENDS ${MPM_DIR}/*/*.h)
@@ -139,19 +139,32 @@ foreach(isa v3 v4)
   endif()
 endforeach()
 
-# For the demonstration, which is to show its first picture soon: of the sets only that of this machine.  All that it
+# The best set of this machine
+set(MPM_ISA_BEST base)
+if(EXISTS /proc/cpuinfo)
+  file(STRINGS /proc/cpuinfo flags LIMIT_COUNT 1 REGEX "^flags")
+  if("v3" IN_LIST MPM_ISA_SETS AND "${flags} " MATCHES " avx2 " AND "${flags} " MATCHES " fma " AND "${flags} " MATCHES " bmi2 ")
+    set(MPM_ISA_BEST v3)
+    if("v4" IN_LIST MPM_ISA_SETS AND "${flags} " MATCHES " avx512f " AND "${flags} " MATCHES " avx512vl " AND
+       "${flags} " MATCHES " avx512dq " AND "${flags} " MATCHES " avx512bw " AND "${flags} " MATCHES " avx512cd ")
+      set(MPM_ISA_BEST v4)
+    endif()
+  endif()
+endif()
+
+# To test a change soon, half of the time of the compiler is left out: of the instruction sets there are the baseline and the
+# best one of this machine, all is optimized less, and headers that nearly all include are compiled once.
+option(MPM_QUICK "Compile the package in less time, for tests" OFF)
+set(MPM_LEVEL -O3)
+if(MPM_QUICK)
+  set(MPM_LEVEL -O1)
+endif()
+
+# For the demonstration, which is to show its first picture soon: of the sets only that.  All that it
 # compiles has the flags of the whole package, which has only the rest to compile then.
 set(MPM_ISA_HERE)
 if(MPM_DEMO AND EXISTS /proc/cpuinfo)
-  file(STRINGS /proc/cpuinfo flags LIMIT_COUNT 1 REGEX "^flags")
-  set(MPM_ISA_HERE base)
-  if("v3" IN_LIST MPM_ISA_SETS AND "${flags} " MATCHES " avx2 " AND "${flags} " MATCHES " fma " AND "${flags} " MATCHES " bmi2 ")
-    set(MPM_ISA_HERE v3)
-    if("v4" IN_LIST MPM_ISA_SETS AND "${flags} " MATCHES " avx512f " AND "${flags} " MATCHES " avx512vl " AND
-       "${flags} " MATCHES " avx512dq " AND "${flags} " MATCHES " avx512bw " AND "${flags} " MATCHES " avx512cd ")
-      set(MPM_ISA_HERE v4)
-    endif()
-  endif()
+  set(MPM_ISA_HERE ${MPM_ISA_BEST})
 endif()
 
 # So are the transfers of each shape.  In the demonstration there are no fast ones but those of its scene: the file of
@@ -179,7 +192,9 @@ endforeach()
 # Products of functions along axes gain nothing by -O3.  With -O1 a step is a tenth slower: for the baseline, where there is a
 # better set for all processors but old ones.  Else laws and domains need -O3.  (bench_kernels, bench_materials)
 set(base "$<STREQUAL:$<TARGET_PROPERTY:NAME>,mpm_isa_base>")
-if(NOT "v3" IN_LIST MPM_ISA_SETS)
+if(MPM_QUICK)
+  set(base 1)
+elseif(NOT "v3" IN_LIST MPM_ISA_SETS)
   set(base 0)
 endif()
 foreach(source ${MPM_ISA_SOURCES})
@@ -190,12 +205,17 @@ foreach(source ${MPM_ISA_SOURCES})
   set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "$<IF:${base},-O1,${level}>")
 endforeach()
 
-if(MPM_ISA_HERE)
-  set(MPM_ISA_SETS ${MPM_ISA_HERE})
+if(MPM_ISA_HERE OR MPM_QUICK)
+  set(MPM_ISA_SETS ${MPM_ISA_BEST})
   set(MPM_ISA_DEFINITIONS)
-  if(NOT MPM_ISA_HERE STREQUAL base)
-    string(TOUPPER ${MPM_ISA_HERE} ISA)
-    set(MPM_ISA_DEFINITIONS MPM_HAVE_${ISA} MPM_HAVE_NO_BASE)
+  if(NOT MPM_ISA_BEST STREQUAL base)
+    string(TOUPPER ${MPM_ISA_BEST} ISA)
+    set(MPM_ISA_DEFINITIONS MPM_HAVE_${ISA})
+    if(MPM_ISA_HERE)
+      list(APPEND MPM_ISA_DEFINITIONS MPM_HAVE_NO_BASE)
+    else()
+      list(PREPEND MPM_ISA_SETS base)
+    endif()
   endif()
 endif()
 set(MPM_ISA_OPTIONS -O3 -ffp-contract=fast -fno-math-errno -fno-trapping-math -fopenmp-simd)
@@ -205,7 +225,7 @@ function(mpm_core_library name)
   add_library(${name} OBJECT ${ARGN})
   target_compile_features(${name} PRIVATE cxx_std_17)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
-  target_compile_options(${name} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3> -Wall -Wextra)
+  target_compile_options(${name} PRIVATE $<$<NOT:$<CONFIG:Debug>>:${MPM_LEVEL}> -Wall -Wextra)
   target_include_directories(${name} PRIVATE ${MPM_DIR})
   target_include_directories(${name} SYSTEM PRIVATE ${EIGEN3_INCLUDE_DIR})
   if(MPM_FEATURES)
@@ -313,5 +333,9 @@ function(mpm_add_objects)
     <map> <memory> <string> <unordered_map> <vector> [["atom.h"]] [["comm.h"]] [["compute.h"]]
     [["error.h"]] [["fix.h"]] [["force.h"]] [["group.h"]] [["math_extra.h"]] [["memory.h"]] [["modify.h"]]
     [["neighbor.h"]] [["pointers.h"]] [["update.h"]] [["utils.h"]])
+  if(MPM_QUICK)
+    target_precompile_headers(mpm_objects PRIVATE [["base/mpm_input.h"]] [["base/mpm_options.h"]] [["field/mpm_field.h"]]
+      [["field/mpm_plan.h"]])
+  endif()
   set_property(GLOBAL PROPERTY MPM_OBJECTS $<TARGET_OBJECTS:mpm_objects> ${core})
 endfunction()

@@ -33,7 +33,7 @@
    nodes, and to less while there is a gap or beyond the end of one of them. The part of this volume that is
    outside of fixed faces of the box does not count (Room).
 
-   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (fix_mpm_boundary.cpp). The rest
+   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (mpm_wall_contact.cpp). The rest
    is between grains and gives friction: J_t <= mu (J_n - J_w). Where J_n would be below J_w, grains part, and the water alone
    pushes. For two bodies with water, which do not exchange any, the mean counts.
 ------------------------------------------------------------------------- */
@@ -49,15 +49,16 @@
 #include "elements/fix_mpm_elements.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_node_sums.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_refined_body.h"
 #include "field/mpm_stencil.h"
 #include "force.h"
 #include "math_extra.h"
 #include "modify.h"
-#include "refine/fix_mpm_refine.h"
 #include "update.h"
 #include "walls/fix_mpm_boundary.h"
 
@@ -269,7 +270,7 @@ void FixMPMContact::check_refined(Body &body)
 {
   body.refined = nullptr;
   const std::string name = body.field->id();
-  for (auto *fix : find_fixes<FixMPMRefine>(lmp))
+  for (auto *fix : find_fixes<MPMRefinedBody>(lmp))
     if (fix->has(name)) body.refined = fix;
   if (!body.refined) return;
   body.finer = body.refined->finer_than(name);
@@ -455,7 +456,7 @@ void FixMPMContact::list_common_blocks()
   for (auto &body : bodies) {
     body.held.assign(body.field->grid.nnodes(), 0);
     for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
-      dynamic_cast<FixMPMBoundary *>(fix)->mark_held(*body.field, body.held);
+      dynamic_cast<FixMPMBoundary *>(fix)->mark_prescribed(*body.field, body.held);
   }
   int any = !common.empty(), all;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
@@ -516,8 +517,7 @@ bool FixMPMContact::map_bodies()
     foresee_walls(body);
     map_content(body);
     body.water.clear();
-    if (pressure_of_physics(*body.field))
-      surface_force_of_physics(*body.field, body.near, body.water);
+    if (pore_pressure(*body.field)) pore_surface_force(*body.field, body.near, body.water);
   }
   return true;
 }
@@ -727,7 +727,7 @@ double FixMPMContact::most_filled(Body &body)
 /* ----------------------------------------------------------------------
    Nodes next to fixed faces of the box, and to an axis of symmetry, have no points in a part of their volume:
    bodies that touch there fill the rest. A node in the plane of a face has room for half of its volume. Nodes
-   outside are images of those inside (fix_mpm_boundary.cpp), and in contact when these are.
+   outside are images of those inside (mpm_mirror_nodes.cpp), and in contact when these are.
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::Room::find(const MPMField &field, const Domain &box)
@@ -859,7 +859,7 @@ void FixMPMContact::foresee_walls(Body &body)
 {
   body.foreseen.reset((int64_t) body.held.size());
   for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
-    dynamic_cast<FixMPMBoundary *>(fix)->foresee(*body.field, body.near, body.foreseen);
+    dynamic_cast<FixMPMBoundary *>(fix)->predict(*body.field, body.near, body.foreseen);
 }
 
 FixMPMContact::Pair::Walls FixMPMContact::Body::find_walls(const double *record) const
@@ -972,7 +972,7 @@ void FixMPMContact::report_missed_water()
 {
   constexpr double MOST = 0.05;
   if (told_of_water || std::all_of(bodies.begin(), bodies.end(), [](const Body &body) {
-        return !pressure_of_physics(*body.field);
+        return !pore_pressure(*body.field);
       }))
     return;
   double all[2];

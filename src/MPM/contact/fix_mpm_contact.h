@@ -18,10 +18,10 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "base/mpm_first_note.h"
 #include "declare/option.h"
 #include "field/mpm_body_contact.h"
+#include "field/mpm_friction_heat.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_reach.h"
 #include "fix.h"
-#include "heat/mpm_friction_heat.h"
 #include "math/aitken.h"
 #include "math/sets.h"
 #include "walls/fix_mpm_boundary.h"
@@ -40,7 +40,7 @@ class Grid;
 }
 
 namespace LAMMPS_NS {
-class FixMPMRefine;
+class MPMRefinedBody;
 class MPMField;
 
 /** Keywords of fix mpm/contact. */
@@ -92,7 +92,7 @@ class FixMPMContact :
   /** Does this fix treat contact between these two fields (IDs)? */
   bool couples(const std::string &a, const std::string &b) const;
   /** Is this field (ID) one of the bodies? */
-  bool touches(const std::string &name) const;
+  bool touches(const std::string &name) const override;
   /** Does this fix have the same contact law and parameters as another one? */
   bool has_law_of(const FixMPMContact &) const;
 
@@ -164,14 +164,14 @@ class FixMPMContact :
     MPMField *field;
     MPMReach reach;
     std::vector<int> images;    // blocks with periodic images
-    FixMPMRefine *refined;      // body on several lattices to which this field belongs, or null
+    MPMRefinedBody *refined;    // body on several lattices to which this field belongs, or null
     std::vector<MPMField *> finer;    // parts of that body on finer lattices
     std::vector<char> near;           // [slot] do bodies share nodes of this block?
     std::vector<double> gradient;     // of the volume (or mass) at the nodes
     std::vector<double> share;        // volume at the nodes / node volume
-    std::vector<double> water;        // [node][3] of MPMPhysics::surface_force(); empty: none
-    std::vector<char> held;           // bits, FixMPMBoundary::mark_held()
-    FixMPMBoundary::Foreseen foreseen;
+    std::vector<double> water;        // [node][3] of MPMPorePressure::surface_force(); empty: none
+    std::vector<char> held;           // bits, FixMPMBoundary::mark_prescribed()
+    MPMPredictedVelocities foreseen;
 
     Pair::Walls find_walls(const double *record) const;
     void move_mirrors(const double *record, const std::array<double, 3> &before);

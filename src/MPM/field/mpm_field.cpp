@@ -11,7 +11,6 @@
 #include "atom.h"
 #include "base/mpm_points.h"
 #include "domain.h"
-#include "elements/fix_mpm_elements.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_affine.h"
@@ -20,6 +19,7 @@
 #include "field/mpm_every.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_physics.h"
@@ -27,12 +27,11 @@
 #include "field/mpm_smoothing.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
+#include "field/mpm_watch.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "modify.h"
-#include "step/fix_mpm.h"
 #include "update.h"
-#include "watch/mpm_fracture_watch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +65,6 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   if (options.smooths_volumes()) smoothing.reset(new MPMSmoothing(lmp, *this));
   if (options.heat) heating.reset(new MPMTransferHeat(lmp, *this));
   if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this, state));
-  if (options.watches_fracture()) fracture_watch.reset(new MPMFractureWatch(lmp, *this));
   guard.reset(new MPMGuard(lmp, *this));
   time_limit.reset(new MPMTimeLimit(lmp, *this));
   map.reset(new MPMPointMap(lmp, *this));
@@ -79,13 +77,13 @@ MPMField::~MPMField() = default;
 std::vector<MPMField *> MPMField::all(LAMMPS *lmp)
 {
   std::vector<MPMField *> list;
-  for (auto *ifix : find_fixes<FixMPM>(lmp)) list.push_back(ifix->field.get());
+  for (auto *ifix : find_fixes<MPMFieldOwner>(lmp)) list.push_back(ifix->field.get());
   return list;
 }
 
 MPMField *MPMField::find(LAMMPS *lmp, const std::string &id)
 {
-  auto *ifix = dynamic_cast<FixMPM *>(lmp->modify->get_fix_by_id(id));
+  auto *ifix = dynamic_cast<MPMFieldOwner *>(lmp->modify->get_fix_by_id(id));
   return ifix ? ifix->field.get() : nullptr;
 }
 
@@ -138,7 +136,7 @@ void MPMField::check_box()
 void MPMField::init(MPMPlan *plan_of_all)
 {
   plan = plan_of_all;
-  running = has_moved = time_limit->watch_volume = keep_old = keep_old_now = false;
+  running = motion_is_done = time_limit->watch_volume = keep_old = keep_old_now = false;
   time_limit->bound = true;
   check_box();
   frame->check();
@@ -150,7 +148,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   jacobians.init();
 
   find_materials();
-  elements = find_fixes<FixMPMElements>(lmp);
+  elements = find_fixes<MPMInternalForce>(lmp);
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
 
@@ -181,9 +179,10 @@ void MPMField::find_materials()
 }
 
 /* ----------------------------------------------------------------------
-   Velocities of nodes that were mapped back have contact decided by those of the step, and no impulse of their
-   own. When points moved with them, a tool without friction that was drawn through a body felt nearly twice its
-   force, and a cone that is a separating wall 5 % too little at 1.2 cells of depth
+   Velocities of nodes that were mapped back have contact decided by those of the step, and no
+   impulse of their own. When points moved with them, a tool without friction that was drawn through
+   a body felt nearly twice its force, and a cone that is a separating wall 5 % too little at 1.2
+   cells of depth
 ------------------------------------------------------------------------- */
 
 static bool is_in_contact(const MPMField &field)
@@ -196,8 +195,8 @@ static bool is_in_contact(const MPMField &field)
 
 /* ----------------------------------------------------------------------
    Long records of nodes keep forces and old velocities apart: the ledger and some node actions need
-   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves domains with
-   velocities that were mapped back, knows long records only
+   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves
+   domains with velocities that were mapped back, knows long records only
 ------------------------------------------------------------------------- */
 
 void MPMField::choose_kernels()
@@ -227,6 +226,25 @@ void MPMField::choose_kernels()
   batch->h = lattice.h;
 }
 
+void MPMField::keep_old_velocities_now(bool yes)
+{
+  if (keep_old_now == yes) return;
+  keep_old_now = yes;
+  choose_kernels();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMField::count_step()
+{
+  auto &counts = counts_of_run;
+  last_dt = step_dt();
+  counts.dt_min = std::min(counts.dt_min, last_dt);
+  counts.dt_max = std::max(counts.dt_max, last_dt);
+  counts.steps++;
+  counts.point_steps += map->npoints();
+}
+
 /* ---------------------------------------------------------------------- */
 
 const char *MPMField::id() const
@@ -241,8 +259,8 @@ bool MPMField::is_point(int i) const
 
 bool MPMField::is_element_node(int i) const
 {
-  for (auto *ifix : elements)
-    if (atom->mask[i] & ifix->groupbit) return true;
+  for (const auto *body : elements)
+    if (atom->mask[i] & body->group_of_points()) return true;
   return false;
 }
 
@@ -282,14 +300,14 @@ PointRows MPMField::rows() const
   r.guarded = atom->nmax - 1;
   r.size = boxes ? boxes->sizes.data() : nullptr;
   if (domains) r.domain = domains->rows();
-  r.xnew = options.moves_late() ? const_cast<double *>(work.xnew.data()) : &atom->x[0][0];
+  r.xnew = options.moves_late() ? const_cast<double *>(late_positions.data()) : &atom->x[0][0];
   return r;
 }
 
 PointRows MPMField::rows_at_rest(double *values, const double *weights)
 {
-  // a value of a node that is not finite moves points even in no time, and the next transfer would look for
-  // their nodes; they stay where they are until the guard has seen the velocity
+  // a value of a node that is not finite moves points even in no time, and the next transfer would
+  // look for their nodes; they stay where they are until the guard has seen the velocity
 
   work.places.resize(3 * (std::size_t) atom->nmax);
   PointRows r = rows();
@@ -325,8 +343,26 @@ double MPMField::memory_usage() const
   if (boxes) bytes += boxes->sizes.capacity() * sizeof(double);
   if (every)
     bytes += (every->mean_force.capacity() + every->mean_torque.capacity()) * sizeof(double);
-  for (const auto *list : {&work.nodes, &work.node_velocities, &work.vectors, &work.weights,
-                           &work.places, &work.stress, &work.no_volume, &work.xnew, &work.history})
+  for (const auto *list :
+       {&work.nodes, &work.node_velocities, &work.vectors, &work.weights, &work.places,
+        &work.stress, &work.no_volume, &late_positions, &work.history})
     bytes += list->capacity() * sizeof(double);
   return bytes;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
+                             const OptionRules &rules)
+{
+  refuse_field(lmp, fmt::format("Fix {} {}", user.style, user.id), field, rules);
+}
+
+void LAMMPS_NS::refuse_field(LAMMPS *lmp, const std::string &user, const MPMField &field,
+                             const OptionRules &rules)
+{
+  for (const auto &rule : rules)
+    if (rule.broken)
+      lmp->error->all(FLERR, Error::NOLASTLINE, "{} cannot be used with {} of fix mpm {}: {}", user,
+                      rule.keyword, field.id(), rule.text);
 }

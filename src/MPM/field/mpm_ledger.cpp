@@ -9,8 +9,9 @@
 #include "field/mpm_ledger.h"
 
 #include "atom.h"
-#include "elements/fix_mpm_elements.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
@@ -69,8 +70,8 @@ void MPMLedger::account_for_points()
 }
 
 /* ----------------------------------------------------------------------
-   what n points from first on lose to the nodes by their stress, rows.tau: sum of V tau : grad v, with velocities
-   and their gradients L from the nodes
+   what n points from first on lose to the nodes by their stress, rows.tau: sum of V tau : grad v,
+   with velocities and their gradients L from the nodes
 ------------------------------------------------------------------------- */
 
 double MPMLedger::stress_power(PointRows &rows, int first, int n, const double *L) const
@@ -115,7 +116,7 @@ void MPMLedger::account_for_forces()
   const TransferStep s = field.step_data();
   double outer = 0.0, inner = 0.0, stress = 0.0, loads = 0.0;
   double L[9 * BATCH], velocity[3 * BATCH] = {};    // no velocity along z in 2d
-  const double *const pressure = pressure_of_physics(field);
+  const double *const pressure = pore_pressure(field);
   double total_stress[6 * BATCH + 8];
 
   const auto account = [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
@@ -130,11 +131,11 @@ void MPMLedger::account_for_forces()
     }
     if (!run.material) return;    // nodes of elements
 
-    if (pressure) add_pressure(pressure, b, first, n, total_stress);
+    if (pressure) subtract_pressure(pressure, b, first, n, total_stress);
     stress += stress_power(b, first, n, L);
-    if (!physics_adds_stress(field, first, first + n)) return;
+    if (!has_added_stress(field, first, first + n)) return;
     std::fill_n(total_stress, 6 * n, 0.0);
-    add_stress_of_physics(field, first, n, total_stress);
+    add_stress(field, first, n, total_stress);
     b = rows_from(field, r, first);
     b.velocity = velocity;
     b.tau = total_stress;
@@ -180,8 +181,8 @@ void MPMLedger::drag_node(double *record, bool owned, const double *impulse)
 }
 
 /* ----------------------------------------------------------------------
-   The work of the impulse takes the new velocity: that is what moves points. With the mean of the old
-   and the new one it would be the change of kinetic energy; the rest is lost in the collision
+   The work of the impulse takes the new velocity: that is what moves points. With the mean of the
+   old and the new one it would be the change of kinetic energy; the rest is lost in the collision
 ------------------------------------------------------------------------- */
 
 void MPMLedger::count_push(const double *record, const double *change)
@@ -197,8 +198,8 @@ void MPMLedger::count_push(const double *record, const double *change)
 
 /* ----------------------------------------------------------------------
    Where several actions meet at a node, each was counted with the velocity that it left, which the
-   next one changes. The kinetic energy of the node has the mean of its old and its final velocity in
-   all of them: what the change adds to earlier impulses is part of the collision
+   next one changes. The kinetic energy of the node has the mean of its old and its final velocity
+   in all of them: what the change adds to earlier impulses is part of the collision
 ------------------------------------------------------------------------- */
 
 double *MPMLedger::impulse(const double *record)

@@ -13,14 +13,13 @@
 #include "field/mpm_edges.h"
 #include "field/mpm_every.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_halo.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
 #include "platform.h"
-#include "watch/mpm_fracture_watch.h"
-#include "watch/mpm_point_extremes.h"
 
 #include <algorithm>
 
@@ -28,11 +27,14 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPlan::make()
+void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
 {
   fields = MPMField::all(lmp);
   actions = find_fixes<MPMNodeAction>(lmp);
   physics = find_fixes<MPMPhysics>(lmp);
+  added_stresses = find_fixes<MPMAddedStress>(lmp);
+  loads = find_fixes<MPMLoad>(lmp);
+  pore_pressures = find_fixes<MPMPorePressure>(lmp);
   std::stable_sort(actions.begin(), actions.end(), [](auto *a, auto *b) {
     return a->turn() < b->turn();
   });
@@ -43,22 +45,23 @@ void MPMPlan::make()
   for (auto *other : physics) other->init_physics(*this);
 
   stages.clear();
-  static void (*const make_list[])(MPMPlan &) = {make_usl, make_usf, make_musl, make_usavg};
-  make_list[fields[0]->options.scheme](*this);    // in the order of MPMFieldOptions::Scheme
+  scheme(*this);
 }
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPlan::each(const std::string &name, Each run, Wanted wanted)
+void MPMPlan::each(const std::string &name, const Data &reads, const Data &writes, Each run,
+                   Wanted wanted)
 {
   std::vector<MPMField *> list;
   for (auto *field : fields)
     if (!wanted || wanted(*field)) list.push_back(field);
   const std::vector<double> seconds(list.size(), 0.0);
-  if (!list.empty()) stages.push_back({name, std::move(run), list, false, seconds});
+  if (!list.empty()) stages.push_back({name, std::move(run), reads, writes, list, false, seconds});
 }
 
-void MPMPlan::together(const std::string &name, const std::function<void()> &run, Wanted wanted)
+void MPMPlan::together(const std::string &name, const Data &reads, const Data &writes,
+                       const std::function<void()> &run, Wanted wanted)
 {
   const auto once = [run](MPMField &) {
     run();
@@ -67,7 +70,7 @@ void MPMPlan::together(const std::string &name, const std::function<void()> &run
     return !wanted || wanted(*field);
   };
   if (std::any_of(fields.begin(), fields.end(), wants))
-    stages.push_back({name, once, {fields[0]}, true, {0.0}});
+    stages.push_back({name, once, reads, writes, {fields[0]}, true, {0.0}});
 }
 
 void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
@@ -76,7 +79,10 @@ void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
   const auto act = [this, stage]() {
     act_on_nodes(stage);
   };
-  together("node actions", act, std::move(wanted));
+  together("node actions",
+           {Data::POSITION, Data::VELOCITY, Data::DEFORMATION, Data::STRESS, Data::MASS,
+            Data::FORCE, Data::NODES, Data::BLOCKS, Data::OWN},
+           {Data::FORCE, Data::NODES, Data::OWN}, act, std::move(wanted));
 }
 
 void MPMPlan::place(Place at)
@@ -106,7 +112,9 @@ void MPMPlan::step()
   double time = platform::walltime();
   for (auto &stage : stages) {
     for (std::size_t k = 0; k < stage.seconds.size(); k++) {
+      if (observer) observer(stage, *stage.fields[k], false);
       stage.run(*stage.fields[k]);
+      if (observer) observer(stage, *stage.fields[k], true);
       const double now = platform::walltime();
       stage.seconds[k] += now - time;
       time = now;
@@ -180,12 +188,12 @@ void MPMPlan::find_blocks_now()
 
 void MPMPlan::start()
 {
-  watch.start();
+  watch->start();
   for (auto &stage : stages) std::fill(stage.seconds.begin(), stage.seconds.end(), 0.0);
   wall_start = platform::walltime();
   cpu_start = platform::cputime();
   for (auto *field : fields) {
-    field->counts = {0, 0.0, field->step_dt(), field->step_dt()};
+    field->start_counting();
     field->nodes.halo->bytes_sent = field->nodes.halo->messages_sent = 0;
     field->map->nbuild = field->map->nsort = 0;
     field->map->sort_time = 0.0;
@@ -199,17 +207,17 @@ void MPMPlan::start()
     return;
   std::string text = "MPM plan of a step:\n";
   for (const auto &stage : stages) {
-    text += "  " + stage.name;
+    std::string name = stage.name;
     for (auto *field : stage.fields)
-      if (fields.size() > 1 && !stage.once) text += std::string(" ") + field->id();
-    text += "\n";
+      if (fields.size() > 1 && !stage.once) name += std::string(" ") + field->id();
+    text += fmt::format("  {:<40} {} -> {}\n", name, stage.reads.text(), stage.writes.text());
   }
   utils::logmesg(lmp, text);
 }
 
 /* ----------------------------------------------------------------------
-   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts come
-   before the step. Without keyword plan, stages of the same name are one entry
+   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts
+   come before the step. Without keyword plan, stages of the same name are one entry
 ------------------------------------------------------------------------- */
 
 std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) const
@@ -240,11 +248,11 @@ std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) c
   return sums;
 }
 
-void MPMPlan::report(const MPMField &field, double bytes_per_point) const
+void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::string &state) const
 {
   constexpr double IDLE = 0.9;      // of the time is the processor's, or else others have taken it
   constexpr double SMALL = 0.05;    // share of a stage that is not worth a word
-  const auto &counts = field.counts;
+  const auto &counts = field.counts();
   const double wall = platform::walltime() - wall_start;
   double use = wall > 0.0 ? (platform::cputime() - cpu_start) / wall : 1.0, least_use;
   MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);
@@ -256,12 +264,11 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
   MPI_Allreduce(local, sum, 5, MPI_DOUBLE, MPI_SUM, world);
   const double npoints = sum[0] / counts.steps;
   const std::vector<Cost> list = costs(field, 1.0e9 * comm->nprocs / sum[0]);
-  const std::string state = point_extremes(lmp, field);
   if (comm->me) return;
 
   if (sum[0] == 0.0) {    // of a field that is there for contact, or has not got any yet
     utils::logmesg(lmp, "MPM {}: no points\n", field.id());
-    if (&field == fields[0]) utils::logmesg(lmp, watch.report());
+    if (&field == fields[0]) utils::logmesg(lmp, watch->report());
     return;
   }
   double total = 0.0;
@@ -292,7 +299,7 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
              most = fmt::format("{:.6g}", counts.dt_max);
   text += fmt::format("\n  {} steps, time step {}{}\n", counts.steps,
                       least == most ? least : least + " to " + most, state);
-  if (&field == fields[0]) text += watch.report();
+  if (&field == fields[0]) text += watch->report();
   utils::logmesg(lmp, text);
   if (least_use < IDLE && &field == fields.back())
     utils::logmesg(lmp,

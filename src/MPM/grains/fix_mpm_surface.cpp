@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "atom_vec.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "comm.h"
@@ -21,10 +22,11 @@
 #include "field/mpm_guard.h"
 #include "field/mpm_node_sums.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_refined_body.h"
+#include "field/mpm_setup_checks.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
-#include "refine/fix_mpm_refine.h"
 #include "update.h"
 
 #include <algorithm>
@@ -156,7 +158,7 @@ void FixMPMSurface::init()
                  {{field->options.axisymmetric, "axisymmetric",
                    "a grain would be a ring: let bodies meet through fix mpm/contact, or use 3d "
                    "for grains"}});
-  if (comm->me == 0 && !find_fixes<FixMPMRefine>(lmp).empty())
+  if (comm->me == 0 && !find_fixes<MPMRefinedBody>(lmp).empty())
     error->warning(FLERR,
                    "Fix mpm/surface {}: points at the rims between the lattices of fix mpm/refine "
                    "count as surface, and have a radius, too: leave them out of group {} if they "
@@ -204,7 +206,7 @@ void FixMPMSurface::setup_pre_exchange()
 {
   domain->pbc();    // reference positions of points are inside of the box
   for (auto *field : MPMField::all(lmp)) {
-    if (force->pair) field->guard->check_radii();    // cutoffs are for the largest ones
+    if (force->pair) MPMSetupChecks(lmp, *field).radii();    // cutoffs are for the largest ones
     field->choose_kernels();
     field->map->setup();
     field->map->valid = false;

@@ -12,6 +12,7 @@
 #include "elements/fix_mpm_elements.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_ledger.h"
 #include "field/mpm_rest.h"
@@ -33,6 +34,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
@@ -73,7 +75,7 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
   if (!stabilize_is_given) choose_stabilize(plan);
   for (auto *field : fields) check_field(plan, *field);
   for (auto *field : fields) {
-    field->keep_old = true;
+    field->keep_old_velocities();
     field->time_limit->bound = false;
   }
   const MPMImplicitOptions &mine = *this;
@@ -95,7 +97,7 @@ void FixMPMImplicit::choose_stabilize(const MPMPlan &plan)
   const auto &only = *fields[0];
   const bool possible = fields.size() == 1 && may_stabilize(only) && !only.frame->is_total() &&
       std::none_of(plan.physics.begin(), plan.physics.end(), [&](auto *other) {
-                          return other->node_pressure(only);
+                          return has_pressure(other, only);
                         });
   stabilize = possible && total[STUCK] > 0.0 ? ENOUGH_TO_STABILIZE : 0.0;
   stabilize_if_stuck = possible && stabilize == 0.0;
@@ -103,38 +105,42 @@ void FixMPMImplicit::choose_stabilize(const MPMPlan &plan)
 
 void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
+  const Data all = {Data::POSITION, Data::VELOCITY, Data::AFFINE, Data::DEFORMATION,
+                    Data::STRESS,   Data::HISTORY,  Data::MASS,   Data::FORCE,
+                    Data::NODES,    Data::BLOCKS,   Data::OWN};
   if (place == MPMPlan::AFTER_MOMENTUM)
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::NODES, Data::OWN}, [this]() {
       step();
     });
   if (place == MPMPlan::AFTER_ACTIONS && time.is_static())
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::NODES, Data::OWN}, [this]() {
       solver->set_velocities();
     });
   if (place == MPMPlan::AFTER_SOLVE)
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::NODES, Data::OWN}, [this]() {
       solver->finish();
     });
   if (place == MPMPlan::AFTER_MOTION)
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::OWN}, [this]() {
       solver->check_contacts();
     });
   if (place == MPMPlan::AFTER_MOTION && time.is_static())
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::VELOCITY, Data::AFFINE, Data::OWN}, [this]() {
       rest();
     });
   if (place == MPMPlan::AFTER_MOTION && time.kind == MPMTimeMethod::MIDPOINT &&
       std::any_of(fields.begin(), fields.end(), [](const MPMField *of) {
         return (bool) of->affine;
       }))
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::VELOCITY, Data::AFFINE, Data::OWN}, [this]() {
       solver->end_motion();
     });
 }
 
 void FixMPMImplicit::setup(int)
 {
-  for (const auto *elements : fields[0]->elements)    // elements know of their pressure now
+  for (const auto *elements :
+       find_fixes<FixMPMElements>(lmp))    // elements know of their pressure now
     if (const char *const what = elements->beyond_trials())
       error->all(
           FLERR, Error::NOLASTLINE,

@@ -73,6 +73,8 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   double seconds = 0.0;               // time spent in the solver in this run
   bool warned_of_rotation = false;    // was it reported that rotated bodies yield with stress mls?
 
+  /** Does an implicit step of this field solve for a pressure of this physics, too? */
+  static bool has_pressure(MPMPhysics *, const MPMField &);
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;
   void check_physics(const MPMPlan &) const;

@@ -15,6 +15,7 @@
 #include "elements/fix_mpm_elements.h"
 #include "field/mpm_body_contact.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_trial_contact.h"
@@ -26,11 +27,17 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+bool FixMPMImplicit::has_pressure(MPMPhysics *physics, const MPMField &of)
+{
+  auto *const water = dynamic_cast<MPMPorePressure *>(physics);
+  return water && water->node_pressure(of);
+}
+
 /** Refuses what implicit steps of a field do not support. */
 void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
 {
   for (auto *other : plan.physics)
-    if (other->joins_motion() &&
+    if (dynamic_cast<MPMPorePressure *>(other) &&
         (time.kind == MPMTimeMethod::NEWMARK || time.kind == MPMTimeMethod::MIDPOINT))
       error->all(
           FLERR, Error::NOLASTLINE,
@@ -55,8 +62,8 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
 void FixMPMImplicit::check_physics(const MPMPlan &plan) const
 {
   for (auto *other : plan.physics)
-    if (other != this && !other->only_loads() && !other->precedes_motion() &&
-        !other->joins_motion())
+    if (other != this && !dynamic_cast<MPMLoad *>(other) && !other->precedes_motion() &&
+        !dynamic_cast<MPMPorePressure *>(other))
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
@@ -111,7 +118,7 @@ void FixMPMImplicit::check_stabilization(const MPMPlan &plan, MPMField &of) cons
         "without fix mpm/elements, and not around an axis: remove it",
         of.id());
   for (auto *other : plan.physics)
-    if (stabilize > 0.0 && other->node_pressure(of))
+    if (stabilize > 0.0 && has_pressure(other, of))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/implicit stabilize knows nothing of the pressure of fix {} {}: remove it",
                  dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
@@ -120,7 +127,7 @@ void FixMPMImplicit::check_stabilization(const MPMPlan &plan, MPMField &of) cons
 /** Forces of elements must be known after trial motions. */
 void FixMPMImplicit::check_elements(const MPMPlan &plan, MPMField &of) const
 {
-  for (const auto *elements : of.elements) {
+  for (const auto *elements : find_fixes<FixMPMElements>(lmp)) {
     if (!elements->is_thin())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/implicit knows the forces of surfaces and lines, but not those of the "
@@ -132,7 +139,7 @@ void FixMPMImplicit::check_elements(const MPMPlan &plan, MPMField &of) const
                  "nothing of that of fix mpm/elements {}: use solver blocks",
                  elements->id);
     for (auto *other : plan.physics)
-      if (other->node_pressure(of))
+      if (has_pressure(other, of))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/implicit cannot solve for the pressure of fix {} {} together with the "
                    "elements of fix mpm/elements {}: use explicit steps",
@@ -156,7 +163,7 @@ void FixMPMImplicit::check_actions(const MPMPlan &plan, const MPMField &of) cons
                  "steps",
                  style, name);
     for (auto *other : plan.physics)
-      if (other->node_pressure(of))
+      if (has_pressure(other, of))
         error->all(
             FLERR, Error::NOLASTLINE,
             "Fix mpm/implicit finds no contact and friction of walls together with the water "

@@ -8,7 +8,7 @@
 
 #include "implicit/mpm_implicit.h"
 
-#include "field/mpm_physics.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_plan.h"
 #include "implicit/mpm_free_bodies.h"
 
@@ -35,8 +35,8 @@ void MPMImplicit::init()
   nodes.init();
   balance.init();
   pressure.reset();
-  for (auto *physics : nodes.field.plan->physics)
-    if (auto *const of_nodes = physics->node_pressure(nodes.field))
+  for (auto *water : nodes.field.plan->pore_pressures)
+    if (auto *const of_nodes = water->node_pressure(nodes.field))
       pressure = std::make_unique<MPMCoupledPressure>(nodes, balance, constraints, system, options,
                                                       now, times, *of_nodes);
 }

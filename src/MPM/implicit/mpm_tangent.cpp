@@ -20,15 +20,16 @@
 #include "elements/fix_mpm_elements.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_passes.h"
-#include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_trial_forces.h"
 #include "force.h"
 #include "implicit/mpm_tangent_gather.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "math/matrix.h"
 #include "update.h"
 
@@ -63,8 +64,8 @@ void MPMTangent::init()
   between.assign(field.elements.begin(), field.elements.end());
   if (averages) means.init(false, false);
   nelements = between.size();
-  for (auto *physics : field.plan->physics)
-    if (auto *const forces = physics->trial_forces(field)) between.push_back(forces);
+  for (auto *load : field.plan->loads)
+    if (auto *const forces = load->trial_forces(field)) between.push_back(forces);
   *batch = {};
   batch->h = field.lattice.h;
   int nhistory = 1;

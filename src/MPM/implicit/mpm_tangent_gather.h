@@ -13,7 +13,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"
 #include "implicit/mpm_tangent.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 #include <algorithm>
 #include <type_traits>

@@ -20,7 +20,7 @@
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "implicit/mpm_tangent_gather.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "math/matrix.h"
 
 #include <algorithm>

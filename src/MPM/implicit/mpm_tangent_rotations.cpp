@@ -9,7 +9,7 @@
 #include "implicit/mpm_tangent.h"
 
 #include "field/mpm_field.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 #include <Eigen/Dense>
 

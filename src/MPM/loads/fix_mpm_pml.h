@@ -17,6 +17,7 @@ FixStyle(mpm/pml,FixMPMPML);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
 
@@ -40,7 +41,7 @@ struct MPMPMLOptions {
 /** Perfectly matched layers next to faces of the box (unsplit, after Basu and Chopra). Points there see stretched
  *  coordinates in which waves decay, and incoming waves are not reflected, at any angle. The initial stress of the layers
  *  is kept. */
-class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
+class FixMPMPML : public FixMPMState, public MPMPhysics, public MPMStretch, private MPMPMLOptions {
  public:
   FixMPMPML(class LAMMPS *, int, char **);
   int setmask() override { return 0; }
@@ -94,7 +95,7 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
   double known = 0.0;                                  // number of points in the layers
   double largest = 0.0;                                // largest damping along one axis
   double work_of_nodes = 0.0, work_of_strain = 0.0;    // this rank's shares [energy]
-  bool told = false;
+  bool warned = false;
 
   double thickness(const MPMField &, int face) const;
   double depth(const MPMField &, int face, const double *x) const;

@@ -17,6 +17,7 @@ FixStyle(mpm/traction,FixMPMTraction);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
 #include "loads/mpm_face_growth.h"
 #include "loads/mpm_moment.h"
@@ -46,7 +47,12 @@ struct MPMTractionOptions {
 /** Forces per area on the surface of bodies: dead loads, which keep their direction and total, pressure, which stays
  *  normal to the surface and acts on its present area, and the forces of a moment (MPMMoment). They are applied as forces
  *  on points (atom->f). A pressure on all of the surface of a body is a part of the internal forces instead. */
-class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractionOptions {
+class FixMPMTraction :
+    public FixMPMState,
+    public MPMPhysics,
+    public MPMAddedStress,
+    public MPMLoad,
+    private MPMTractionOptions {
  public:
   FixMPMTraction(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::POST_FORCE; }
@@ -65,7 +71,6 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   bool looks_beyond_points() const override { return false; }
   bool adds_stress(const MPMField &, int first, int last) const override;
   void add_stress(const MPMField &, int first, int n, double *tau) const override;
-  bool only_loads() const override { return true; }
   bool follows(const MPMField &, int first, int last) const override;
   void follow(const MPMField &, int first, int n, const double *F, double *force,
               double *tau) const override;
@@ -109,7 +114,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   static constexpr int NSUM = 7;                  // force [3], present area, torque [3]
   double sums[NSUM] = {}, all_sums[NSUM] = {};    // for compute_vector(): of this rank, of all
   bool sums_known = true;
-  bool told_of_nodes = false;    // warned of nodes of finite elements
+  bool warned_of_nodes = false;    // warned of nodes of finite elements
   // so far, by forces on points and by stress, this rank's share [energy]
   double work[2] = {0.0, 0.0};
 
@@ -138,7 +143,7 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   double evenness_at_start = 1.0;
   double evenness() const;
   void look_for_curls();
-  bool told_of_stretch = false;
+  bool warned_of_stretch = false;
   double mean_stretch() const;
   void look_for_stretch();
   void define();

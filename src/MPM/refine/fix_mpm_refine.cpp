@@ -15,9 +15,10 @@
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
+#include "field/mpm_heat_sink.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
-#include "heat/fix_mpm_heat.h"
 #include "implicit/fix_mpm_relax.h"
 #include "loads/fix_mpm_dashpot.h"
 #include "modify.h"
@@ -29,6 +30,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/refine COARSE FINE ...
@@ -92,10 +94,11 @@ void FixMPMRefine::init_action()
   // records of nodes are added
 
   const bool keep = std::any_of(fields.begin(), fields.end(), [&](const auto *field) {
-    return field->keep_old ||
+    return field->keeps_old_velocities() ||
         adds_change(field->options.transfer) != adds_change(fields[0]->options.transfer);
   });
-  for (auto *field : fields) field->keep_old = keep;
+  for (auto *field : fields)
+    if (keep) field->keep_old_velocities();
 }
 
 void FixMPMRefine::check(MPMField &coarse, MPMField &fine) const
@@ -174,9 +177,9 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
   }
   for (auto *physics : plan.physics) {
     auto *ifix = dynamic_cast<Fix *>(physics);
-    if (!physics->only_loads() && !dynamic_cast<FixMPMRefine *>(physics) &&
+    if (!dynamic_cast<MPMLoad *>(physics) && !dynamic_cast<FixMPMRefine *>(physics) &&
         !dynamic_cast<FixMPMRelax *>(physics) && !dynamic_cast<FixMPMDashpot *>(physics) &&
-        !dynamic_cast<FixMPMHeat *>(physics))
+        !dynamic_cast<MPMHeatSink *>(physics))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/refine {} does not go with fix {} {}, whose values at nodes would not be "
                  "continuous from one lattice to the other: {}",
@@ -281,14 +284,6 @@ bool FixMPMRefine::decides_contact(const MPMField &field) const
          });
 }
 
-bool FixMPMRefine::serves_contact(const MPMField &field)
-{
-  const auto bodies = find_fixes<FixMPMRefine>(field.lmp);
-  return std::any_of(bodies.begin(), bodies.end(), [&](const auto *body) {
-    return body->decides_contact(field);
-  });
-}
-
 void FixMPMRefine::init_physics(MPMPlan &plan)
 {
   check_others(plan);
@@ -300,14 +295,15 @@ void FixMPMRefine::init_physics(MPMPlan &plan)
 void FixMPMRefine::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
-    plan.together("tied nodes", [this]() {
+    plan.together("tied nodes", {Data::POSITION, Data::BLOCKS, Data::OWN}, {Data::OWN}, [this]() {
       find_tied();
     });
   if (place == MPMPlan::AFTER_POINTS_TO_NODES)
-    plan.together("tied nodes", [this]() {
-      for (int k = (int) pairs.size() - 1; k >= 0; k--)
-        pairs[k]->to_parents(k + 1 < (int) pairs.size() ? pairs[k + 1].get() : nullptr);
-    });
+    plan.together(
+        "tied nodes", {Data::NODES, Data::BLOCKS, Data::OWN}, {Data::NODES, Data::OWN}, [this]() {
+          for (int k = (int) pairs.size() - 1; k >= 0; k--)
+            pairs[k]->to_parents(k + 1 < (int) pairs.size() ? pairs[k + 1].get() : nullptr);
+        });
 }
 
 void FixMPMRefine::act(double, Stage)
@@ -370,8 +366,8 @@ bigint FixMPMRefine::cracked_at_rim(const MPMTwoScale &pair) const
       for (int i = run.first; i < run.last; i++) {
         if (run.material->history[i][column] < CRACKED) continue;
         bool sees = false;
-        MPMStencil(*field).visit(field->grid.blocks[run.slot], i, [&](const auto &node) {
-          sees = sees || (node.weight > 0.0 && (*near)[node.number] > 0.0);
+        MPMStencil(*field).visit(field->grid.blocks[run.slot], i, [&, &rim = *near](auto &node) {
+          sees = sees || (node.weight > 0.0 && rim[node.number] > 0.0);
         });
         mine += sees;
       }
@@ -433,13 +429,9 @@ void FixMPMRefine::blocks_found()
     for (auto &neighbor : neighbors) neighbor.reach.find(neighbor.field->grid, world);
   }
   const bool keep = std::any_of(fields.begin(), fields.end(), [](const auto *field) {
-    return field->keep_old_now;
+    return field->keeps_old_velocities_now();
   });
-  for (auto *field : fields) {
-    if (field->keep_old_now == keep) continue;
-    field->keep_old_now = keep;
-    field->choose_kernels();
-  }
+  for (auto *field : fields) field->keep_old_velocities_now(keep);
 }
 
 int FixMPMRefine::level(const std::string &name) const

@@ -9,22 +9,22 @@
 #include "step/fix_mpm_dt.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
+#include "base/mpm_step_limit.h"
 #include "comm.h"
-#include "contact/fix_mpm_rigid.h"
-#include "elements/fix_mpm_elements.h"
 #include "error.h"
 #include "field/mpm_field.h"
-#include "field/mpm_physics.h"
+#include "field/mpm_fluid.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_time_limit.h"
-#include "flow/fix_mpm_incompressible.h"
 #include "force.h"
-#include "grains/mpm_grains.h"
 #include "integrate.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
 #include "pair.h"
+#include "step/mpm_grains.h"
 #include "timer.h"
 #include "update.h"
 
@@ -97,8 +97,11 @@ FixMPMDt::~FixMPMDt() = default;
 
 void FixMPMDt::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty() && find_fixes<MPMStepLimit>(lmp).empty() &&
-      modify->get_fix_by_style("^mpm/elements$").empty())
+  const auto limits = find_fixes<MPMStepLimit>(lmp);
+  if (MPMField::all(lmp).empty() && find_fixes<MPMInternalForce>(lmp).empty() &&
+      std::none_of(limits.begin(), limits.end(), [](const auto *one) {
+        return one->makes_steps();
+      }))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/dt needs a fix mpm, mpm/mesh, mpm/elements, or mpm/incompressible");
   for (auto *ifix : modify->get_fix_list()) {
@@ -148,13 +151,9 @@ FixMPMDt::Limit FixMPMDt::point_limit() const
   };
   for (auto *field : MPMField::all(lmp))
     compare(field->time_limit->stable_dt(tag, speed), field->options.every);
-  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
-    compare(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
+  for (const auto *body : find_fixes<MPMInternalForce>(lmp)) compare(body->stable_dt(tag, speed));
   speed = 0.0;
   for (const auto *other : find_fixes<MPMStepLimit>(lmp)) compare(other->stable_dt(tag));
-  tag = 0;
-  for (auto *ifix : modify->get_fix_by_style("^mpm/rigid$"))
-    compare(dynamic_cast<FixMPMRigid *>(ifix)->stable_dt());
   return smallest(mine);
 }
 
@@ -170,8 +169,9 @@ double FixMPMDt::of_grains(const Limit &limit) const
 }
 
 /* ----------------------------------------------------------------------
-   Grains that will touch before the next look count, too; longest: bound of the time step until then.
-   At looks it is what points alone would allow, and not the time step of now, which a restart may change
+   Grains that will touch before the next look count, too; longest: bound of the time step until
+   then. At looks it is what points alone would allow, and not the time step of now, which a restart
+   may change
 ------------------------------------------------------------------------- */
 
 FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points) const
@@ -216,11 +216,11 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
 }
 
 /* ----------------------------------------------------------------------
-   start of a run: the time step is set at once, without limit to its growth.
-   When the state is the one that the last run or the restart file left, then the time step is kept,
-   so that a run in two parts takes the same steps as one without a break. The neighbor lists are new ones: pairs
-   of grains that these have, and those at the end of the last run had not, do not make another state of it, but
-   are looked at as whenever lists are new.
+   start of a run: the time step is set at once, without limit to its growth. When the state is the
+   one that the last run or the restart file left, then the time step is kept, so that a run in two
+   parts takes the same steps as one without a break. The neighbor lists are new ones: pairs of
+   grains that these have, and those at the end of the last run had not, do not make another state
+   of it, but are looked at as whenever lists are new.
 ------------------------------------------------------------------------- */
 
 void FixMPMDt::setup_pre_force(int)
@@ -242,7 +242,7 @@ void FixMPMDt::setup_pre_force(int)
     if (dt_grains < (1.0 - SAME) * grains_left && dt_grains < wanted) set_dt(dt_grains);
   } else if (limit.dt < NO_POINTS.dt)
     set_dt(fraction * limit.dt);
-  else if (dt_max > 0.0 && !find_fixes<FixMPMIncompressible>(lmp).empty())
+  else if (dt_max > 0.0 && !find_fixes<MPMFluid>(lmp).empty())
     set_dt(dt_max);    // of a fluid at rest
   if (until == 0.0) return;
   if (comm->me == 0 && update->nsteps > 0 && time_at_start > (1.0 + ROUND_OFF) * until)
@@ -292,8 +292,9 @@ void FixMPMDt::announce_end()
 }
 
 /* ----------------------------------------------------------------------
-   the limit of strain is kept at once, as in an impact the next look could be too late; that of grains
-   when there are new neighbor lists, as in old ones two that are about to touch may not be a pair
+   the limit of strain is kept at once, as in an impact the next look could be too late; that of
+   grains when there are new neighbor lists, as in old ones two that are about to touch may not be a
+   pair
 ------------------------------------------------------------------------- */
 
 void FixMPMDt::end_of_step()
@@ -392,12 +393,12 @@ void FixMPMDt::post_run()
   if (until == 0.0) return;
   if (ended)
     timer->reset_timeout();
-  else if (comm->me == 0 && update->nsteps > 0 && !told_of_rest)
+  else if (comm->me == 0 && update->nsteps > 0 && !warned_of_rest)
     error->warning(FLERR,
                    "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run "
                    "more steps",
                    id, elapsed_time(*update), until);
-  told_of_rest = told_of_rest || update->nsteps > 0;    // once: runs can have many parts
+  warned_of_rest = warned_of_rest || update->nsteps > 0;    // once: runs can have many parts
 }
 
 /* ---------------------------------------------------------------------- */
@@ -418,8 +419,8 @@ double FixMPMDt::compute_vector(int i)
 }
 
 /* ----------------------------------------------------------------------
-   between runs: what the last one has left, as the next run compares with that; the fixes may not be
-   those of the last run. Files of older versions begin with the time step and have no options
+   between runs: what the last one has left, as the next run compares with that; the fixes may not
+   be those of the last run. Files of older versions begin with the time step and have no options
 ------------------------------------------------------------------------- */
 
 static constexpr double WITH_OPTIONS = -1.0;
@@ -432,9 +433,9 @@ std::vector<double> FixMPMDt::saved_options() const
 void FixMPMDt::write_restart(FILE *fp)
 {
   const auto fields = MPMField::all(lmp);
-  const bool flows = update->whichflag == 1 && !find_fixes<FixMPMIncompressible>(lmp).empty();
+  const bool flows = update->whichflag == 1 && !find_fixes<MPMFluid>(lmp).empty();
   const bool running = flows || std::any_of(fields.begin(), fields.end(), [](const auto *field) {
-                         return field->running;
+                         return field->is_running();
                        });
   const Limit steps = smallest(strain_limit_local());
   if (running) {

@@ -31,8 +31,9 @@ static constexpr int LOOK_EVERY = 400;    // steps
 static constexpr double TENSION =
     1.0e-3;    // of density times wave speed squared: a solid holds together
 
-/** Distance of neighbors, in node spacings, from which on bodies have come apart in trials: a cantilever
- *  of rubber, with three spacings; see Developer_mpm.rst. */
+/** Distance of neighbors, in node spacings, from which on bodies have come apart in trials: a
+ *  cantilever of rubber, with three spacings. Bounds of tests with bars: unittest/BOUNDS.md
+ *  (Fracture). */
 static double limit(Shape shape)
 {
   return shape == QUADRATIC ? 1.2 : shape == CUBIC ? 1.15 : 1.0;
@@ -46,13 +47,13 @@ void MPMFractureWatch::step()
 }
 
 /* ----------------------------------------------------------------------
-   Points are as far apart as the undeformed edges of a point, with F. What has no neighbor in this direction is
-   found, too, but is not stretched
+   Points are as far apart as the undeformed edges of a point, with F. What has no neighbor in this
+   direction is found, too, but is not stretched
 ------------------------------------------------------------------------- */
 
 void MPMFractureWatch::look()
 {
-  if (told) return;
+  if (warned) return;
   const auto &options = field.options;
   const double most = limit(options.shape), h = field.lattice.h;
   struct {
@@ -96,7 +97,7 @@ void MPMFractureWatch::look()
       });
   MPI_Allreduce(&mine, &widest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
   if (!(widest.distance > most)) return;
-  told = true;
+  warned = true;
   MPI_Bcast(point, 4, MPI_DOUBLE, widest.rank, world);
   if (comm->me == 0)
     error->warning(FLERR,
