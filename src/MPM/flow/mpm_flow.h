@@ -81,8 +81,8 @@ class MPMFlow : protected Pointers {
     bool differs, keeps;
   } now = {};
   double dt_before = 0.0;    // duration of the last step; 0: none so far
-  mutable double limit_before =
-      0.0;    // last stable_dt() with forces; after a restart, of all ranks; 0: none
+  // last stable_dt() with forces; after a restart, of all ranks; 0: none
+  mutable double limit_before = 0.0;
   bool forces_known = false;        // false at the start of a run, when forces are cleared
   bool stiffness_known = false;     // was check_stiffness() done in this run?
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step

@@ -35,8 +35,8 @@ class MPMFlowPoisson : public MPM_NS::LinearSystem {
 
   std::vector<double> diagonal, weight;    ///< [place], [place][side]
   MPM_NS::CellMultigrid multigrid;    ///< for these equations; its closed pools are always needed
-  MPMFlowFourier *fourier =
-      nullptr;    ///< for these equations, instead of coarse levels; null: none
+  /** for these equations, instead of coarse levels; null: none */
+  MPMFlowFourier *fourier = nullptr;
   const MPMFlowBodies *bodies = nullptr;    ///< that the pressure moves; null: none
   MPMFlowGasRows *gas = nullptr;            ///< in pockets; null: none
 

@@ -123,8 +123,9 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   /** Positions of the points of a soil between the nodes. */
   struct Layers {
     double volume = 0.0;
-    double steep[3] =
-        {};    ///< volume times the square of the slope of an alternating velocity, in cells, along each axis
+    /** volume times the square of the slope of an alternating velocity, in cells, along each
+     *  axis */
+    double steep[3] = {};
   };
   /** Of this rank's points in the last step, by soil. Only if water waits. */
   const std::vector<Layers> &layers_of_points() const { return lie; }
@@ -160,11 +161,11 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   /** Sums over this rank's points at the start of a step with flow. They show whether the
    *  acceleration counts that u-p neglects. */
   struct Inertia {
-    double velocity =
-        0.0;    ///< power below if v were the acceleration, times its unit: sum of K (rho_f v)^2
+    /** power below if v were the acceleration, times its unit: sum of K (rho_f v)^2 */
+    double velocity = 0.0;
     double flow = 0.0;    ///< power that the resistance to the flow takes
-    double gradient =
-        0.0;    ///< power that it would take if only the gradient of the pressure drove water, not its weight
+    /** power that it would take if only the gradient of the pressure drove water, not its weight */
+    double gradient = 0.0;
     double kinetic = 0.0;    ///< kinetic energy of soil and water
     void add(const Inertia &more)
     {
@@ -194,11 +195,11 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   double steepest = 0.0;    // greatest sum of N'^2/N of the shape functions along an axis, in cells
   double slowest = 0.0;     // smallest ratio of mobility and storage of a soil
   double least_storage = 0.0;
-  double of_storage =
-      0.0;    // greatest ratio of the storage of water and grains to the storage with an elastic soil
+  // greatest ratio of the storage of water and grains to the storage with an elastic soil
+  double of_storage = 0.0;
   double waves = 0.0;    // smallest wave speed of a soil from the stiffness of its water
-  double fastest =
-      0.0;    // greatest ratio of conductance and capacity of the points in the last step
+  // greatest ratio of conductance and capacity of the points in the last step
+  double fastest = 0.0;
   tagint shut = MAXTAGINT;
   double exchange = 0.0;    // rate of exchange through the surface in the last step
   double largest = 0.0;     // largest volume of a point in the last step, if water waits

@@ -29,10 +29,10 @@ namespace LAMMPS_NS {
 struct MPMPorePoints {
   MPMRows pressure;    ///< [n][1+dim] pressure and its gradient
   MPMRows inertia;     ///< [n][dim] flow with inertia, see MPMPoreMotion
-  double *since =
-      nullptr;    ///< [n] J after the last flow, if water does not flow in each step; 0: unknown
-  double *warmth =
-      nullptr;    ///< [n] temperature at the last thermal expansion of grains and water
+  /** [n] J after the last flow, if water does not flow in each step; 0: unknown */
+  double *since = nullptr;
+  /** [n] temperature at the last thermal expansion of grains and water */
+  double *warmth = nullptr;
   double *content = nullptr;    ///< [n] volume of water, if a soil can dry (MPMPoreSuction)
 };
 

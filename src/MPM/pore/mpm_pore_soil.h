@@ -37,10 +37,10 @@ struct MPMPoreSoil {
   std::string formula;    ///< name of a variable, with v_
   double biot = 1.0;      ///< coefficient of Biot
   double grains = 0.0;    ///< bulk modulus of the grains [pressure]; 0: rigid
-  double quadratic =
-      0.0;    ///< gradient of pressure per square of flow (Forchheimer); see quadratic_at()
-  double diameter =
-      0.0;    ///< of grains, from which the quadratic term follows (Ergun); 0: use the number above
+  /** gradient of pressure per square of flow (Forchheimer); see quadratic_at() */
+  double quadratic = 0.0;
+  /** of grains, from which the quadratic term follows (Ergun); 0: use the number above */
+  double diameter = 0.0;
   bool warms = false;        ///< are of_grains and of_water given?
   double of_grains = 0.0;    ///< volumetric thermal expansion of the grains [1/temperature]
   double of_water = 0.0;     ///< the same of the water
