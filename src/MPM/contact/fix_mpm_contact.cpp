@@ -33,7 +33,7 @@
    nodes, and to less while there is a gap or beyond the end of one of them. The part of this volume that is
    outside of fixed faces of the box does not count (Room).
 
-   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (fix_mpm_boundary.cpp). The rest
+   Water in pores bears a part of J_n, dt int N p n over the surface of a body, as on walls (mpm_wall_contact.cpp). The rest
    is between grains and gives friction: J_t <= mu (J_n - J_w). Where J_n would be below J_w, grains part, and the water alone
    pushes. For two bodies with water, which do not exchange any, the mean counts.
 ------------------------------------------------------------------------- */
@@ -456,7 +456,7 @@ void FixMPMContact::list_common_blocks()
   for (auto &body : bodies) {
     body.held.assign(body.field->grid.nnodes(), 0);
     for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
-      dynamic_cast<FixMPMBoundary *>(fix)->mark_held(*body.field, body.held);
+      dynamic_cast<FixMPMBoundary *>(fix)->mark_prescribed(*body.field, body.held);
   }
   int any = !common.empty(), all;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
@@ -727,7 +727,7 @@ double FixMPMContact::most_filled(Body &body)
 /* ----------------------------------------------------------------------
    Nodes next to fixed faces of the box, and to an axis of symmetry, have no points in a part of their volume:
    bodies that touch there fill the rest. A node in the plane of a face has room for half of its volume. Nodes
-   outside are images of those inside (fix_mpm_boundary.cpp), and in contact when these are.
+   outside are images of those inside (mpm_mirror_nodes.cpp), and in contact when these are.
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::Room::find(const MPMField &field, const Domain &box)
@@ -859,7 +859,7 @@ void FixMPMContact::foresee_walls(Body &body)
 {
   body.foreseen.reset((int64_t) body.held.size());
   for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
-    dynamic_cast<FixMPMBoundary *>(fix)->foresee(*body.field, body.near, body.foreseen);
+    dynamic_cast<FixMPMBoundary *>(fix)->predict(*body.field, body.near, body.foreseen);
 }
 
 FixMPMContact::Pair::Walls FixMPMContact::Body::find_walls(const double *record) const

@@ -170,8 +170,8 @@ class FixMPMContact :
     std::vector<double> gradient;     // of the volume (or mass) at the nodes
     std::vector<double> share;        // volume at the nodes / node volume
     std::vector<double> water;        // [node][3] of MPMPorePressure::surface_force(); empty: none
-    std::vector<char> held;           // bits, FixMPMBoundary::mark_held()
-    FixMPMBoundary::Foreseen foreseen;
+    std::vector<char> held;           // bits, FixMPMBoundary::mark_prescribed()
+    MPMPredictedVelocities foreseen;
 
     Pair::Walls find_walls(const double *record) const;
     void move_mirrors(const double *record, const std::array<double, 3> &before);

@@ -10,7 +10,7 @@
 #define LMP_MPM_NODE_SCALAR_H
 
 #include "field/mpm_point_map.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "transfer/scalar.h"
 
 #include <array>

@@ -28,7 +28,7 @@
 #include "field/mpm_stencil.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "math/matrix.h"
 #include "update.h"
 

@@ -17,7 +17,7 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 #include <algorithm>
 #include <cmath>
