@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_IMPLICIT_MEMORY_H
-#define LMP_MPM_IMPLICIT_MEMORY_H
+#ifndef LMP_MPM_KEPT_STATE_H
+#define LMP_MPM_KEPT_STATE_H
 
 #include "solve/quasi_newton.h"
 
@@ -17,12 +17,13 @@
 
 namespace LAMMPS_NS {
 
-/** What implicit steps with inertia keep for the next steps, as long as the nodes stay the same and walls hold
- *  the same motions: the motions of the last steps, from which the next one is predicted; whether factors of a
- *  tangent exist; and what corrections have revealed about changes of the tangent since these were made. This
- *  affects only the path of the iterations, not the result that a step converges to. Vectors have the nodes of
- *  all ranks in the order of SharedNodes, because nodes may move to other ranks. */
-struct MPMImplicitMemory {
+/** What implicit steps with inertia keep for the next steps, as long as the nodes stay the same and
+ *  walls hold the same motions: the motions of the last steps, from which the next one is
+ *  predicted; whether factors of a tangent exist; and what corrections have revealed about changes
+ *  of the tangent since these were made. This affects only the path of the iterations, not the
+ *  result that a step converges to. Vectors have the nodes of all ranks in the order of
+ *  SharedNodes, because nodes may move to other ranks. */
+struct MPMKeptState {
   bool known = false;    // is anything stored?
   // blocks, the nodes of each that this rank owns, and those with a mass
   std::vector<uint64_t> nodes;

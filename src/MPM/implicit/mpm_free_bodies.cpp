@@ -7,18 +7,21 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Statics: a body that walls do not hold along an axis has no stiffness along it, and no equilibrium if
-   forces push it that way. This is found before anything is solved: nodes that share points form bodies, and
-   what walls take from the motion of a body as a whole is zero along its free axes.
+   Statics: a body that walls do not hold along an axis has no stiffness along it, and no
+   equilibrium if forces push it that way. This is found before anything is solved: nodes that share
+   points form bodies, and what walls take from the motion of a body as a whole is zero along its
+   free axes.
 ------------------------------------------------------------------------- */
 
-#include "implicit/mpm_implicit.h"
+#include "implicit/mpm_free_bodies.h"
 
 #include "comm.h"
-#include "field/mpm_field.h"
+#include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 #include "fmt/format.h"
 #include "force.h"
+#include "implicit/mpm_constraints.h"
+#include "implicit/mpm_solved_nodes.h"
 #include "math/sets.h"
 #include "solve/lattice_key.h"
 
@@ -50,10 +53,13 @@ uint64_t set_of(const Label &label)
 
 }    // namespace
 
-/** Numbers the body of each node, from 0 on and the same on all ranks; -1: none. Returns the number of
- *  bodies. Collective. */
-int MPMImplicit::find_bodies(std::vector<int> &body)
+/** Numbers the body of each node, from 0 on and the same on all ranks; -1: none. Returns the number
+ *  of bodies. Collective. */
+static int find_bodies(MPMSolvedNodes &nodes, LatticeRanks &ranks, std::vector<int> &body)
 {
+  auto &field = nodes.field;
+  auto &grid = field.grid;
+  const auto &mass = nodes.mass;
   const MPMStencil stencil(field);
   Sets mine(mass.size());
   for (const auto &run : field.map->runs)
@@ -67,11 +73,7 @@ int MPMImplicit::find_bodies(std::vector<int> &body)
   std::vector<Label> labels;
   for (int64_t n = 0; n < (int64_t) mass.size(); n++) {
     if (!(mass[n] > 0.0)) continue;
-    int at[3];
-    grid.node_index(n, at);
-    LatticeIndex index{0, 0, 0};
-    for (int d = 0; d < width; d++) index[d] = grid.lattice.wrap(d, at[d]);
-    labels.push_back({lattice_key(index), mine.root((int) n), lmp->comm->me});
+    labels.push_back({lattice_key(nodes.index_of(n)), mine.root((int) n), nodes.lmp->comm->me});
   }
   const auto all = ranks.gather(labels);
 
@@ -97,23 +99,25 @@ int MPMImplicit::find_bodies(std::vector<int> &body)
   return (int) place.size();
 }
 
-/** Is there a body that nothing holds along the forces on it? Then the step has failed. Collective. */
-void MPMImplicit::find_free_bodies()
+std::string LAMMPS_NS::find_free_body(MPMSolvedNodes &nodes, MPMConstraints &constraints,
+                                      LatticeRanks &ranks, const std::vector<double> &external)
 {
-  // elements hold nodes together that have no point in common
-  if (!contacts.empty() || joint || tangent.has_loads() || !field.elements.empty()) return;
+  auto &grid = nodes.field.grid;
+  const auto &mass = nodes.mass;
   std::vector<int> body;
-  const int nbodies = find_bodies(body), w = width, first = field.options.axisymmetric ? 1 : 0;
+  const int nbodies = find_bodies(nodes, ranks, body), w = nodes.width,
+            first = nodes.field.options.axisymmetric ? 1 : 0;
 
-  // sums for each body: products [w][w] of what walls take from unit motions; force; its size; place; nodes
+  // sums for each body: products [w][w] of what walls take from unit motions; force; its size;
+  // place; nodes
 
   const int NSUM = w * w + 2 * w + 2;
   std::vector<double> mine((std::size_t) nbodies * NSUM, 0.0), sums, taken[3];
   for (int d = 0; d < w; d++) {
-    taken[d].assign(nreals(), 0.0);
+    taken[d].assign(nodes.nreals(), 0.0);
     for (int64_t n = 0; n < (int64_t) mass.size(); n++)
       if (mass[n] > 0.0) taken[d][w * n + d] = 1.0;
-    project(taken[d].data());
+    constraints.project(taken[d].data());
     for (int64_t n = 0; n < (int64_t) mass.size(); n++)
       if (mass[n] > 0.0) taken[d][w * n + d] -= 1.0;
   }
@@ -125,25 +129,25 @@ void MPMImplicit::find_free_bodies()
         for (int d = 0; d < w; d++) sum[w * a + b] += taken[a][w * n + d] * taken[b][w * n + d];
     grid.node_position(n, x);
     for (int d = 0; d < w; d++) {
-      sum[w * w + d] += outer[w * n + d];
+      sum[w * w + d] += external[w * n + d];
       sum[w * w + w + d] += x[d];
-      square += outer[w * n + d] * outer[w * n + d];
+      square += external[w * n + d] * external[w * n + d];
     }
     sum[NSUM - 2] += std::sqrt(square);
     sum[NSUM - 1] += 1.0;
   }
   sums.resize(mine.size());
-  MPI_Allreduce(mine.data(), sums.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, lmp->world);
+  MPI_Allreduce(mine.data(), sums.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, nodes.lmp->world);
 
   for (int k = 0; k < nbodies; k++) {
-    const double *const sum = &sums[(std::size_t) k * NSUM], nodes = sum[NSUM - 1];
+    const double *const sum = &sums[(std::size_t) k * NSUM], number = sum[NSUM - 1];
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 3, 3>;
     const Matrix products =
         Eigen::Map<const Matrix>(sum, w, w).bottomRightCorner(w - first, w - first);
     const Eigen::SelfAdjointEigenSolver<Matrix> axes(products);
     double push[3] = {0.0, 0.0, 0.0}, size = 0.0;    // what is left of the force along free axes
     for (int axis = 0; axis < w - first; axis++) {
-      if (axes.eigenvalues()[axis] > HELD * nodes) continue;
+      if (axes.eigenvalues()[axis] > HELD * number) continue;
       double along = 0.0;
       for (int d = first; d < w; d++)
         along += axes.eigenvectors()(d - first, axis) * sum[w * w + d];
@@ -152,12 +156,13 @@ void MPMImplicit::find_free_bodies()
     }
     if (!(size > CANCELS * sum[NSUM - 2])) continue;
     const double *const x = sum + w * w + w;
-    now.failure = fmt::format(
+    return fmt::format(
         "the body around ({:.4g}, {:.4g}, {:.4g}) is held by no wall along the force ({:.4g}, "
         "{:.4g}, {:.4g}) "
         "that it bears: hold it by fix mpm/boundary, let its loads cancel, or use euler",
-        x[0] / nodes, x[1] / nodes, w == 3 ? x[2] / nodes : 0.0, push[0] / lmp->force->ftm2v,
-        push[1] / lmp->force->ftm2v, push[2] / lmp->force->ftm2v);
-    return;
+        x[0] / number, x[1] / number, w == 3 ? x[2] / number : 0.0,
+        push[0] / nodes.lmp->force->ftm2v, push[1] / nodes.lmp->force->ftm2v,
+        push[2] / nodes.lmp->force->ftm2v);
   }
+  return "";
 }

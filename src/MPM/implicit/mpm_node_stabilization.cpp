@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "implicit/mpm_loose_nodes.h"
+#include "implicit/mpm_node_stabilization.h"
 
 #include "atom.h"
 #include "field/mpm_field.h"
@@ -20,12 +20,12 @@ using namespace MPM_NS;
 
 static constexpr double ENOUGH = 0.1;    // of the volume of the fullest node
 
-MPMLooseNodes::MPMLooseNodes(LAMMPS *lmp, MPMField &field) :
+MPMNodeStabilization::MPMNodeStabilization(LAMMPS *lmp, MPMField &field) :
     Pointers(lmp), field(field), dim(field.lattice.dim)
 {
 }
 
-void MPMLooseNodes::begin(double c, const std::vector<double> &moduli)
+void MPMNodeStabilization::begin_step(double c, const std::vector<double> &moduli)
 {
   const MPMStencil stencil(field);
   const double h = field.lattice.h, unit = c * field.step_data().stress_scale / (h * h);
@@ -70,8 +70,9 @@ void MPMLooseNodes::begin(double c, const std::vector<double> &moduli)
   field.nodes.sum(stiffness.data(), 1, 0, 1);
 }
 
-/** With W = diag(N), S = diag(s), and the linear motion v = A u, in which A is the projection for which W A is symmetric, forces are -k (1 - A)^T W S (1 - A) u. */
-template <int DIM> void MPMLooseNodes::add_forces_of_points()
+/** With W = diag(N), S = diag(s), and the linear motion v = A u, in which A is the projection for
+ *  which W A is symmetric, forces are -k (1 - A)^T W S (1 - A) u. */
+template <int DIM> void MPMNodeStabilization::add_forces_of_points()
 {
   const double m = shape_constants[field.options.shape].inv_moment;
   const Node *begin = nodes.data();
@@ -108,7 +109,7 @@ template <int DIM> void MPMLooseNodes::add_forces_of_points()
   }
 }
 
-void MPMLooseNodes::add_forces(const double *u, double *force)
+void MPMNodeStabilization::add_forces(const double *u, double *force)
 {
   const int64_t nreals = dim * field.grid.nnodes();
   motion.assign(u, u + nreals);
@@ -120,7 +121,7 @@ void MPMLooseNodes::add_forces(const double *u, double *force)
   for (int64_t k = 0; k < nreals; k++) force[k] += more[k];
 }
 
-void MPMLooseNodes::each_term(
+void MPMNodeStabilization::each_term(
     const std::function<void(int, const int64_t *, int, const double *, const double *)> &f) const
 {
   const double m = shape_constants[field.options.shape].inv_moment;
@@ -131,22 +132,22 @@ void MPMLooseNodes::each_term(
     const Node *const end = nodes.data() + point.end;
     numbers.clear();
     for (const Node *node = begin; node < end; node++) numbers.push_back(node->first / dim);
-    for (const Node *loose = begin; loose < end; loose++) {
-      if (!(loose->lacking > 0.0)) continue;
+    for (const Node *weak = begin; weak < end; weak++) {
+      if (!(weak->lacking > 0.0)) continue;
       g.clear();
       for (const Node *node = begin; node < end; node++) {
         double linear = 1.0;
-        for (int d = 0; d < dim; d++) linear += m * node->r[d] * loose->r[d];
-        g.push_back((node == loose ? 1.0 : 0.0) - node->weight * linear);
+        for (int d = 0; d < dim; d++) linear += m * node->r[d] * weak->r[d];
+        g.push_back((node == weak ? 1.0 : 0.0) - node->weight * linear);
       }
-      for (int d = 0; d < dim; d++) unity[(dim + 1) * d] = point.k * loose->lacking;
+      for (int d = 0; d < dim; d++) unity[(dim + 1) * d] = point.k * weak->lacking;
       f((int) numbers.size(), numbers.data(), 1, g.data(), unity.data());
     }
     begin = end;
   }
 }
 
-double MPMLooseNodes::memory_usage() const
+double MPMNodeStabilization::memory_usage() const
 {
   double bytes = points.capacity() * sizeof(Point) + nodes.capacity() * sizeof(Node) +
       reached.capacity() * sizeof(reached[0]);

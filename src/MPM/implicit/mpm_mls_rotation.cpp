@@ -7,14 +7,15 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Stress mls has the integral of N (x_i - x)/D over a body in the place of that of the gradient of N. Both are along the
-   normal of a surface that is along the lattice; next to an inclined one that of mls is not, so that stress along a free surface pulls at
-   its nodes. Points move to undo that, come to other places, and the skin of a body loses stress in each static step, and on the whole
-   way of a dynamic relaxation, which takes many more steps for it.
-   The rotation is the mean over points by their equivalent stress: fluids, and what has failed, have none.
+   Stress mls has the integral of N (x_i - x)/D over a body in the place of that of the gradient of
+   N. Both are along the normal of a surface that is along the lattice; next to an inclined one that
+   of mls is not, so that stress along a free surface pulls at its nodes. Points move to undo that,
+   come to other places, and the skin of a body loses stress in each static step, and on the whole
+   way of a dynamic relaxation, which takes many more steps for it. The rotation is the mean over
+   points by their equivalent stress: fluids, and what has failed, have none.
 ------------------------------------------------------------------------- */
 
-#include "implicit/mpm_mls_turn.h"
+#include "implicit/mpm_mls_rotation.h"
 
 #include "atom.h"
 #include "base/mpm_points.h"
@@ -30,7 +31,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-double LAMMPS_NS::turn_with_mls(const MPMField &field)
+double LAMMPS_NS::mls_rotation(const MPMField &field)
 {
   const auto &options = field.options;
   if (field.frame->is_total() || !is_mls(options.shape, options.transfer) ||
@@ -55,7 +56,7 @@ double LAMMPS_NS::turn_with_mls(const MPMField &field)
   return all[1] > 0.0 ? all[0] / all[1] : 0.0;
 }
 
-std::string LAMMPS_NS::about_turn_with_mls(double turn, const std::string &field)
+std::string LAMMPS_NS::warning_of_mls_rotation(double turn, const std::string &field)
 {
   return fmt::format(
       "points have turned by {:.2g} on average, and with stress mls in the updated "
