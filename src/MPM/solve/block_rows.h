@@ -10,43 +10,13 @@
 #define MPM_SOLVE_BLOCK_ROWS_H
 
 #include "solve/lattice_ranks.h"
+#include "solve/matrix_block.h"
 
 #include <Eigen/SparseCore>
 
 #include <vector>
 
 namespace MPM_NS {
-
-/** A block [width][width] of a matrix. */
-struct MatrixBlock {
-  int row, column;
-  double value[9];
-};
-
-/** Each function as a weighted sum of functions of a coarser level. */
-struct CoarseParts {
-  struct Part {
-    int node;
-    double weight;
-  };
-  struct Range {
-    const Part *from, *to;
-    const Part *begin() const { return from; }
-    const Part *end() const { return to; }
-  };
-  std::vector<int> first{0};    // [functions + 1] ranges in parts
-  std::vector<Part> parts;
-
-  /** The parts of function i. */
-  Range of(int64_t i) const { return {parts.data() + first[i], parts.data() + first[i + 1]}; }
-  /** Ends the parts of the current function. */
-  void end_function() { first.push_back((int) parts.size()); }
-
-  double memory_usage() const
-  {
-    return first.capacity() * sizeof(int) + parts.capacity() * sizeof(Part);
-  }
-};
 
 /** A symmetric matrix of blocks [width][width]. Each rank has a range of rows, in order of ranks.
  *  Vectors are complete on all ranks. */

@@ -10,8 +10,8 @@
 #define MPM_SOLVE_NODE_CONSTRAINTS_H
 
 #include "lattice/grid.h"
-#include "solve/block_rows.h"
 #include "solve/lattice_nodes.h"
+#include "solve/matrix_block.h"
 
 #include <algorithm>
 #include <cstdint>
