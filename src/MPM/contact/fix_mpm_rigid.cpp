@@ -32,6 +32,7 @@
 #include "field/mpm_physics.h"
 #include "flow/fix_mpm_incompressible.h"
 #include "force.h"
+#include "math/coulomb.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
 #include "modify.h"
@@ -492,12 +493,12 @@ void FixMPMRigid::solve()
       const double normal = MathExtra::dot3(w, c.n);
       MathExtra::scaleadd3(-normal, c.n, w, slide);
       const double held = friction * (1.0 - c.of_water);    // by what is between grains and body
-      const double length = MathExtra::len3(slide), most = held * fabs(normal);
+      const double length = MathExtra::len3(slide);
       const Contact before = c;
       MathExtra::zero3(c.pull);
       if (kind == SEPARATE && !(normal > 0.0))
         c.state = Contact::APART;
-      else if (friction > 0.0 && length <= most)
+      else if (friction > 0.0 && !CoulombFriction{held, held}.slides(length, fabs(normal)))
         c.state = Contact::STICKS;
       else {
         c.state = Contact::SLIDES;

@@ -7,13 +7,8 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Where two bodies have mass at a node of the mesh and their points touch, impulses are those of fix mpm/contact: equal and
-   opposite, they take the approach away, and of the sliding what the law of friction allows
-
-     n from a to b,  m = m_a m_b/(m_a + m_b),  u = v_a - v_b
-     J_n = max(0, m u.n),   J_t = m (u - (u.n) n) scaled down to at most mu J_n
-
-   (S.G. Bardenhagen, J.U. Brackbill, D. Sulsky, Comput. Methods Appl. Mech. Eng. 187 (2000) 529).
+   Where two bodies have mass at a node of the mesh and their points touch, impulses are those of fix mpm/contact
+   (MPMNodeContact).
 
    Normals are those of the plane that tells the points of both bodies apart best (math/plane_between.h), in the cells
    around the node. Linear functions reach one cell, so that the gradient of the volume of a body at its corner points along
@@ -42,7 +37,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "update.h"
@@ -60,11 +54,6 @@ static constexpr double CONVERGED = 1.0e-12;    // change of the impulses, relat
 
 static constexpr double ROUNDING = 1.0e-8;
 
-// bodies that move along each other approach each other or part by rounding, which must not decide whether they
-// stick or are open: at least by this part of their speeds
-
-static constexpr double APPROACH = 1.0e-12;
-
 // points that tell whether bodies touch at a node are not farther beside it, in sizes of the node
 
 static constexpr double BESIDE = 0.5;
@@ -79,26 +68,15 @@ Options MPMMeshContactOptions::declare()
 {
   using namespace option;
   Options o("fix mpm/mesh/contact");
-  o.add("law",
-        {word(law,
-              {{"frictionless", FRICTIONLESS, "bodies slide freely"},
-               {"coulomb",
-                COULOMB,
-                "bodies slide with friction",
-                {number(kinetic_friction, "mu", NOT_NEGATIVE, "1", "coefficient of friction"),
-                 optional(number(static_friction, "mu_s", NOT_NEGATIVE, "1",
-                                 "coefficient of static friction, not below mu; default: mu"))}},
-               {"stick", STICK, "bodies do not slide while they press on each other"}})})
-      .standard("frictionless");
+  declare_law(o, false);
   o.refuse([=] {
-    return OptionRules{
-        {law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction, "law",
-         "coulomb: the coefficient of static friction must not be below that of friction: {law}"}};
+    return OptionRules{coefficients()};
   });
   return o;
 }
 
-FixMPMMeshContact::FixMPMMeshContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMPMMeshContact::FixMPMMeshContact(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), report(lmp)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -122,11 +100,14 @@ FixMPMMeshContact::FixMPMMeshContact(LAMMPS *lmp, int narg, char **arg) : Fix(lm
   if (groups.size() > MAX_BODIES)
     error->all(FLERR, 4 + MAX_BODIES, "Fix mpm/mesh/contact takes at most {} bodies", MAX_BODIES);
   read_options(lmp, options, narg, arg, iarg);
-  if (static_friction < 0.0) static_friction = kinetic_friction;
+  complete();
+  keeps_rest = true;
+  rounded = 1.0;
+  report.set_bodies(count());
 
   scalar_flag = array_flag = 1;
-  size_array_rows = (int) (groups.size() * (groups.size() - 1) / 2);
-  size_array_cols = 5;
+  size_array_rows = (int) report.entries.size();
+  size_array_cols = MPMContactReport::COLUMNS;
   global_freq = 1;
   extscalar = extarray = 1;
   restart_global = 1;
@@ -148,12 +129,6 @@ int FixMPMMeshContact::body_of(int mask) const
   for (int b = 0; b < count(); b++)
     if (mask & groups[b]) body = body == -1 ? b : -2;
   return body;
-}
-
-/** Row of the output for bodies a < b of n: (0,1), (0,2), ..., (1,2), ... */
-static int pair_index(int a, int b, int n)
-{
-  return a * n - a * (a + 1) / 2 + b - a - 1;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -346,8 +321,11 @@ void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
     for (int d = 0; d < 3; d++) n[d] -= zero[d];
     const double length = std::sqrt(dot(n.data(), n.data()));
     if (!(length > 1.0e-3)) continue;
-    found.push_back(
-        {a, b, {n[0] / length, n[1] / length, n[2] / length}, OPEN, 0.0, {0.0, 0.0, 0.0}});
+    MPMNodeContact contact = {};
+    contact.a = a;
+    contact.b = b;
+    for (int d = 0; d < 3; d++) contact.n[d] = n[d] / length;
+    found.push_back(contact);
     found_at.push_back(node);
   }
 }
@@ -362,101 +340,52 @@ void FixMPMMeshContact::solve(const MPMMeshBodies &of, const Node &at,
 {
   const std::size_t nnode = sizes.size();
   const int dim = of.mesh.dim;
-  double mass[MAX_BODIES];
-  MeshVector start[MAX_BODIES], now[MAX_BODIES], held[MAX_BODIES];
+  using Record = std::array<double, 4>;    // velocity and mass
+  Record held[MAX_BODIES], now[MAX_BODIES], end[MAX_BODIES];
   int nbody = 0;
   for (int b = 0; b < count(); b++) {
-    mass[b] = of.mass[of.stride * (b * nnode + at.node)];
-    if (!(mass[b] > 0.0)) continue;
+    const double mass = of.mass[of.stride * (b * nnode + at.node)];
+    const MeshVector &v = velocities[b * nnode + at.node];
+    end[b] = held[b] = {v[0], v[1], v[2], mass};
+    if (!(mass > 0.0)) continue;
     nbody++;
-    start[b] = held[b] = velocities[b * nnode + at.node];
     of.forces.constrain(at.node, 0.0, held[b].data());
     now[b] = held[b];
   }
   for (int p = at.first; p < at.last; p++) {
-    pairs[p].normal = 0.0;
-    std::fill_n(pairs[p].tangential, 3, 0.0);
+    MPMNodeContact &pair = pairs[p];
+    pair.begin({}, {});
+    pair.ra = now[pair.a].data();
+    pair.rb = now[pair.b].data();
   }
-  const auto add_impulses = [&](const MeshVector *from, MeshVector *to) {
-    for (int b = 0; b < count(); b++)
-      if (mass[b] > 0.0) to[b] = from[b];
-    for (int p = at.first; p < at.last; p++) {
-      const Pair &pair = pairs[p];
-      for (int d = 0; d < dim; d++) {
-        const double J = pair.normal * pair.n[d] + pair.tangential[d];
-        to[pair.a][d] -= J / mass[pair.a];
-        to[pair.b][d] += J / mass[pair.b];
-      }
-    }
-  };
   for (int it = 0; it < MAX_ITERATIONS; it++) {
     double largest = 0.0;
-    for (int p = at.first; p < at.last; p++) {
-      Pair &pair = pairs[p];
-      const double ma = mass[pair.a], mb = mass[pair.b], m = ma * mb / (ma + mb) / (nbody - 1);
-      double u[3] = {0.0, 0.0, 0.0}, un = 0.0, t[3] = {0.0, 0.0, 0.0}, length = 0.0, speeds = 0.0;
-      for (int d = 0; d < dim; d++) {
-        u[d] = now[pair.a][d] - now[pair.b][d];
-        un += u[d] * pair.n[d];
-        speeds += std::fabs(now[pair.a][d]) + std::fabs(now[pair.b][d]);
-      }
-      for (int d = 0; d < dim; d++) {
-        t[d] = pair.tangential[d] + m * (u[d] - un * pair.n[d]);
-        length += t[d] * t[d];
-      }
-      length = std::sqrt(length);
-      double normal = pair.normal + m * un, keep;
-      if (decided) {
-        keep = pair.state == STUCK ? 1.0 : 0.0;
-        if (pair.state == OPEN) normal = 0.0;
-      } else {
-        const double rounding = APPROACH * m * speeds;
-        const bool open = normal < -rounding;
-        normal = std::max(normal, 0.0);
-        const double limit = static_friction * normal;
-        if (law == STICK) {
-          if (normal <= rounding) normal = 0.0;
-          keep = normal > 0.0 ? 1.0 : 0.0;
-        } else if (limit == 0.0)
-          keep = 0.0;
-        else
-          keep = length > limit ? kinetic_friction * normal / length : 1.0;
-        pair.state = open ? OPEN : keep == 1.0 ? STUCK : SLIDING;
-      }
-      double change = std::fabs(normal - pair.normal);
-      pair.normal = normal;
-      for (int d = 0; d < dim; d++) {
-        change += std::fabs(keep * t[d] - pair.tangential[d]);
-        pair.tangential[d] = keep * t[d];
-      }
-      largest = std::max(largest, change / (std::fabs(normal) + length + m * speeds + 1.0e-300));
-    }
-    add_impulses(held, now);
+    for (int p = at.first; p < at.last; p++)
+      largest = std::max(largest, pairs[p].iterate(*this, dim, nbody - 1, 0.0, decided));
+    std::copy_n(held, count(), now);
+    for (int p = at.first; p < at.last; p++) pairs[p].push(dim);
     if (nbody == 2 || largest < CONVERGED) break;
   }
-  MeshVector end[MAX_BODIES];
-  add_impulses(start, end);
-  for (int b = 0; b < count(); b++)
-    if (mass[b] > 0.0) velocities[b * nnode + at.node] = end[b];
-  if (decided || !of.ranks.first[at.node]) return;
+  const bool counts = !decided && of.ranks.first[at.node];
   for (int p = at.first; p < at.last; p++) {
-    const Pair &pair = pairs[p];
-    if (pair.state == OPEN) continue;
-    auto &account = accounts[pair_index(pair.a, pair.b, count())];
-    account.count += 1.0;
-    for (int d = 0; d < dim; d++) {
-      account.impulse[d] += pair.normal * pair.n[d] + pair.tangential[d];
-      account.work += pair.tangential[d] * (now[pair.b][d] - now[pair.a][d]);
+    MPMNodeContact &pair = pairs[p];
+    if (counts && pair.state != MPMNodeContact::OPEN) {
+      auto &entry = report.of(pair.a, pair.b);
+      entry.work += entry.add(pair, dim);
     }
+    pair.ra = end[pair.a].data();
+    pair.rb = end[pair.b].data();
+    pair.push(dim);
   }
+  for (int b = 0; b < count(); b++)
+    if (end[b][3] > 0.0) std::copy_n(end[b].data(), 3, velocities[b * nnode + at.node].data());
 }
 
 void FixMPMMeshContact::act(const MPMMeshBodies &of, std::vector<MeshVector> &velocities,
                             bool decided)
 {
   if (!decided) {
-    dt_last = update->dt;
-    for (auto &one : accounts) one = {{0.0, 0.0, 0.0}, 0.0, one.work};
+    report.begin_step(update->dt);
     find(of);
     if (look) warn_overlap();
     look = false;
@@ -476,45 +405,12 @@ void FixMPMMeshContact::warn_overlap()
                    id, deepest);
 }
 
-/* ----------------------------------------------------------------------
-   work of friction so far
-------------------------------------------------------------------------- */
-
-double FixMPMMeshContact::compute_scalar()
-{
-  double mine = 0.0, all;
-  for (const auto &account : accounts) mine += account.work;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all * force->mvv2e;
-}
-
-/* ----------------------------------------------------------------------
-   rows: pairs of bodies; columns: force on the second by the first in the last step, nodes in contact, work of friction so far
-------------------------------------------------------------------------- */
-
-double FixMPMMeshContact::compute_array(int row, int column)
-{
-  if (array_step != update->ntimestep) {
-    array_step = update->ntimestep;
-    double mine[MAX_PAIRS][5];
-    for (int p = 0; p < size_array_rows; p++) {
-      const auto &[impulse, count, work] = accounts[p];
-      for (int d = 0; d < 3; d++)
-        mine[p][d] = dt_last > 0.0 ? impulse[d] / (dt_last * force->ftm2v) : 0.0;
-      mine[p][3] = count;
-      mine[p][4] = work * force->mvv2e;
-    }
-    MPI_Allreduce(mine, array, 5 * size_array_rows, MPI_DOUBLE, MPI_SUM, world);
-  }
-  return array[row][column];
-}
-
 void FixMPMMeshContact::write_restart(FILE *fp)
 {
   std::vector<double> totals = {comm->me == 0 ? (double) size_array_rows : 0.0};
-  for (int p = 0; p < size_array_rows; p++) totals.push_back(accounts[p].work);
+  for (int p = 0; p < size_array_rows; p++) totals.push_back(report.entries[p].work);
   write_totals(fp, world, totals);
-  for (int p = 0; p < size_array_rows; p++) accounts[p].work = totals[p + 1];
+  for (int p = 0; p < size_array_rows; p++) report.entries[p].work = totals[p + 1];
 }
 
 void FixMPMMeshContact::restart(char *buf)
@@ -525,12 +421,13 @@ void FixMPMMeshContact::restart(char *buf)
                "Fix mpm/mesh/contact {} had another number of bodies when the restart file was "
                "written: name as many, or give the fix another ID to begin anew",
                id);
-  for (int p = 0; p < size_array_rows; p++) accounts[p].work = comm->me == 0 ? list[p + 1] : 0.0;
+  for (int p = 0; p < size_array_rows; p++)
+    report.entries[p].work = comm->me == 0 ? list[p + 1] : 0.0;
 }
 
 double FixMPMMeshContact::memory_usage()
 {
-  return (double) (near.capacity() * sizeof(Near) + pairs.capacity() * sizeof(Pair) +
+  return (double) (near.capacity() * sizeof(Near) + pairs.capacity() * sizeof(MPMNodeContact) +
                    hulls.capacity() * sizeof(HullDistance) +
                    (sizes.capacity() + ends.capacity()) * sizeof(double) +
                    (row.capacity() + of_row.capacity()) * sizeof(int));

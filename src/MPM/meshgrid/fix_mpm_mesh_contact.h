@@ -15,6 +15,8 @@ FixStyle(mpm/mesh/contact,FixMPMMeshContact);
 #ifndef LMP_FIX_MPM_MESH_CONTACT_H
 #define LMP_FIX_MPM_MESH_CONTACT_H
 
+#include "contact/mpm_contact_report.h"
+#include "contact/mpm_node_contact.h"
 #include "declare/option.h"
 #include "fix.h"
 #include "math/hull_distance.h"
@@ -29,13 +31,7 @@ class MPMMeshRanks;
 struct MPMPoints;
 
 /** Keywords of fix mpm/mesh/contact. */
-struct MPMMeshContactOptions {
-  enum Law { FRICTIONLESS, COULOMB, STICK };
-
-  Law law = FRICTIONLESS;
-  double kinetic_friction = 0.0;
-  double static_friction = -1.0;    ///< negative: equal to kinetic_friction
-
+struct MPMMeshContactOptions : MPMContactLaw {
   MPM_NS::Options declare();
 };
 
@@ -58,8 +54,8 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  double compute_scalar() override;
-  double compute_array(int, int) override;
+  double compute_scalar() override { return report.work(); }
+  double compute_array(int row, int column) override { return report.at(row, column); }
   double memory_usage() override;
 
   /** ID of its fix mpm/mesh. */
@@ -78,16 +74,6 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   static constexpr int MAX_BODIES = 8;
 
  private:
-  static constexpr int MAX_PAIRS = MAX_BODIES * (MAX_BODIES - 1) / 2;
-
-  enum State : char { OPEN, SLIDING, STUCK };
-
-  struct Pair {    // two bodies that touch at a node
-    int a, b;
-    double n[3];    // unit normal from a to b, within the directions that conditions leave free
-    State state;
-    double normal, tangential[3];    // impulses on b so far
-  };
   struct Node {               // where bodies touch
     int node, first, last;    // range in pairs
   };
@@ -99,25 +85,17 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
         r[3];    // node function at the point; vector from the node to the point, in sizes of the node
     int point;
   };
-  struct Account {        // of two bodies, this rank's share
-    double impulse[3];    // on the second body in the last step
-    double count;         // nodes in contact
-    double work;          // of friction so far
-  };
-
   std::string mesh_id;
   std::vector<int> groups;    // bits
   MPMPoints *points = nullptr;
   std::vector<double> sizes;    // [node] size of the volume that belongs to it
   std::vector<Node> nodes;
-  std::vector<Pair> pairs, found;    // found: [index in found_at]
-  std::vector<int> found_at;         // nodes of found
-  double overlap = 0.0;              // largest overlap in this step, in sizes of points
-  bool look = true;                  // check for overlap
-  double dt_last = 0.0;
-  Account accounts[MAX_PAIRS] = {};
-  double array[MAX_PAIRS][5] = {};
-  bigint array_step = -1;
+  /** Contacts, with normals within the directions that conditions leave free; found: [index in found_at] */
+  std::vector<MPMNodeContact> pairs, found;
+  std::vector<int> found_at;    // nodes of found
+  double overlap = 0.0;         // largest overlap in this step, in sizes of points
+  bool look = true;             // check for overlap
+  MPMContactReport report;
 
   // of the pair of bodies that is being treated
 

@@ -6,23 +6,20 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Interfaces of bodies at nodes, and at their edges, for steps of a solver (fix_mpm_contact_trial.cpp).
-//
-// The integrals of the gradients of a function over two bodies are g_a = A + L_a and g_b = -A + L_b. A is the integral of the function
-// over the interface, as area and normal, and L_a and L_b are those over the free sides. Inside an interface, and where the side of one
-// body continues that of the other, also at walls, L_a and L_b are in proportion to the volumes V that the bodies have at the node. (With
-// images, as in explicit steps, an inclined interface would not be in balance next to a wall, where nodes and images move along it
-// independently.) L_a + L_b is g_a + g_b, so that
-//
-//    A = [g_a - g_b - (g_a + g_b) (V_a - V_b)/(V_a + V_b)]/2                                                     (1)
-//
-// At the edge of a body on a wider one, the free side of the wider one continues the interface, and that of the other one is at an
-// angle to it: with (1), normals would be inclined there, most of all at nodes beyond the edge. The wider body covers more of the
-// cross-section of a line of nodes through the interface. Its direction n along the line is taken instead, with A = (g.n) n and g of
-// the other body. Where the edges of two bodies cross, each covers another part of the cross-section, and n is that of the lines
-// around, with most weight for lines that both bodies cover.
+/* ----------------------------------------------------------------------
+   At the edge of a body on a wider one, the free side of the wider one continues the interface, and that of the other one is at an
+   angle to it: with the area vectors A of MPMContactSearch::interface_at(), normals would be inclined there, most of all at nodes
+   beyond the edge. The wider body covers more of the cross-section of a line of nodes through the interface. Its direction n
+   along the line is taken instead, with A = (g.n) n and g of the other body. Where the edges of two bodies cross, each covers
+   another part of the cross-section, and n is that of the lines around, with most weight for lines that both bodies cover.
 
-#include "contact/fix_mpm_contact.h"
+   The gap is the volume that both bodies lack along the line, over the area of the interface. Where a body covers only the part
+   c of the cross-section of the line, next to its edge, its volumes are divided by c:
+
+      g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
+------------------------------------------------------------------------- */
+
+#include "contact/mpm_contact_lines.h"
 
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
@@ -30,42 +27,48 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double STEEPER = 1.0e-6;    // relative difference that decides alike on all ranks
 static constexpr double OWN = 3.0;           // weight of a node relative to those around
-static constexpr double WIDER = 0.02;        // difference of shares from which on a body is wider
-static constexpr double LIGHT = 0.1;        // largest share of a line that joins the one next to it
+static constexpr double WIDER = 0.02;       // difference of fractions from which on a body is wider
+static constexpr double LIGHT = 0.1;        // largest cover of a line that joins the one next to it
 static constexpr double DIAGONAL = 0.25;    // weight of a line diagonally next to this one
 // free sides, relative to the cross-section of a line. CROSSING: of both bodies where they cross (interfaces of lattices of points
 // have up to about a tenth, against each other); SIDE: of the wider body, from which on lines follow others
 static constexpr double CROSSING = 0.15, SIDE = 0.1;
+static constexpr double COVERED = 1.0e-3;    // least fraction of the cross-section of a line
+static constexpr double SAME = 1.0e-6;       // relative difference of fractions that count as equal
 
-/** Finds A of (1) at the node with this index, if both bodies have it; otherwise zero. */
-void FixMPMContact::interface_at(int a, int b, const int *index, double *area) const
+void MPMContactLines::find(MPMContacts &of)
 {
-  const Body &first = bodies[a], &second = bodies[b];
-  MathExtra::zero3(area);
-  const int64_t na = node_at(first, index), nb = node_at(second, index);
-  if (na < 0 || nb < 0) return;
-  const double Va = share_of(first, index), Vb = share_of(second, index);
-  if (!(Va + Vb > 0.0)) return;
-  const double r = (Va - Vb) / (Va + Vb);
-  const double *const ga = &first.gradient[3 * na], *const gb = &second.gradient[3 * nb];
-  for (int d = 0; d < first.field->lattice.dim; d++)
-    area[d] = 0.5 * (ga[d] - gb[d] - r * (ga[d] + gb[d]));
+  contacts = &of;
+  list.clear();
+  find_lines();
+  find_edges();
+}
+
+/** Do walls determine both bodies at this node by those inside? Also finds the action of walls. */
+bool MPMContactLines::is_beyond_walls(MPMNodeContact &pair) const
+{
+  const int all = (1 << bodies.dim()) - 1;
+  pair.walls_a = bodies[pair.a].walls_at(pair.ra);
+  pair.walls_b = bodies[pair.b].walls_at(pair.rb);
+  const auto follows = [all](const MPMNodeWalls &walls) {
+    return ((walls.outside | walls.held) & all) == all;
+  };
+  return follows(pair.walls_a) && follows(pair.walls_b);
 }
 
 /** Finds the axis of the line of a pair, the sign of its normal along it, and the index of its node. The nodes around are included,
  *  as nodes beyond edges have hardly any interface. */
-int FixMPMContact::axis_at(const Pair &pair, int *index, double &sign) const
+int MPMContactLines::axis_at(const MPMNodeContact &pair, int *index, double &sign) const
 {
-  MPMField &field = *bodies[pair.a].field;
-  const int dim = field.lattice.dim;
-  field.grid.node_index((pair.ra - field.grid.nodes()) / field.grid.nreal, index);
+  const int dim = bodies.dim();
+  const MPMContactBody &body = bodies[pair.a];
+  body.field->grid.node_index(body.node_of(pair.ra), index);
   double n[3] = {0.0, 0.0, 0.0};
   const int across = dim == 3 ? 1 : 0;
   for (int i = -1; i <= 1; i++)
@@ -73,7 +76,7 @@ int FixMPMContact::axis_at(const Pair &pair, int *index, double &sign) const
       for (int k = -across; k <= across; k++) {
         const int at[3] = {index[0] + i, index[1] + j, index[2] + k};
         double there[3];
-        interface_at(pair.a, pair.b, at, there);
+        search.interface_at(pair.a, pair.b, at, there);
         const double weight = i || j || k ? 1.0 : OWN;
         for (int d = 0; d < dim; d++) n[d] += weight * there[d];
       }
@@ -85,12 +88,13 @@ int FixMPMContact::axis_at(const Pair &pair, int *index, double &sign) const
 }
 
 /** Finds lines of nodes that are next to each other along their axis. */
-void FixMPMContact::find_lines(std::vector<Line> &lines)
+void MPMContactLines::find_lines()
 {
-  std::map<std::array<int, 6>, std::vector<std::pair<int, int>>> all;
+  auto &pairs = contacts->pairs;
+  std::map<Key, std::vector<std::pair<int, int>>> all;
   const Lattice &lattice = bodies[0].field->lattice;
   for (std::size_t p = 0; p < pairs.size(); p++) {
-    Pair &pair = pairs[p];
+    MPMNodeContact &pair = pairs[p];
     if (is_beyond_walls(pair)) continue;
     int index[3];
     double sign;
@@ -119,48 +123,49 @@ void FixMPMContact::find_lines(std::vector<Line> &lines)
       line.sign = key[2] % 2 ? 1.0 : -1.0;
       for (last = first; last == first || (last < begin + n && joined(last)); last++)
         line.places.push_back(places[last % n]);
-      lines.push_back(line);
+      list.push_back(line);
     }
   }
 }
 
 /** Share and gradient of a body along a line, of the nodes where its gradient has this sign. */
-FixMPMContact::Covers FixMPMContact::look_along(const Body &body, const Line &line,
-                                                double sign) const
+MPMContactLines::Coverage MPMContactLines::coverage(const MPMContactBody &body, const Line &line,
+                                                    double sign) const
 {
   const Lattice &lattice = body.field->lattice;
   const double cross = lattice.cell_volume() / lattice.h;
-  Covers seen = {};
+  Coverage covered = {};
   int at[3] = {line.index[0], line.index[1], line.index[2]};
   for (int i = line.low() - AROUND; i <= line.high() + AROUND; i++) {
     at[line.axis] = i;
-    const int64_t node = node_at(body, at);
+    const int64_t node = body.node_at(at);
     if (node < 0) continue;
-    seen.share = std::max(seen.share, share_of(body, at));
+    covered.fraction = std::max(covered.fraction, bodies.fraction(body, at));
     const int slot = (int) (node / NODES_PER_BLOCK), n = (int) (node % NODES_PER_BLOCK);
     const double circle = body.field->frame->node_circle(slot, n);
     double g[3];
-    gradient_at(body, slot, n, g);
+    bodies.gradient_with_mirrors(body, slot, n, g);
     // skip the other surface of a thin body
     if (!(circle > 0.0 && sign * g[line.axis] > 0.0)) continue;
     for (int d = 0; d < lattice.dim; d++) {
-      seen.g[d] += g[d] / (cross * circle);
-      seen.alone[d] += body.gradient[3 * node + d] / (cross * circle);
+      covered.g[d] += g[d] / (cross * circle);
+      covered.alone[d] += body.gradient[3 * node + d] / (cross * circle);
     }
   }
-  seen.share = std::min(std::max(seen.share, std::fabs(seen.g[line.axis])), 1.0);
-  return seen;
+  covered.fraction = std::min(std::max(covered.fraction, std::fabs(covered.g[line.axis])), 1.0);
+  return covered;
 }
 
 /** Finds the direction of a line, by its interface or by that of the wider body. Returns the weight of the latter, from 0 to 1. */
-double FixMPMContact::turn_to_wider(Line &line) const
+double MPMContactLines::turn_to_wider(Line &line) const
 {
   double n[3] = {0.0, 0.0, 0.0}, wide[3];
   for (const auto &place : line.places)
-    for (int d = 0; d < 3; d++) n[d] += pairs[place.second].area * pairs[place.second].n[d];
-  const double wider = line.seen[0].share - line.seen[1].share,
+    for (int d = 0; d < 3; d++)
+      n[d] += contacts->pairs[place.second].area * contacts->pairs[place.second].n[d];
+  const double wider = line.covered[0].fraction - line.covered[1].fraction,
                turned = std::min(std::fabs(wider) / WIDER, 1.0);
-  MathExtra::copy3(line.seen[wider > 0.0 ? 0 : 1].g, wide);
+  MathExtra::copy3(line.covered[wider > 0.0 ? 0 : 1].g, wide);
   const double length = MathExtra::len3(n), of_wide = MathExtra::len3(wide);
   MathExtra::zero3(line.n);    // the two sides of a thin body may cancel
   if (length > 0.0) MathExtra::scale3(1.0 / length, n, line.n);
@@ -173,8 +178,8 @@ double FixMPMContact::turn_to_wider(Line &line) const
 }
 
 /** Calls use(k) for a line and its neighbors. */
-void FixMPMContact::for_lines_around(const std::vector<Line> &lines, const LinesByKey &by_key,
-                                     const Line &line, const std::function<void(int k)> &use) const
+void MPMContactLines::visit_neighbors(const LinesByKey &by_key, const Line &line,
+                                      const std::function<void(int k)> &use) const
 {
   const Lattice &lattice = bodies[0].field->lattice;
   const int first = line.axis == 0 ? 1 : 0, second = line.axis == 2 ? 1 : 2,
@@ -187,21 +192,22 @@ void FixMPMContact::for_lines_around(const std::vector<Line> &lines, const Lines
       const auto found = by_key.find(key);
       if (found == by_key.end()) continue;
       for (const int k : found->second)
-        if (lines[k].low() <= line.high() + 1 && lines[k].high() >= line.low() - 1) use(k);
+        if (list[k].low() <= line.high() + 1 && list[k].high() >= line.low() - 1) use(k);
     }
 }
 
 /** Weight, from 0 to 1, with which a line takes the direction of the lines around it: where sides of both bodies cross, and where the
  *  wider body, whose direction has the weight turned, has a side, too. */
-double FixMPMContact::follows_others(const Line &line, double turned, const double *around) const
+double MPMContactLines::weight_of_neighbors(const Line &line, double turned,
+                                            const double *around) const
 {
   double side[2][3], length[2];
   for (int k = 0; k < 2; k++) {
-    const double along = MathExtra::dot3(line.seen[k].alone, around);
-    for (int d = 0; d < 3; d++) side[k][d] = line.seen[k].alone[d] - along * around[d];
+    const double along = MathExtra::dot3(line.covered[k].alone, around);
+    for (int d = 0; d < 3; d++) side[k][d] = line.covered[k].alone[d] - along * around[d];
     length[k] = MathExtra::len3(side[k]);
   }
-  const int wider = line.seen[0].share > line.seen[1].share ? 0 : 1;
+  const int wider = line.covered[0].fraction > line.covered[1].fraction ? 0 : 1;
   const double by_wider = turned * std::min(length[wider] / SIDE, 1.0);
   const double shorter = std::min(length[0], length[1]);
   if (shorter <= CROSSING) return by_wider;
@@ -213,14 +219,13 @@ double FixMPMContact::follows_others(const Line &line, double turned, const doub
 }
 
 /** Turns the interface of a pair of this line, with these weights, to the direction of the line and to that around it. */
-void FixMPMContact::turn(Pair &pair, const Line &line, double turned, double follows,
-                         const double *around) const
+void MPMContactLines::turn(MPMNodeContact &pair, const Line &line, double turned, double weight,
+                           const double *around) const
 {
-  const bool first_is_wider = line.seen[0].share > line.seen[1].share;
-  const Body &narrow = bodies[first_is_wider ? pair.b : pair.a];
+  const bool first_is_wider = line.covered[0].fraction > line.covered[1].fraction;
+  const MPMContactBody &narrow = bodies[first_is_wider ? pair.b : pair.a];
   const double *const record = first_is_wider ? pair.rb : pair.ra;
-  const int64_t node = (record - narrow.field->grid.nodes()) / narrow.field->grid.nreal;
-  const double outward = MathExtra::dot3(&narrow.gradient[3 * node], line.n),
+  const double outward = MathExtra::dot3(narrow.gradient_at(record), line.n),
                own = std::max(first_is_wider ? -outward : outward, 0.0);
   double area[3];
   for (int d = 0; d < 3; d++) {
@@ -228,7 +233,7 @@ void FixMPMContact::turn(Pair &pair, const Line &line, double turned, double fol
     area[d] += turned * (own * line.n[d] - area[d]);
   }
   const double along = std::max(MathExtra::dot3(area, around), 0.0);
-  for (int d = 0; d < 3; d++) area[d] += follows * (along * around[d] - area[d]);
+  for (int d = 0; d < 3; d++) area[d] += weight * (along * around[d] - area[d]);
   pair.area = MathExtra::len3(area);
   MathExtra::copy3(area, pair.n);
   if (pair.area > 0.0) MathExtra::scale3(1.0 / pair.area, pair.n);
@@ -236,15 +241,15 @@ void FixMPMContact::turn(Pair &pair, const Line &line, double turned, double fol
 
 /** Joins lines that a body hardly covers to a neighbor, preferably straight across its edge: separate conditions on nodes with hardly
  *  any mass would make the iterations oscillate. */
-void FixMPMContact::join_lines(std::vector<Line> &lines, const LinesByKey &by_key) const
+void MPMContactLines::join_lines(const LinesByKey &by_key)
 {
-  for (auto &line : lines) {
+  for (auto &line : list) {
     line.joins = -1;
-    if (std::min(line.seen[0].share, line.seen[1].share) >= LIGHT) continue;
+    if (std::min(line.covered[0].fraction, line.covered[1].fraction) >= LIGHT) continue;
     double most = 0.0;
-    for_lines_around(lines, by_key, line, [&](int k) {
-      const Line &other = lines[k];
-      double weight = std::min(other.seen[0].share, other.seen[1].share);
+    visit_neighbors(by_key, line, [&](int k) {
+      const Line &other = list[k];
+      double weight = std::min(other.covered[0].fraction, other.covered[1].fraction);
       if (weight < LIGHT) return;
       int ways = 0;
       for (int d = 0; d < 3; d++) ways += other.key[3 + d] != line.key[3 + d];
@@ -257,32 +262,67 @@ void FixMPMContact::join_lines(std::vector<Line> &lines, const LinesByKey &by_ke
 }
 
 /** Finds edges of bodies along lines, and turns the interfaces of their pairs there. */
-void FixMPMContact::find_edges(std::vector<Line> &lines)
+void MPMContactLines::find_edges()
 {
   std::vector<double> turned;
   LinesByKey by_key;
-  for (auto &line : lines) {
-    line.seen[0] = look_along(bodies[line.key[0]], line, line.sign);
-    line.seen[1] = look_along(bodies[line.key[1]], line, -line.sign);
+  for (auto &line : list) {
+    line.covered[0] = coverage(bodies[line.key[0]], line, line.sign);
+    line.covered[1] = coverage(bodies[line.key[1]], line, -line.sign);
     by_key[line.key].push_back((int) turned.size());
     turned.push_back(turn_to_wider(line));
   }
-  for (std::size_t l = 0; l < lines.size(); l++) {
-    const Line &line = lines[l];
+  for (std::size_t l = 0; l < list.size(); l++) {
+    const Line &line = list[l];
     double around[3] = {0.0, 0.0, 0.0};
-    for_lines_around(lines, by_key, line, [&](int k) {
-      const double both = lines[k].seen[0].share * lines[k].seen[1].share;
-      for (int d = 0; d < 3; d++) around[d] += both * both * lines[k].n[d];
+    visit_neighbors(by_key, line, [&](int k) {
+      const double both = list[k].covered[0].fraction * list[k].covered[1].fraction;
+      for (int d = 0; d < 3; d++) around[d] += both * both * list[k].n[d];
     });
     const double length = MathExtra::len3(around);
-    double follows = 0.0;
+    double weight = 0.0;
     if (length > 0.0) {
       MathExtra::scale3(1.0 / length, around);
-      follows = follows_others(line, turned[l], around);
+      weight = weight_of_neighbors(line, turned[l], around);
     }
-    if (turned[l] == 0.0 && follows == 0.0) continue;
+    if (turned[l] == 0.0 && weight == 0.0) continue;
     for (const auto &place : line.places)
-      turn(pairs[place.second], line, turned[l], follows, around);
+      turn(contacts->pairs[place.second], line, turned[l], weight, around);
   }
-  join_lines(lines, by_key);
+  join_lines(by_key);
+}
+
+bool MPMContactLines::measure_gap(const Line &line, const double *n, double full, double &gap) const
+{
+  const double h = bodies.spacing(), slope = std::fabs(n[line.axis]);
+  if (std::min(line.covered[0].fraction, line.covered[1].fraction) < COVERED) return false;
+  std::vector<std::array<double, 2>> fractions;
+  int at[3] = {line.index[0], line.index[1], line.index[2]};
+  for (int i = line.low() - AROUND; i <= line.high() + AROUND; i++) {
+    at[line.axis] = i;
+    fractions.push_back(
+        {bodies.fraction(bodies[line.key[0]], at), bodies.fraction(bodies[line.key[1]], at)});
+  }
+  // the sum goes from the fullest place of one body to that of the other: other surfaces of the bodies lie beyond. Among equally full
+  // places it takes the nearest ones, as round-off would choose differently for each number of ranks
+  double most[2] = {0.0, 0.0};
+  for (const auto &filled : fractions)
+    for (int k = 0; k < 2; k++) most[k] = std::max(most[k], filled[k]);
+  const int count = (int) fractions.size();
+  const auto is_fullest = [&](int i, int k) {
+    return fractions[i][k] >= (1.0 - SAME) * most[k];
+  };
+  int from = 0, to = count;
+  for (int i = 0; i < count; i++)
+    for (int j = 0; j < count; j++)
+      if (is_fullest(i, 0) && is_fullest(j, 1) && std::abs(i - j) < to - from) {
+        from = std::min(i, j);
+        to = std::max(i, j);
+      }
+  double missing = 0.0;
+  for (int i = from; i <= to; i++)
+    missing += 1.0 - fractions[i][0] / line.covered[0].fraction -
+        fractions[i][1] / line.covered[1].fraction;
+  gap = h * (slope * missing - (1.0 - full));
+  return true;
 }
