@@ -256,36 +256,6 @@ void FixMPMRigid::init_action()
 }
 
 /* ----------------------------------------------------------------------
-   inertia about the center, in space
-------------------------------------------------------------------------- */
-
-void FixMPMRigid::inertia(double out[3][3]) const
-{
-  double half[3][3];
-  MathExtra::times3(Q, body_inertia, half);
-  MathExtra::times3_transpose(half, Q, out);
-}
-
-/* ----------------------------------------------------------------------
-   angular velocity from angular momentum. What holds an axis takes up the moment that keeps the
-   angular velocity around it zero
-------------------------------------------------------------------------- */
-
-void FixMPMRigid::spin()
-{
-  double I[3][3], inverse[3][3], moment[3];
-  inertia(I);
-  for (int d = 0; d < 3; d++) {
-    moment[d] = fixed[3 + d] ? 0.0 : L[d];
-    if (!fixed[3 + d]) continue;
-    for (int e = 0; e < 3; e++) I[d][e] = I[e][d] = 0.0;
-    I[d][d] = 1.0;
-  }
-  MathExtra::invert3(I, inverse);
-  MathExtra::matvec(inverse, moment, omega);
-}
-
-/* ----------------------------------------------------------------------
    forces that the input gives
 ------------------------------------------------------------------------- */
 
@@ -438,107 +408,118 @@ void FixMPMRigid::Contact::relative_velocity(const double *u, double *w) const
 void FixMPMRigid::solve()
 {
   constexpr int MAX_ROUNDS = 30;
+  double u[6];
+  for (int round = 1;; round++) {
+    solve_system(u);
+    const int changed = decide_contacts(u);
+    int changed_all;
+    MPI_Allreduce(&changed, &changed_all, 1, MPI_INT, MPI_MAX, world);
+    if (!changed_all || round == MAX_ROUNDS) break;
+  }
+  push_nodes(u);
+  push(impulse);
+}
+
+/** Finds the velocity and angular velocity u of the body, for contacts in their present states. */
+void FixMPMRigid::solve_system(double *u) const
+{
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   double I[3][3];
   inertia(I);
-
-  for (int round = 0; round < MAX_ROUNDS; round++) {
-    double mine[42] = {0.0}, all[42];    // matrix, right-hand side
-    for (const auto &c : contacts) {
-      if (!c.owned || c.state == Contact::APART) continue;
-      const double m = c.record[3];
-      // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x it
-      const int products = c.state == Contact::STICKS ? 3 : 1;
-      for (int k = 0; k < products; k++) {
-        double row[6], column[6];
-        for (int d = 0; d < 3; d++) {
-          row[d] = c.state == Contact::STICKS ? (double) (d == k) : c.n[d];
-          column[d] = c.state == Contact::STICKS ? row[d] : c.n[d] + c.pull[d];
-        }
-        MathExtra::cross3(c.r, row, row + 3);
-        MathExtra::cross3(c.r, column, column + 3);
-        const double known = m * MathExtra::dot3(row, c.v);
-        for (int i = 0; i < 6; i++) {
-          for (int j = 0; j < 6; j++) mine[6 * i + j] += m * column[i] * row[j];
-          mine[36 + i] += known * column[i];
-        }
+  double mine[42] = {0.0}, all[42];    // matrix, right-hand side
+  for (const auto &c : contacts) {
+    if (!c.owned || c.state == Contact::APART) continue;
+    const double m = c.record[3];
+    // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x it
+    const int products = c.state == Contact::STICKS ? 3 : 1;
+    for (int k = 0; k < products; k++) {
+      double row[6], column[6];
+      for (int d = 0; d < 3; d++) {
+        row[d] = c.state == Contact::STICKS ? (double) (d == k) : c.n[d];
+        column[d] = c.state == Contact::STICKS ? row[d] : c.n[d] + c.pull[d];
+      }
+      MathExtra::cross3(c.r, row, row + 3);
+      MathExtra::cross3(c.r, column, column + 3);
+      const double known = m * MathExtra::dot3(row, c.v);
+      for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) mine[6 * i + j] += m * column[i] * row[j];
+        mine[36 + i] += known * column[i];
       }
     }
-    MPI_Allreduce(mine, all, 42, MPI_DOUBLE, MPI_SUM, world);
-    Matrix6 A = Eigen::Map<Matrix6>(all).transpose();    // by rows
-    Vector6 b = Eigen::Map<Vector6>(all + 36);
-    for (int d = 0; d < 3; d++) {
-      A(d, d) += mass;
-      b(d) += mass * v[d];
-      b(3 + d) += L[d];
-      for (int e = 0; e < 3; e++) A(3 + d, 3 + e) += I[d][e];
-    }
-    for (int i = 0; i < 6; i++) {
-      if (!fixed[i]) continue;
-      A.row(i).setZero();
-      A.col(i).setZero();
-      A(i, i) = 1.0;
-      b(i) = 0.0;
-    }
-    const Vector6 u = A.partialPivLu().solve(b);
-
-    // does the solution agree with what it assumed?
-
-    int changed = 0, changed_all;
-    for (auto &c : contacts) {
-      if (kind == STICK) break;
-      double w[3], slide[3];
-      c.relative_velocity(u.data(), w);
-      const double normal = MathExtra::dot3(w, c.n);
-      MathExtra::scaleadd3(-normal, c.n, w, slide);
-      const double held = friction * (1.0 - c.of_water);    // by what is between grains and body
-      const double length = MathExtra::len3(slide);
-      const Contact before = c;
-      MathExtra::zero3(c.pull);
-      if (kind == SEPARATE && !(normal > 0.0))
-        c.state = Contact::APART;
-      else if (friction > 0.0 && !CoulombFriction{held, held}.slides(length, fabs(normal)))
-        c.state = Contact::STICKS;
-      else {
-        c.state = Contact::SLIDES;
-        if (friction > 0.0)
-          for (int d = 0; d < 3; d++) c.pull[d] = std::copysign(held, normal) * slide[d] / length;
-      }
-      if (c.state != before.state) changed = 1;
-      for (int d = 0; d < 3; d++)
-        if (fabs(c.pull[d] - before.pull[d]) > 1.0e-10 * friction) changed = 1;
-    }
-    MPI_Allreduce(&changed, &changed_all, 1, MPI_INT, MPI_MAX, world);
-    if (changed_all && round + 1 < MAX_ROUNDS) continue;
-
-    // The impulses themselves, with the friction of the last round, and their sum to the body: opposite
-    // to round-off even if the rounds have not converged
-
-    double sum[6] = {0.0};
-    for (const auto &c : contacts) {
-      if (c.state == Contact::APART) continue;
-      double w[3], push[3], moment[3];
-      c.relative_velocity(u.data(), w);
-      const double m = c.record[3], normal = MathExtra::dot3(w, c.n);
-      for (int d = 0; d < 3; d++)
-        push[d] = m * (c.state == Contact::STICKS ? w[d] : normal * (c.n[d] + c.pull[d]));
-      MathExtra::cross3(c.r, push, moment);
-      if (c.owned)
-        for (int d = 0; d < 3; d++) {
-          sum[d] -= push[d];
-          sum[3 + d] -= moment[d];
-        }
-      c.field->ledger.push_node(c.record, c.owned, push);
-      if (heating && c.state == Contact::SLIDES) heat_node(c, m * normal, u.data());
-    }
-    MPI_Allreduce(sum, impulse, 6, MPI_DOUBLE, MPI_SUM, world);
-    for (int d = 0; d < 3; d++) {
-      if (!fixed[d]) v[d] += impulse[d] / mass;
-      if (!fixed[3 + d]) L[d] += impulse[3 + d];
-    }
-    return;
   }
+  MPI_Allreduce(mine, all, 42, MPI_DOUBLE, MPI_SUM, world);
+  Matrix6 A = Eigen::Map<Matrix6>(all).transpose();    // by rows
+  Vector6 b = Eigen::Map<Vector6>(all + 36);
+  for (int d = 0; d < 3; d++) {
+    A(d, d) += mass;
+    b(d) += mass * v[d];
+    b(3 + d) += L[d];
+    for (int e = 0; e < 3; e++) A(3 + d, 3 + e) += I[d][e];
+  }
+  for (int i = 0; i < 6; i++) {
+    if (!fixed[i]) continue;
+    A.row(i).setZero();
+    A.col(i).setZero();
+    A(i, i) = 1.0;
+    b(i) = 0.0;
+  }
+  const Vector6 solution = A.partialPivLu().solve(b);
+  std::copy_n(solution.data(), 6, u);
+}
+
+/** Finds the states of contacts with the motion u of the body. Returns whether these are not the states of which u is the solution. */
+bool FixMPMRigid::decide_contacts(const double *u)
+{
+  bool changed = false;
+  for (auto &c : contacts) {
+    if (kind == STICK) break;
+    double w[3], slide[3];
+    c.relative_velocity(u, w);
+    const double normal = MathExtra::dot3(w, c.n);
+    MathExtra::scaleadd3(-normal, c.n, w, slide);
+    const double held = friction * (1.0 - c.of_water);    // by what is between grains and body
+    const double length = MathExtra::len3(slide);
+    const Contact before = c;
+    MathExtra::zero3(c.pull);
+    if (kind == SEPARATE && !(normal > 0.0))
+      c.state = Contact::APART;
+    else if (friction > 0.0 && !CoulombFriction{held, held}.slides(length, fabs(normal)))
+      c.state = Contact::STICKS;
+    else {
+      c.state = Contact::SLIDES;
+      if (friction > 0.0)
+        for (int d = 0; d < 3; d++) c.pull[d] = std::copysign(held, normal) * slide[d] / length;
+    }
+    if (c.state != before.state) changed = true;
+    for (int d = 0; d < 3; d++)
+      if (fabs(c.pull[d] - before.pull[d]) > 1.0e-10 * friction) changed = true;
+  }
+  return changed;
+}
+
+/** Applies the impulses to nodes, with the friction of the last round, and finds their sum on the body: opposite to round-off even if
+ *  the rounds have not converged. */
+void FixMPMRigid::push_nodes(const double *u)
+{
+  double sum[6] = {0.0};
+  for (const auto &c : contacts) {
+    if (c.state == Contact::APART) continue;
+    double w[3], J[3], torque[3];
+    c.relative_velocity(u, w);
+    const double m = c.record[3], normal = MathExtra::dot3(w, c.n);
+    for (int d = 0; d < 3; d++)
+      J[d] = m * (c.state == Contact::STICKS ? w[d] : normal * (c.n[d] + c.pull[d]));
+    MathExtra::cross3(c.r, J, torque);
+    if (c.owned)
+      for (int d = 0; d < 3; d++) {
+        sum[d] -= J[d];
+        sum[3 + d] -= torque[d];
+      }
+    c.field->ledger.push_node(c.record, c.owned, J);
+    if (heating && c.state == Contact::SLIDES) heat_node(c, m * normal, u);
+  }
+  MPI_Allreduce(sum, impulse, 6, MPI_DOUBLE, MPI_SUM, world);
 }
 
 /* ----------------------------------------------------------------------
@@ -645,39 +626,6 @@ void FixMPMRigid::heat_node(const Contact &c, double normal_impulse, const doubl
   c.field->ledger.transfer -= more;
 }
 
-/* ----------------------------------------------------------------------
-   center and orientation to the end of the step: rotation by the angular velocity at its middle,
-   which keeps the angular momentum
-------------------------------------------------------------------------- */
-
-static void rotate(const double *angle, const double from[3][3], double to[3][3])
-{
-  const double size = MathExtra::len3(angle);
-  double R[3][3];
-  const double s = size > 1.0e-8 ? sin(size) / size : 1.0;
-  const double c = size > 1.0e-8 ? (1.0 - cos(size)) / (size * size) : 0.5;
-  const double K[3][3] = {
-      {0.0, -angle[2], angle[1]}, {angle[2], 0.0, -angle[0]}, {-angle[1], angle[0], 0.0}};
-  double KK[3][3];
-  MathExtra::times3(K, K, KK);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) R[i][j] = (i == j) + s * K[i][j] + c * KK[i][j];
-  MathExtra::times3(R, from, to);
-}
-
-void FixMPMRigid::move(double dt)
-{
-  double start[3][3], angle[3];
-  memcpy(start, Q, sizeof(Q));
-  for (const double share : {0.5, 0.5, 0.5, 1.0}) {    // three rounds find the middle of the step
-    spin();
-    MathExtra::scale3(share * dt, omega, angle);
-    rotate(angle, start, Q);
-  }
-  spin();
-  for (int d = 0; d < 3; d++) x[d] += dt * v[d];
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixMPMRigid::act(double dt, Stage stage)
@@ -721,15 +669,6 @@ void FixMPMRigid::act(double dt, Stage stage)
   }
 }
 
-/** Nothing moves along what is held. */
-void FixMPMRigid::hold()
-{
-  for (int d = 0; d < 3; d++) {
-    if (fixed[d]) v[d] = 0.0;
-    if (fixed[3 + d]) L[d] = 0.0;
-  }
-}
-
 /* ----------------------------------------------------------------------
    in a flow
 ------------------------------------------------------------------------- */
@@ -758,16 +697,7 @@ void FixMPMRigid::predict(double duration, double *u, double *inverse)
   spin();
   MathExtra::copy3(v, u);
   MathExtra::copy3(omega, u + 3);
-  std::fill_n(inverse, 36, 0.0);
-  for (int d = 0; d < 3; d++) {
-    if (!fixed[d]) inverse[7 * d] = 1.0 / mass;
-    if (fixed[3 + d]) continue;
-    double unit[3] = {0.0, 0.0, 0.0};
-    unit[d] = 1.0;
-    MathExtra::copy3(unit, L);
-    spin();
-    for (int e = 0; e < 3; e++) inverse[6 * (3 + e) + 3 + d] = omega[e];
-  }
+  find_mobility(inverse);
   static_cast<MPMRigidMotion &>(*this) = before;
 }
 
@@ -777,10 +707,7 @@ void FixMPMRigid::go_on(double dt, const double *impulse_of_flow)
   std::copy_n(impulse_of_flow, 6, impulse);
   load_impulse(dt);
   hold();
-  for (int d = 0; d < 3; d++) {
-    if (!fixed[d]) v[d] += impulse[d] / mass;
-    if (!fixed[3 + d]) L[d] += impulse[3 + d];
-  }
+  push(impulse);
   move(dt);
   check_motion(dt);
 }

@@ -15,6 +15,7 @@ FixStyle(mpm/rigid,FixMPMRigid);
 #ifndef LMP_FIX_MPM_RIGID_H
 #define LMP_FIX_MPM_RIGID_H
 
+#include "contact/mpm_rigid_body.h"
 #include "declare/option.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
@@ -33,19 +34,9 @@ class SurfaceMesh;
 namespace LAMMPS_NS {
 class MPMField;
 
-/** State of a rigid body, as kept in restart files. */
-struct MPMRigidMotion {
-  double x[3], v[3], L[3];       ///< center, its velocity, angular momentum
-  double Q[3][3];                ///< rotation from the frame of the mesh to space
-  double omega[3];               ///< angular velocity
-  double impulse[6], dt_last;    ///< of the material on the body in the last step
-};
-
 /** Options; v and omega of MPMRigidMotion are the initial values. */
-struct MPMRigidOptions : MPMRigidMotion {
+struct MPMRigidOptions : MPMRigidBody {
   enum Kind { STICK, SLIP, SEPARATE };
-
-  MPMRigidOptions() : MPMRigidMotion() {}
 
   std::string region_id;
   bool by_mass = false;
@@ -53,8 +44,7 @@ struct MPMRigidOptions : MPMRigidMotion {
   Kind kind = STICK;
   double friction = 0.0;
   double gravity[3] = {0.0, 0.0, 0.0};
-  MPM_NS::NumberOrVariable load[3], moment[3];                   ///< force and torque
-  bool fixed[6] = {false, false, false, false, false, false};    ///< velocities that stay zero
+  MPM_NS::NumberOrVariable load[3], moment[3];    ///< force and torque
   MPMFrictionHeatOptions heat;
 
   MPM_NS::Options declare();
@@ -125,8 +115,6 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
 
   const MPM_NS::SurfaceMesh *mesh = nullptr;    // null: the region is of another style, in a flow
   double first[3], farthest;    // center of the body in the region; largest distance from it
-  double mass;
-  double body_inertia[3][3];    // about the center, in the frame of the region
   std::vector<Contact> contacts;
   std::unique_ptr<MPMFrictionHeat> heating;    // null: not requested
 
@@ -135,15 +123,14 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
   bool find_normal(const std::array<double, 3> &, Contact &) const;
   void place_in_body(const double *r, std::array<double, 3> &) const;
   void solve();
+  void solve_system(double *u) const;
+  bool decide_contacts(const double *u);
+  void push_nodes(const double *u);
   void find_water();
   void heat_node(const Contact &, double normal_impulse, const double *u);
-  void move(double dt);
   double speed() const;
   double spacing_of_flow() const;
-  void hold();
   void check_motion(double dt) const;
-  void inertia(double out[3][3]) const;
-  void spin();
 };
 
 }    // namespace LAMMPS_NS
