@@ -286,8 +286,8 @@ double FixMPMRigid::stable_dt() const
     h = std::min(h, field->lattice.h);
     every = field->options.every;
   }
-  const double of_flow = spacing_of_flow();
-  if (of_flow > 0.0) h = of_flow;
+  const double flow_spacing = spacing_of_flow();
+  if (flow_spacing > 0.0) h = flow_spacing;
   return h / (speed() * every);
 }
 
@@ -478,7 +478,7 @@ bool FixMPMRigid::decide_contacts(const double *u)
     c.relative_velocity(u, w);
     const double normal = MathExtra::dot3(w, c.n);
     MathExtra::scaleadd3(-normal, c.n, w, slide);
-    const double held = friction * (1.0 - c.of_water);    // by what is between grains and body
+    const double held = friction * (1.0 - c.water_share);    // by what is between grains and body
     const double length = MathExtra::len3(slide);
     const Contact before = c;
     MathExtra::zero3(c.pull);
@@ -523,10 +523,10 @@ void FixMPMRigid::push_nodes(const double *u)
 }
 
 /* ----------------------------------------------------------------------
-   Water in pores bears a part of what pushes the body. Nodes outside of it are free, so that soil within a cell of its surface is
+   Water in pores takes a part of what pushes the body. Nodes outside of it are free, so that soil within a cell of its surface is
    pressed together by more than the load where nodes are off that, grains and water alike. So the share is that in what crosses a
    layer below it: with w = 1 next to the surface, and falling to 0 across the layer, minus the forces of points on nodes have the
-   sum w_i f_i = -int sigma grad w dV, the mean of the stress across the layer. What crosses it is what the body bears.
+   sum w_i f_i = -int sigma grad w dV, the mean of the stress across the layer. What crosses it acts on the body.
 ------------------------------------------------------------------------- */
 
 static constexpr double PATCH = 2.5;    // radius of sums along the surface, in node spacings
@@ -537,7 +537,7 @@ void FixMPMRigid::find_water()
   const auto pores = find_fixes<FixMPMPore>(lmp);
   if (pores.empty()) return;
   std::vector<MPMPatchSums::Place> places;
-  std::vector<double> of_water, of_all;
+  std::vector<double> by_water, by_all;
   double h = 0.0;
   int part = -1;
   for (auto *field : MPMField::all(lmp)) {
@@ -555,13 +555,13 @@ void FixMPMRigid::find_water()
       nearest_image(*domain, at);
       near[slot] = MathExtra::len3(at) <= farthest + reach + 1.8 * half;
     }
-    pores[0]->find_forces_below_surface(*field, near, of_water, of_all);
+    pores[0]->find_forces_below_surface(*field, near, by_water, by_all);
     for (std::size_t slot = 0; slot < near.size(); slot++)
       for (int n = 0; near[slot] && n < NODES_PER_BLOCK; n++) {
         const auto &block = grid.blocks[slot];
         if ((block.alias >> n & 1) || !(block.owned >> n & 1)) continue;
         const int64_t node = (int64_t) slot * NODES_PER_BLOCK + n;
-        const double *const of[2] = {&of_water[3 * node], &of_all[3 * node]};
+        const double *const of[2] = {&by_water[3 * node], &by_all[3 * node]};
         if (!(MathExtra::lensq3(of[1]) > 0.0)) continue;
         MPMPatchSums::Place place;
         grid.node_position(node, place.at);
@@ -588,7 +588,7 @@ void FixMPMRigid::find_water()
     double at[3];
     MathExtra::scaleadd3(c.depth, c.n, c.r, at);
     const auto [water, all] = sums.around(c.place, at, c.n);
-    c.of_water = all > 0.0 ? std::min(1.0, water / all) : water > 0.0 ? 1.0 : 0.0;
+    c.water_share = all > 0.0 ? std::min(1.0, water / all) : water > 0.0 ? 1.0 : 0.0;
   }
 }
 

@@ -102,12 +102,12 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
     double *record;    // node record: velocity and mass
     bool owned;
     State state;
-    double r[3];              // from the center of the body
-    double n[3] = {};         // normal out of the body, unless nodes just stick
-    double depth = 0.0;       // below the surface of the body
-    double of_water = 0.0;    // share of the impulse along n that pore water bears
-    double v[3];              // velocity before contact
-    double pull[3] = {};      // impulse of friction on the node, for an impulse of 1 along n
+    double r[3];                 // from the center of the body
+    double n[3] = {};            // normal out of the body, unless nodes just stick
+    double depth = 0.0;          // below the surface of the body
+    double water_share = 0.0;    // share of the impulse along n that pore water takes
+    double v[3];                 // velocity before contact
+    double pull[3] = {};         // impulse of friction on the node, for an impulse of 1 along n
 
     /** Velocity w of the body at the node, relative to v. u: velocity and angular velocity of the body. */
     void relative_velocity(const double *u, double *w) const;

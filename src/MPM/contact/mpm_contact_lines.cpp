@@ -166,11 +166,11 @@ double MPMContactLines::turn_to_wider(Line &line) const
   const double wider = line.covered[0].fraction - line.covered[1].fraction,
                turned = std::min(std::fabs(wider) / WIDER, 1.0);
   MathExtra::copy3(line.covered[wider > 0.0 ? 0 : 1].g, wide);
-  const double length = MathExtra::len3(n), of_wide = MathExtra::len3(wide);
+  const double length = MathExtra::len3(n), wide_length = MathExtra::len3(wide);
   MathExtra::zero3(line.n);    // the two sides of a thin body may cancel
   if (length > 0.0) MathExtra::scale3(1.0 / length, n, line.n);
-  if (of_wide == 0.0) return 0.0;
-  MathExtra::scale3((wider > 0.0 ? 1.0 : -1.0) / of_wide, wide);
+  if (wide_length == 0.0) return 0.0;
+  MathExtra::scale3((wider > 0.0 ? 1.0 : -1.0) / wide_length, wide);
   for (int d = 0; d < 3; d++) line.n[d] += turned * (wide[d] - line.n[d]);
   const double size = MathExtra::len3(line.n);
   if (size > 0.0) MathExtra::scale3(1.0 / size, line.n);

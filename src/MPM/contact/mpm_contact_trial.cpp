@@ -24,7 +24,7 @@
 //
 // Bodies that touch are held along the normal without any penalty, as long as this does not need a pull. With law stick, and law
 // coulomb while they stick, they are also held along the mean plane of the interface of the line, with law coulomb as long as
-// friction can bear it.
+// friction can hold them.
 
 #include "contact/mpm_contact_trial.h"
 
@@ -57,7 +57,7 @@ static constexpr double ERRORS =
     10.0;    // factor between the relative imbalance of all forces and errors of single ones
 static constexpr double ALONG_AXIS = 0.99;    // least cosine between a normal and an axis
 static constexpr double HELD = 1.0e-12;    // motion of a held row, relative to that without walls
-// changes between sliding and sticking of a tie in a step before it may bear more friction; relative to the largest force, the increase
+// changes between sliding and sticking of a tie in a step before it may take more friction; relative to the largest force, the increase
 // for each later change, and the limit
 static constexpr int FREE_CHANGES = 2;
 static constexpr double MORE_EACH = 1.0e-2, MOST_MORE = 0.05;
@@ -218,8 +218,8 @@ void MPMContactTrial::find_ties()
     const int place = list[l].joins < 0 ? l : list[l].joins;
     parts[place].insert(list[l].joins < 0 ? parts[place].begin() : parts[place].end(), l);
   }
-  for (const auto &of_tie : parts)
-    if (!of_tie.empty()) add_tie(of_tie);
+  for (const auto &lines_of_tie : parts)
+    if (!lines_of_tie.empty()) add_tie(lines_of_tie);
   check_overlap();
 }
 
@@ -391,7 +391,7 @@ void MPMContactTrial::take_stop()
 
 /* ----------------------------------------------------------------------
    Coulomb's law, without any regularization. A tie that sticks has rows along the interface, whose forces show when friction cannot
-   bear them. A tie that slides has friction mu N against the direction w of its slip, on the nodes of both bodies in their shares of
+   hold them. A tie that slides has friction mu N against the direction w of its slip, on the nodes of both bodies in their shares of
    the interface, and sticks again if it would slide back. This is Newton's method for the projection of P. Alart, A. Curnier, Comput.
    Methods Appl. Mech. Eng. 92 (1991) 353, with an exact condition for ties that stick. With the slip s in the step,
 

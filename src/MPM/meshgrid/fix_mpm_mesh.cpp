@@ -241,7 +241,7 @@ void FixMPMMesh::find_contact()
   contact = nullptr;
   for (auto *other : modify->get_fix_by_style("^mpm/mesh/contact$")) {
     auto *mine = dynamic_cast<FixMPMMeshContact *>(other);
-    if (mine->of_mesh() != id) continue;
+    if (mine->mesh_fix() != id) continue;
     if (contact)
       error->all(
           FLERR, Error::NOLASTLINE,
@@ -270,7 +270,7 @@ void FixMPMMesh::find_heat()
   heat = nullptr;
   for (auto *other : modify->get_fix_by_style("^mpm/mesh/heat$")) {
     auto *mine = dynamic_cast<FixMPMMeshHeat *>(other);
-    if (mine->of_mesh() != id) continue;
+    if (mine->mesh_fix() != id) continue;
     if (heat)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/mesh/heat {} and {} are of the same fix mpm/mesh {}: give all conditions "

@@ -164,18 +164,18 @@ void FixMPMMeshContact::find(const MPMMeshBodies &of)
   overlap = 0.0;
   for (int a = 0; a < count(); a++)
     for (int b = a + 1; b < count(); b++) {
-      of_row.clear();
+      node_of_row.clear();
       for (const int node : of.ranks.nodes) {
         const bool shared = of.mass[of.stride * (a * nnode + node)] > 0.0 &&
             of.mass[of.stride * (b * nnode + node)] > 0.0;
-        row[node] = shared ? (int) of_row.size() : -1;
-        if (shared) of_row.push_back(node);
+        row[node] = shared ? (int) node_of_row.size() : -1;
+        if (shared) node_of_row.push_back(node);
       }
       // the nodes that two ranks share have the same masses: both know whether there is a message
       find_near(of, a, b);
       find_normals(of);
       find_gaps(of, a, b);
-      for (const int node : of_row) row[node] = -1;
+      for (const int node : node_of_row) row[node] = -1;
     }
 
   // by nodes
@@ -199,7 +199,7 @@ void FixMPMMeshContact::find(const MPMMeshBodies &of)
 void FixMPMMeshContact::find_near(const MPMMeshBodies &of, int a, int b)
 {
   near.clear();
-  if (of_row.empty()) return;
+  if (node_of_row.empty()) return;
   for (const int i : of.points) {
     const int body = body_of(atom->mask[i]);
     if (body != a && body != b) continue;
@@ -219,17 +219,17 @@ void FixMPMMeshContact::find_near(const MPMMeshBodies &of, int a, int b)
 /** Along the shortest way from points to points. */
 void FixMPMMeshContact::find_normals(const MPMMeshBodies &of)
 {
-  hulls.assign(of_row.size(), {});
+  hulls.assign(node_of_row.size(), {});
   std::vector<int> open = row;    // of nodes where it is not known yet
-  bool any = !of_row.empty();
+  bool any = !node_of_row.empty();
   for (int round = 0; round < HullDistance::ROUNDS && any; round++) {
-    ends.assign(8 * of_row.size(), -1.0e300);    // of a and of b: how far ahead, and where
+    ends.assign(8 * node_of_row.size(), -1.0e300);    // of a and of b: how far ahead, and where
     for (const auto &one : near) {
       const auto &hull = hulls[one.row];
       if (hull.done) continue;
       const double along = dot(hull.x, one.r),
-                   mine[4] = {one.of_b ? -along : along, one.r[0], one.r[1], one.r[2]};
-      double *const end = &ends[8 * one.row + 4 * one.of_b];
+                   mine[4] = {one.is_of_b ? -along : along, one.r[0], one.r[1], one.r[2]};
+      double *const end = &ends[8 * one.row + 4 * one.is_of_b];
       if (std::lexicographical_compare(end, end + 4, mine, mine + 4)) std::copy_n(mine, 4, end);
     }
     of.ranks.largest(ends.data(), 4, 2, open.data());
@@ -237,12 +237,12 @@ void FixMPMMeshContact::find_normals(const MPMMeshBodies &of)
     for (std::size_t r = 0; r < hulls.size(); r++) {
       hulls[r].advance(&ends[8 * r + 1], &ends[8 * r + 5]);
       if (hulls[r].done)
-        open[of_row[r]] = -1;
+        open[node_of_row[r]] = -1;
       else
         any = true;
     }
   }
-  normals.resize(of_row.size());
+  normals.resize(node_of_row.size());
   bool mixed = false;
   for (std::size_t r = 0; r < hulls.size(); r++) {
     const double length = std::sqrt(dot(hulls[r].x, hulls[r].x));
@@ -261,14 +261,14 @@ void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
   };
   std::vector<int> mixed = row;
   for (std::size_t r = 0; r < hulls.size(); r++)
-    if (!is_mixed((int) r)) mixed[of_row[r]] = -1;
+    if (!is_mixed((int) r)) mixed[node_of_row[r]] = -1;
   std::vector<PlaneBetween> planes(hulls.size());
   std::vector<double> sums;
   for (int round = 0; round < PlaneBetween::ROUNDS; round++) {
     sums.assign(N * hulls.size(), 0.0);
     for (const auto &one : near)
       if (is_mixed(one.row))
-        planes[one.row].add(one.weight, one.r, one.of_b, &sums[(std::size_t) N * one.row]);
+        planes[one.row].add(one.weight, one.r, one.is_of_b, &sums[(std::size_t) N * one.row]);
     of.ranks.sum(sums.data(), N, mixed.data());
     for (std::size_t r = 0; r < planes.size(); r++)
       if (is_mixed((int) r)) planes[r].advance(&sums[N * r], of.mesh.dim);
@@ -289,7 +289,7 @@ void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
 void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
 {
   const int dim = of.mesh.dim;
-  ends.assign(2 * of_row.size(), -1.0e300);
+  ends.assign(2 * node_of_row.size(), -1.0e300);
   for (const auto &one : near) {
     const double *const n = normals[one.row].data(), *const F = points->F[one.point];
     double along = 0.0, stretch = 0.0, square = 0.0;
@@ -302,19 +302,19 @@ void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
     }
     if (square - along * along > BESIDE * BESIDE) continue;
     const double half = 0.5 * std::pow(atom->vfrac[one.point], 1.0 / dim) * std::sqrt(stretch) /
-        sizes[of_row[one.row]];
-    double &end = ends[2 * one.row + one.of_b];
-    end = std::max(end, (one.of_b ? -along : along) + half);
+        sizes[node_of_row[one.row]];
+    double &end = ends[2 * one.row + one.is_of_b];
+    end = std::max(end, (one.is_of_b ? -along : along) + half);
   }
   of.ranks.largest(ends.data(), 1, 2, row.data());
-  for (std::size_t r = 0; r < of_row.size(); r++) {
+  for (std::size_t r = 0; r < node_of_row.size(); r++) {
     const double depth = ends[2 * r] + ends[2 * r + 1];
     if (!(depth >= -ROUNDING)) continue;
     overlap = std::max(overlap, depth);
 
     // in the directions that are free at the node
 
-    const int node = of_row[r];
+    const int node = node_of_row[r];
     MeshVector n = normals[r], zero = {0.0, 0.0, 0.0};
     of.forces.constrain(node, 0.0, n.data());
     of.forces.constrain(node, 0.0, zero.data());
@@ -430,5 +430,5 @@ double FixMPMMeshContact::memory_usage()
   return (double) (near.capacity() * sizeof(Near) + pairs.capacity() * sizeof(MPMNodeContact) +
                    hulls.capacity() * sizeof(HullDistance) +
                    (sizes.capacity() + ends.capacity()) * sizeof(double) +
-                   (row.capacity() + of_row.capacity()) * sizeof(int));
+                   (row.capacity() + node_of_row.capacity()) * sizeof(int));
 }

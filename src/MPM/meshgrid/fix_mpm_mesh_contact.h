@@ -59,7 +59,7 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   double memory_usage() override;
 
   /** ID of its fix mpm/mesh. */
-  const std::string &of_mesh() const { return mesh_id; }
+  const std::string &mesh_fix() const { return mesh_id; }
   /** Number of bodies. */
   int count() const { return (int) groups.size(); }
   /** Body of a point with this group mask; -1: none, -2: several. */
@@ -80,7 +80,7 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   /** A point of one of two bodies in reach of a node that both have. */
   struct Near {
     int row;    // index of the node among the shared nodes
-    bool of_b;
+    bool is_of_b;
     double weight,
         r[3];    // node function at the point; vector from the node to the point, in sizes of the node
     int point;
@@ -99,7 +99,7 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
 
   // of the pair of bodies that is being treated
 
-  std::vector<int> row, of_row;    // [node] row, -1: not shared; [row] node
+  std::vector<int> row, node_of_row;    // [node] row, -1: not shared; [row] node
   std::vector<Near> near;
   std::vector<MPM_NS::HullDistance> hulls;
   std::vector<MPM_NS::MeshVector> normals;

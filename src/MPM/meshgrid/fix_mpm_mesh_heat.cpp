@@ -47,7 +47,7 @@ using namespace MPM_NS;
 static constexpr int MOST_STAGES = 100;    // of a step
 
 static constexpr double SAME =
-    2.0;    // conductivities in a cell that differ by a larger factor are told of
+    2.0;    // conductivities in a cell that differ by a larger factor lead to a warning
 
 static constexpr int WIDTH =
     3;    // sums at nodes: capacity, that times temperature, row of the matrix
@@ -170,14 +170,14 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
   largest = 0.0;
   for (const auto &cell : mesh.cells) largest = std::max(largest, cell.height);
 
-  of_nodes.clear();
+  conditions_at_nodes.clear();
   held.assign(mesh.nodes.size(), 0);
   for (std::size_t c = 0; c < conditions.size(); c++) {
     const auto &given = conditions[c];
     const int condition = (int) c;
     if (given.kind == MPMMeshHeatCondition::TEMPERATURE) {
       for (const int node : mesh.nodes_of(given.group)) {
-        of_nodes.push_back({node, condition, 0.0});
+        conditions_at_nodes.push_back({node, condition, 0.0});
         held[node] = 1;
       }
       continue;
@@ -190,7 +190,7 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
       for (int k = 0; k < face.nnode; k++) area[face.node[k]] += share[k] * size;
     }
     for (std::size_t node = 0; node < area.size(); node++)
-      if (area[node] > 0.0) of_nodes.push_back({(int) node, condition, area[node]});
+      if (area[node] > 0.0) conditions_at_nodes.push_back({(int) node, condition, area[node]});
   }
   const std::size_t n = mesh.nodes.size();
   for (auto *values : {&capacity, &value, &before, &rate}) values->assign(n, 0.0);
@@ -361,13 +361,13 @@ void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
   }
   MPI_Allreduce(range.data(), all.data(), static_cast<int>(2 * n), MPI_DOUBLE, MPI_MAX, world);
   MPI_Allreduce(mine.data(), sum.data(), static_cast<int>(NSUM * n), MPI_DOUBLE, MPI_SUM, world);
-  int told = 0;
+  int layered = 0;
   double most = 1.0;
   for (std::size_t c = 0; c < n; c++) {
     const double greatest = all[2 * c], least = -all[2 * c + 1], *const s = &sum[NSUM * c];
     if (greatest < 0.0 || greatest == least) continue;
     if (!plain) {
-      told += greatest > SAME * least;
+      layered += greatest > SAME * least;
       most = std::max(most, greatest / least);
       continue;
     }
@@ -379,14 +379,14 @@ void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
     cut_of[c] = static_cast<int>(cuts.size());
     cuts.push_back(cut);
   }
-  if (!told || told_of_layers) return;
-  told_of_layers = true;
+  if (!layered || warned_of_layers) return;
+  warned_of_layers = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/mesh/heat {}: {} cells have points of materials whose conductivities "
                    "differ by a factor of up to {:.3g}, and one of which varies or is orthotropic: "
                    "too much heat goes through interfaces that are not along sides of cells",
-                   id, told, most);
+                   id, layered, most);
 }
 
 /** Capacities and temperatures of nodes; returns the greatest rate of those of this rank. */
@@ -417,7 +417,7 @@ double FixMPMMeshHeat::fill_nodes(const MPMMeshBodies &of)
     }
   }
   of.ranks.sum(sums.data(), WIDTH);
-  for (const auto &mine : of_nodes)
+  for (const auto &mine : conditions_at_nodes)
     if (conditions[mine.condition].kind == MPMMeshHeatCondition::CONVECTION)
       sums[WIDTH * (std::size_t) mine.node + 2] += mine.area * present[2 * mine.condition];
   double fastest = 0.0;
@@ -433,7 +433,7 @@ double FixMPMMeshHeat::fill_nodes(const MPMMeshBodies &of)
 /** Nodes take the temperatures that are prescribed, the last one in the input where groups meet. */
 void FixMPMMeshHeat::hold(const MPMMeshBodies &of)
 {
-  for (const auto &mine : of_nodes) {
+  for (const auto &mine : conditions_at_nodes) {
     if (conditions[mine.condition].kind != MPMMeshHeatCondition::TEMPERATURE) continue;
     if (!(capacity[mine.node] > 0.0)) continue;
     const double T = present[2 * mine.condition];
@@ -457,7 +457,7 @@ void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
     for (int k = 0; k < cell.nnode; k++) rate[cell.node[k]] -= dot(place.g[k], flow);
   }
   of.ranks.sum(rate.data(), 1);
-  for (const auto &mine : of_nodes) {
+  for (const auto &mine : conditions_at_nodes) {
     const auto kind = conditions[mine.condition].kind;
     if (kind == MPMMeshHeatCondition::TEMPERATURE || !(capacity[mine.node] > 0.0)) continue;
     const double *const given = &present[2 * mine.condition];
@@ -466,7 +466,7 @@ void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
     rate[mine.node] += flow;
     if (of.ranks.first[mine.node]) power[mine.condition] += dt * flow;
   }
-  for (auto mine = of_nodes.rbegin(); mine != of_nodes.rend(); ++mine) {
+  for (auto mine = conditions_at_nodes.rbegin(); mine != conditions_at_nodes.rend(); ++mine) {
     if (conditions[mine->condition].kind != MPMMeshHeatCondition::TEMPERATURE) continue;
     if (!(capacity[mine->node] > 0.0)) continue;
     if (of.ranks.first[mine->node]) power[mine->condition] -= dt * rate[mine->node];
@@ -525,7 +525,7 @@ double FixMPMMeshHeat::compute_vector(int k)
 double FixMPMMeshHeat::memory_usage()
 {
   return FixMPMState::memory_usage() + (double) conducting.capacity() * sizeof(Point) +
-      (double) (of_nodes.capacity() * sizeof(OfNode) +
+      (double) (conditions_at_nodes.capacity() * sizeof(NodeCondition) +
                 (capacity.capacity() + value.capacity() + before.capacity() + rate.capacity() +
                  sums.capacity()) *
                     sizeof(double));

@@ -98,7 +98,7 @@ class MPMMeshForces : protected Pointers {
     int number;    // index among the conditions with a pressure
     std::vector<MPM_NS::BackgroundMesh::Face> sides;
   };
-  struct OfNode {
+  struct NodeCondition {
     int condition;
     std::vector<MPM_NS::MeshVector> normals;    // for SLIP: unit vectors at right angles
     MPM_NS::MeshVector normal;    // for sides with loads: outward normal with the size of the area
@@ -108,12 +108,12 @@ class MPMMeshForces : protected Pointers {
   std::vector<Active> list;
   int npressure = 0;
   std::vector<double> normals;    // [node][pressure][3]
-  std::vector<int> place;         // [node] index in of_nodes, -1: none
+  std::vector<int> place;         // [node] index in conditions_at_nodes, -1: none
   // conditions of a node: first SLIP, then others, in the order of the input
-  std::vector<std::vector<OfNode>> of_nodes;
+  std::vector<std::vector<NodeCondition>> conditions_at_nodes;
   bool varies = false;
 
-  OfNode &add(int node, int condition);
+  NodeCondition &add(int node, int condition);
   void add_slip(int condition);
   void add_sides(int condition);
 };

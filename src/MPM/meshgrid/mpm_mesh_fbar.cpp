@@ -96,7 +96,7 @@ void MPMMeshFbar::find_strain(const std::vector<MeshVector> &velocities)
     Volumetric &mine = volumetric[i];
     const double change = mine.scale * means.mean(mine.group, body.places[i], 0);
     mine.scale =
-        std::pow(std::fabs(change), 1.0 / dim);    // what is inside out stays so, and is told
+        std::pow(std::fabs(change), 1.0 / dim);    // what is inside out stays so, and is an error
   }
 }
 
