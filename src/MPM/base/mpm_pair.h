@@ -24,8 +24,9 @@
 
 namespace LAMMPS_NS {
 
-/** A pair style with coefficients of two types, which it reads, keeps, and writes to restart files as they are. Coeff has
- *  declare(), and set, which pair_coeff sets to 1. It outputs the number of contacts and the power that they dissipate. */
+/** A pair style with coefficients of two types, which it reads, keeps, and writes to restart files
+ *  as they are. Coeff has declare(), and set, which pair_coeff sets to 1. It outputs the number of
+ *  contacts and the power that they dissipate. */
 template <class Coeff> class MPMPair : public Pair {
  public:
   MPMPair(LAMMPS *lmp, const char *style) : Pair(lmp), style(style)

@@ -7,9 +7,10 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Each body has its own velocity field. Where two of them have mass at a node and touch (MPMContactSearch), impulses between them
-   follow from the law of contact (MPMNodeContact), at all nodes of an explicit step (MPMContactSolver). In implicit steps a solver
-   decides with MPMContactTrial.
+   Each body has its own velocity field. Where two of them have mass at a node and touch
+   (MPMContactSearch), impulses between them follow from the law of contact (MPMNodeContact), at all
+   nodes of an explicit step (MPMContactSolver). In implicit steps a solver decides with
+   MPMContactTrial.
 ------------------------------------------------------------------------- */
 
 #include "contact/fix_mpm_contact.h"
@@ -190,7 +191,8 @@ void FixMPMContact::check_other_contacts() const
 }
 
 /* ----------------------------------------------------------------------
-   The nodes of a field that is a part of a body also carry the momentum of the points of finer fields (fix_mpm_refine.cpp)
+   The nodes of a field that is a part of a body also carry the momentum of the points of finer
+   fields (fix_mpm_refine.cpp)
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::check_refined(MPMContactBody &body)
@@ -376,8 +378,8 @@ void FixMPMContact::write_restart(FILE *fp)
 }
 
 /* ----------------------------------------------------------------------
-   rank 0 goes on with the totals. Files of older versions have the number of pairs in place of minus
-   this number, and no names of the fields behind the work
+   rank 0 goes on with the totals. Files of older versions have the number of pairs in place of
+   minus this number, and no names of the fields behind the work
 ------------------------------------------------------------------------- */
 
 void FixMPMContact::restart(char *buf)

@@ -7,8 +7,8 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Each node inside of the body that moves into it gets an impulse, and the body the opposite one, such
-   that afterwards the node moves like the material of the body there, V + Omega x r: in all
+   Each node inside of the body that moves into it gets an impulse, and the body the opposite one,
+   such that afterwards the node moves like the material of the body there, V + Omega x r: in all
    directions (stick), or along the normal (slip, separate; separate: no impulse may pull). With the
    mass m_i of the nodes and their velocities v_i before, all of these together make a linear system
    for V and Omega of 6 equations,
@@ -16,9 +16,9 @@
      M V + sum_i m_i N_i (V + Omega x r_i)             = M V' + sum_i m_i N_i v_i
      I Omega + sum_i r_i x m_i N_i (V + Omega x r_i)   = L'   + sum_i r_i x m_i N_i v_i
 
-   with N_i = 1 where a node sticks and (n_i + mu t_i) n_i^T where it slides, where t_i is the direction of
-   friction. Which nodes take part, which of them stick (those that friction is able to hold), and t_i
-   follow from the solution, so that it is repeated until they stay the same.
+   with N_i = 1 where a node sticks and (n_i + mu t_i) n_i^T where it slides, where t_i is the
+   direction of friction. Which nodes take part, which of them stick (those that friction is able to
+   hold), and t_i follow from the solution, so that it is repeated until they stay the same.
 ------------------------------------------------------------------------- */
 
 #include "contact/fix_mpm_rigid.h"
@@ -302,8 +302,9 @@ double FixMPMRigid::spacing_of_flow() const
 }
 
 /* ----------------------------------------------------------------------
-   A body touches material where nodes are inside of it at the start of a step. One that crosses more
-   than a cell in a step can pass through a body without touching it. All ranks have the same motion.
+   A body touches material where nodes are inside of it at the start of a step. One that crosses
+   more than a cell in a step can pass through a body without touching it. All ranks have the same
+   motion.
 ------------------------------------------------------------------------- */
 
 void FixMPMRigid::check_motion(double dt) const
@@ -431,7 +432,8 @@ void FixMPMRigid::solve_system(double *u) const
   for (const auto &c : contacts) {
     if (!c.owned || c.state == Contact::APART) continue;
     const double m = c.record[3];
-    // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x it
+    // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x
+    // it
     const int products = c.state == Contact::STICKS ? 3 : 1;
     for (int k = 0; k < products; k++) {
       double row[6], column[6];
@@ -468,7 +470,8 @@ void FixMPMRigid::solve_system(double *u) const
   std::copy_n(solution.data(), 6, u);
 }
 
-/** Finds the states of contacts with the motion u of the body. Returns whether these are not the states of which u is the solution. */
+/** Finds the states of contacts with the motion u of the body. Returns whether these are not the
+ *  states of which u is the solution. */
 bool FixMPMRigid::decide_contacts(const double *u)
 {
   bool changed = false;
@@ -498,8 +501,8 @@ bool FixMPMRigid::decide_contacts(const double *u)
   return changed;
 }
 
-/** Applies the impulses to nodes, with the friction of the last round, and finds their sum on the body: opposite to round-off even if
- *  the rounds have not converged. */
+/** Applies the impulses to nodes, with the friction of the last round, and finds their sum on the
+ *  body: opposite to round-off even if the rounds have not converged. */
 void FixMPMRigid::push_nodes(const double *u)
 {
   double sum[6] = {0.0};
@@ -523,10 +526,12 @@ void FixMPMRigid::push_nodes(const double *u)
 }
 
 /* ----------------------------------------------------------------------
-   Water in pores takes a part of what pushes the body. Nodes outside of it are free, so that soil within a cell of its surface is
-   pressed together by more than the load where nodes are off that, grains and water alike. So the share is that in what crosses a
-   layer below it: with w = 1 next to the surface, and falling to 0 across the layer, minus the forces of points on nodes have the
-   sum w_i f_i = -int sigma grad w dV, the mean of the stress across the layer. What crosses it acts on the body.
+   Water in pores takes a part of what pushes the body. Nodes outside of it are free, so that soil
+   within a cell of its surface is pressed together by more than the load where nodes are off that,
+   grains and water alike. So the share is that in what crosses a layer below it: with w = 1 next to
+   the surface, and falling to 0 across the layer, minus the forces of points on nodes have the sum
+   w_i f_i = -int sigma grad w dV, the mean of the stress across the layer. What crosses it acts on
+   the body.
 ------------------------------------------------------------------------- */
 
 static constexpr double PATCH = 2.5;    // radius of sums along the surface, in node spacings
@@ -603,8 +608,8 @@ double FixMPMRigid::distance(const double *at, double far) const
 }
 
 /* ----------------------------------------------------------------------
-   heat of friction at a node that slides, and the work that goes with it, which the ledger has with the new
-   velocity; u: velocity and angular velocity of the body after the contact
+   heat of friction at a node that slides, and the work that goes with it, which the ledger has with
+   the new velocity; u: velocity and angular velocity of the body after the contact
 ------------------------------------------------------------------------- */
 
 void FixMPMRigid::heat_node(const Contact &c, double normal_impulse, const double *u)
@@ -641,8 +646,9 @@ void FixMPMRigid::act(double dt, Stage stage)
     solve();
     move(dt);
 
-    // The nodes were counted with the new velocity of the body. Impulses on it change its kinetic energy with the mean of both: see
-    // FixMPMBoundary::Wall::half_change(). The sum is the same on all ranks
+    // The nodes were counted with the new velocity of the body. Impulses on it change its kinetic
+    // energy with the mean of both: see FixMPMBoundary::Wall::half_change(). The sum is the same on
+    // all ranks
 
     double faster = 0.0;
     for (int d = 0; d < 3; d++)

@@ -51,11 +51,13 @@ struct MPMRigidOptions : MPMRigidBody {
 };
 
 /** A free rigid body with the shape of a region mpm/mesh, in contact with the material at the nodes
- *  inside of it. Body and nodes get opposite impulses, which are solved for together, so that light bodies
- *  are as stable as heavy ones, and momentum and angular momentum are conserved to round-off.
+ *  inside of it. Body and nodes get opposite impulses, which are solved for together, so that light
+ *  bodies are as stable as heavy ones, and momentum and angular momentum are conserved to
+ *  round-off.
  *
- *  In a flow of fix mpm/incompressible for which its region is solid, any bounded region can be the shape, also in 2d.
- *  That fix then moves the body together with the pressure, see MPMFlowBodies. */
+ *  In a flow of fix mpm/incompressible for which its region is solid, any bounded region can be the
+ *  shape, also in 2d. That fix then moves the body together with the pressure, see
+ *  MPMFlowBodies. */
 class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
@@ -73,7 +75,8 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
   bool decides_contact(const MPMField &) const override { return kind == SEPARATE; }
   void act(double dt, Stage) override;
 
-  /** Signed distance of x from the surface, negative inside; far if it is larger. Not for bodies in a flow. */
+  /** Signed distance of x from the surface, negative inside; far if it is larger. Not for bodies in
+   *  a flow. */
   double distance(const double *x, double far) const;
   /** Largest time step in which no point of the body crosses a cell. */
   double stable_dt() const;
@@ -88,8 +91,8 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
   void place_in_region(const double *x, double *place) const;
   /** Rotates a vector n from the frame of the region to space. */
   void turn_to_space(const double *n, double *turned) const { MathExtra::matvec(Q, n, turned); }
-  /** Finds velocity and angular velocity u[6] after loads of this duration, and inverse [6][6], their change by an impulse
-   *  and its moment about the center. Does not change the body. */
+  /** Finds velocity and angular velocity u[6] after loads of this duration, and inverse [6][6],
+   *  their change by an impulse and its moment about the center. Does not change the body. */
   void predict(double duration, double *u, double *inverse);
   /** Moves the body by a step with its loads and this impulse and moment [6] of the flow. */
   void go_on(double dt, const double *impulse_of_flow);
@@ -109,7 +112,8 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
     double v[3];                 // velocity before contact
     double pull[3] = {};         // impulse of friction on the node, for an impulse of 1 along n
 
-    /** Velocity w of the body at the node, relative to v. u: velocity and angular velocity of the body. */
+    /** Velocity w of the body at the node, relative to v. u: velocity and angular velocity of the
+     *  body. */
     void relative_velocity(const double *u, double *w) const;
   };
 

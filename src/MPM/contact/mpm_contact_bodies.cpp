@@ -167,8 +167,8 @@ void MPMContactBodies::extend_topology(MPMField &field)
     for (const auto &other : list)
       if (&other != &body) body.reach.activate_those_of(other.reach, field.grid);
 
-    // and also their mirror images at fixed faces. Blocks that are added are visited, too, which gives images
-    // of images
+    // and also their mirror images at fixed faces. Blocks that are added are visited, too, which
+    // gives images of images
 
     for (std::size_t ib = 0; ib < field.grid.blocks.size(); ib++) {
       int b[3];
@@ -259,9 +259,10 @@ bool MPMContactBodies::map(bool with_volumes)
 }
 
 /* ----------------------------------------------------------------------
-   On several lattices, everything that the function of a node reaches decides what touches, including points of finer
-   lattices; the momentum of the node has only points without a free node between. Sums of a part of a function over small points
-   differ from those over large ones, but with points as boxes they are the same
+   On several lattices, everything that the function of a node reaches decides what touches,
+   including points of finer lattices; the momentum of the node has only points without a free node
+   between. Sums of a part of a function over small points differ from those over large ones, but
+   with points as boxes they are the same
 ------------------------------------------------------------------------- */
 
 void MPMContactBodies::map_content(MPMContactBody &body, bool with_volumes)

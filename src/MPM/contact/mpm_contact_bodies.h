@@ -95,25 +95,29 @@ class MPMContactBodies : protected Pointers {
   void blocks_found();
   void extend_topology(MPMField &);
 
-  /** Finds the blocks that bodies share, if they are new. Returns whether there are any. Collective. */
+  /** Finds the blocks that bodies share, if they are new. Returns whether there are any.
+   *  Collective. */
   bool find_shared();
-  /** Finds gradients, with_volumes also volume fractions, pore water, and walls, at nodes that bodies share. Returns false if
-   *  no node has mass of two bodies. Collective. */
+  /** Finds gradients, with_volumes also volume fractions, pore water, and walls, at nodes that
+   *  bodies share. Returns false if no node has mass of two bodies. Collective. */
   bool map(bool with_volumes);
   /** Finds gradients, and with_volumes volume fractions, of a body in blocks that are near. */
   void map_content(MPMContactBody &, bool with_volumes);
-  /** Finds the effect of walls on the present velocities of the nodes, which a stage may have changed since the last call. */
+  /** Finds the effect of walls on the present velocities of the nodes, which a stage may have
+   *  changed since the last call. */
   void predict_walls(MPMContactBody &);
 
-  /** Finds the records of the bodies at node n of a block; null: no mass there. Returns how many bodies have mass. */
+  /** Finds the records of the bodies at node n of a block; null: no mass there. Returns how many
+   *  bodies have mass. */
   int records(const MPMSharedBlock &, int n, double *record[MOST]);
   /** Fraction of the volume of node n, as far as it is inside the box, that all bodies fill. */
   double filled(const MPMSharedBlock &, int n) const;
   /** The same for one body, by the index of the node. */
   double fraction(const MPMContactBody &, const int *index) const;
-  /** Gradient of a body and its mirror images at node n of a block. A body that reaches a fixed face has no surface there that
-   *  others could touch: it continues as its mirror image. Without that, its normal would be inclined towards the face,
-   *  and bodies that lie on each other would be pushed along the face. */
+  /** Gradient of a body and its mirror images at node n of a block. A body that reaches a fixed
+   *  face has no surface there that others could touch: it continues as its mirror image. Without
+   *  that, its normal would be inclined towards the face, and bodies that lie on each other would
+   *  be pushed along the face. */
   void gradient_with_mirrors(const MPMContactBody &, int slot, int n, double *g) const;
 
   /** Counts in the ledgers what has changed since start in the velocities of bodies at a node. */

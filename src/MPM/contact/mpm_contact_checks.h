@@ -30,8 +30,9 @@ struct MPMContactSearchOptions {
 /** Warnings of bodies that contact cannot hold apart, in the first step of a run. */
 class MPMContactChecks : protected Pointers {
  public:
-  // fraction of the volume of a node from which on bodies overlap, by half a cell to a cell, depending on their position in the
-  // cell; points at the ends of regions that are no multiple of their spacing reach 1.37. EACH: least fraction of each body there
+  // fraction of the volume of a node from which on bodies overlap, by half a cell to a cell,
+  // depending on their position in the cell; points at the ends of regions that are no multiple of
+  // their spacing reach 1.37. EACH: least fraction of each body there
   static constexpr double OVERLAP = 1.4, OVERLAP_EACH = 0.25;
 
   MPMContactChecks(class LAMMPS *lmp, const Fix &fix, const MPMContactSearchOptions &options,
@@ -41,7 +42,8 @@ class MPMContactChecks : protected Pointers {
   {
   }
 
-  /** Warns of bodies that share space. Contact removes their approach, but does not part them. Collective. */
+  /** Warns of bodies that share space. Contact removes their approach, but does not part them.
+   *  Collective. */
   void warn_overlap();
   /** Warns of bodies that consist of surfaces or lines of fix mpm/elements. Collective. */
   void warn_thin();

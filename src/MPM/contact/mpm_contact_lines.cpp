@@ -7,14 +7,17 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   At the edge of a body on a wider one, the free side of the wider one continues the interface, and that of the other one is at an
-   angle to it: with the area vectors A of MPMContactSearch::interface_at(), normals would be inclined there, most of all at nodes
-   beyond the edge. The wider body covers more of the cross-section of a line of nodes through the interface. Its direction n
-   along the line is taken instead, with A = (g.n) n and g of the other body. Where the edges of two bodies cross, each covers
-   another part of the cross-section, and n is that of the lines around, with most weight for lines that both bodies cover.
+   At the edge of a body on a wider one, the free side of the wider one continues the interface, and
+   that of the other one is at an angle to it: with the area vectors A of
+   MPMContactSearch::interface_at(), normals would be inclined there, most of all at nodes beyond
+   the edge. The wider body covers more of the cross-section of a line of nodes through the
+   interface. Its direction n along the line is taken instead, with A = (g.n) n and g of the other
+   body. Where the edges of two bodies cross, each covers another part of the cross-section, and n
+   is that of the lines around, with most weight for lines that both bodies cover.
 
-   The gap is the volume that both bodies lack along the line, over the area of the interface. Where a body covers only the part
-   c of the cross-section of the line, next to its edge, its volumes are divided by c:
+   The gap is the volume that both bodies lack along the line, over the area of the interface. Where
+   a body covers only the part c of the cross-section of the line, next to its edge, its volumes are
+   divided by c:
 
       g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
 ------------------------------------------------------------------------- */
@@ -36,8 +39,9 @@ static constexpr double OWN = 3.0;           // weight of a node relative to tho
 static constexpr double WIDER = 0.02;       // difference of fractions from which on a body is wider
 static constexpr double LIGHT = 0.1;        // largest cover of a line that joins the one next to it
 static constexpr double DIAGONAL = 0.25;    // weight of a line diagonally next to this one
-// free sides, relative to the cross-section of a line. CROSSING: of both bodies where they cross (interfaces of lattices of points
-// have up to about a tenth, against each other); SIDE: of the wider body, from which on lines follow others
+// free sides, relative to the cross-section of a line. CROSSING: of both bodies where they cross
+// (interfaces of lattices of points have up to about a tenth, against each other); SIDE: of the
+// wider body, from which on lines follow others
 static constexpr double CROSSING = 0.15, SIDE = 0.1;
 static constexpr double COVERED = 1.0e-3;    // least fraction of the cross-section of a line
 static constexpr double SAME = 1.0e-6;       // relative difference of fractions that count as equal
@@ -62,8 +66,8 @@ bool MPMContactLines::is_beyond_walls(MPMNodeContact &pair) const
   return follows(pair.walls_a) && follows(pair.walls_b);
 }
 
-/** Finds the axis of the line of a pair, the sign of its normal along it, and the index of its node. The nodes around are included,
- *  as nodes beyond edges have hardly any interface. */
+/** Finds the axis of the line of a pair, the sign of its normal along it, and the index of its
+ *  node. The nodes around are included, as nodes beyond edges have hardly any interface. */
 int MPMContactLines::axis_at(const MPMNodeContact &pair, int *index, double &sign) const
 {
   const int dim = bodies.dim();
@@ -156,7 +160,8 @@ MPMContactLines::Coverage MPMContactLines::coverage(const MPMContactBody &body, 
   return covered;
 }
 
-/** Finds the direction of a line, by its interface or by that of the wider body. Returns the weight of the latter, from 0 to 1. */
+/** Finds the direction of a line, by its interface or by that of the wider body. Returns the weight
+ *  of the latter, from 0 to 1. */
 double MPMContactLines::turn_to_wider(Line &line) const
 {
   double n[3] = {0.0, 0.0, 0.0}, wide[3];
@@ -196,8 +201,9 @@ void MPMContactLines::visit_neighbors(const LinesByKey &by_key, const Line &line
     }
 }
 
-/** Weight, from 0 to 1, with which a line takes the direction of the lines around it: where sides of both bodies cross, and where the
- *  wider body, whose direction has the weight turned, has a side, too. */
+/** Weight, from 0 to 1, with which a line takes the direction of the lines around it: where sides
+ *  of both bodies cross, and where the wider body, whose direction has the weight turned, has a
+ *  side, too. */
 double MPMContactLines::weight_of_neighbors(const Line &line, double turned,
                                             const double *around) const
 {
@@ -218,7 +224,8 @@ double MPMContactLines::weight_of_neighbors(const Line &line, double turned,
   return std::max(crosses, by_wider);
 }
 
-/** Turns the interface of a pair of this line, with these weights, to the direction of the line and to that around it. */
+/** Turns the interface of a pair of this line, with these weights, to the direction of the line and
+ *  to that around it. */
 void MPMContactLines::turn(MPMNodeContact &pair, const Line &line, double turned, double weight,
                            const double *around) const
 {
@@ -239,8 +246,8 @@ void MPMContactLines::turn(MPMNodeContact &pair, const Line &line, double turned
   if (pair.area > 0.0) MathExtra::scale3(1.0 / pair.area, pair.n);
 }
 
-/** Joins lines that a body hardly covers to a neighbor, preferably straight across its edge: separate conditions on nodes with hardly
- *  any mass would make the iterations oscillate. */
+/** Joins lines that a body hardly covers to a neighbor, preferably straight across its edge:
+ *  separate conditions on nodes with hardly any mass would make the iterations oscillate. */
 void MPMContactLines::join_lines(const LinesByKey &by_key)
 {
   for (auto &line : list) {
@@ -303,8 +310,9 @@ bool MPMContactLines::measure_gap(const Line &line, const double *n, double full
     fractions.push_back(
         {bodies.fraction(bodies[line.key[0]], at), bodies.fraction(bodies[line.key[1]], at)});
   }
-  // the sum goes from the fullest place of one body to that of the other: other surfaces of the bodies lie beyond. Among equally full
-  // places it takes the nearest ones, as round-off would choose differently for each number of ranks
+  // the sum goes from the fullest place of one body to that of the other: other surfaces of the
+  // bodies lie beyond. Among equally full places it takes the nearest ones, as round-off would
+  // choose differently for each number of ranks
   double most[2] = {0.0, 0.0};
   for (const auto &filled : fractions)
     for (int k = 0; k < 2; k++) most[k] = std::max(most[k], filled[k]);

@@ -20,7 +20,8 @@
 
 namespace LAMMPS_NS {
 
-/** Lines of nodes through the interfaces of bodies, for steps of a solver. At edges of bodies, it turns the interfaces. */
+/** Lines of nodes through the interfaces of bodies, for steps of a solver. At edges of bodies, it
+ *  turns the interfaces. */
 class MPMContactLines {
  public:
   struct Coverage {     // of the cross-section of a line by a body
@@ -49,10 +50,11 @@ class MPMContactLines {
 
   std::vector<Line> list;
 
-  /** Finds lines of interfaces and edges of the bodies along them. Turns interfaces at edges, and finds what walls do there. */
+  /** Finds lines of interfaces and edges of the bodies along them. Turns interfaces at edges, and
+   *  finds what walls do there. */
   void find(MPMContacts &);
-  /** Finds the gap [distance] of a line between bodies of normal n that fill this fraction where they touch; negative: bodies
-   *  overlap. Returns false where a body hardly covers the line. */
+  /** Finds the gap [distance] of a line between bodies of normal n that fill this fraction where
+   *  they touch; negative: bodies overlap. Returns false where a body hardly covers the line. */
   bool measure_gap(const Line &, const double *n, double full, double &gap) const;
 
  private:

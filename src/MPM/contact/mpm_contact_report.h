@@ -16,8 +16,8 @@
 namespace LAMMPS_NS {
 struct MPMNodeContact;
 
-/** What each two of several bodies do to each other: the output of a fix with an array of 5 columns and a scalar. The rows are
- *  the pairs (0,1), (0,2), ..., (1,2), ... */
+/** What each two of several bodies do to each other: the output of a fix with an array of 5 columns
+ *  and a scalar. The rows are the pairs (0,1), (0,2), ..., (1,2), ... */
 class MPMContactReport : protected Pointers {
  public:
   static constexpr int COLUMNS = 5;
@@ -36,7 +36,8 @@ class MPMContactReport : protected Pointers {
   void begin_step(double dt);
   /** Work of friction so far [energy]. Collective. */
   double work();
-  /** Force on the second body in the last step [3], nodes in contact, work of friction so far. Collective. */
+  /** Force on the second body in the last step [3], nodes in contact, work of friction so far.
+   *  Collective. */
   double at(int row, int column);
 
  private:

@@ -7,15 +7,17 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Normals. The sum over the points of a body at the node, sum_p V_p grad N, points out of it and its length is the area of the
-   interface that belongs to the node. The normal of two bodies is the difference of their gradients, either as they are (the
-   body with more volume, or mass, at the node has more weight) or after each was made a unit vector (colinear).
+   Normals. The sum over the points of a body at the node, sum_p V_p grad N, points out of it and
+   its length is the area of the interface that belongs to the node. The normal of two bodies is the
+   difference of their gradients, either as they are (the body with more volume, or mass, at the
+   node has more weight) or after each was made a unit vector (colinear).
 
-   Gap. Shape functions reach one or two cells beyond a body, so that bodies would feel each other at that distance, and the mass
-   that a wall sends beyond the end of a block that slides on it would stand in its way. The volumes of all bodies at a
-   node, over the volume that belongs to a node, add up to one where they touch, whatever the position of the interface relative
-   to the nodes, and to less while there is a gap or beyond the end of one of them. The part of this volume that is outside
-   of fixed faces of the box does not count (MPMInsideFraction).
+   Gap. Shape functions reach one or two cells beyond a body, so that bodies would feel each other
+   at that distance, and the mass that a wall sends beyond the end of a block that slides on it
+   would stand in its way. The volumes of all bodies at a node, over the volume that belongs to a
+   node, add up to one where they touch, whatever the position of the interface relative to the
+   nodes, and to less while there is a gap or beyond the end of one of them. The part of this volume
+   that is outside of fixed faces of the box does not count (MPMInsideFraction).
 
    Water. For two bodies with water, which do not exchange any, the mean counts.
 ------------------------------------------------------------------------- */
@@ -39,13 +41,15 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// bodies that are placed next to each other fill the nodes between them up to round-off, which must not decide whether they
-// touch; BOX: the same for points as boxes, which do not fill space exactly where they are strained
+// bodies that are placed next to each other fill the nodes between them up to round-off, which must
+// not decide whether they touch; BOX: the same for points as boxes, which do not fill space exactly
+// where they are strained
 
 static constexpr double ROUNDING = 1.0e-8, BOX_ROUNDING = 1.0e-3;
 
-// with pore water, each node between bodies has a part of its force. Bodies then touch at sums of fractions down to this far
-// below one; from NEARLY on, a warning counts the force at nodes where they do not touch
+// with pore water, each node between bodies has a part of its force. Bodies then touch at sums of
+// fractions down to this far below one; from NEARLY on, a warning counts the force at nodes where
+// they do not touch
 
 static constexpr double SLACK = 0.02, NEARLY = 0.8;
 
@@ -207,11 +211,13 @@ void MPMContactSearch::report_missed_water()
 }
 
 /* ----------------------------------------------------------------------
-   The integrals of the gradients of a function over two bodies are g_a = A + L_a and g_b = -A + L_b. A is the integral of the
-   function over the interface, as area and normal, and L_a and L_b are those over the free sides. Inside an interface, and where the
-   side of one body continues that of the other, also at walls, L_a and L_b are in proportion to the volumes V that the bodies
-   have at the node. (With images, as in explicit steps, an inclined interface would not be in balance next to a wall, where
-   nodes and images move along it independently.) L_a + L_b is g_a + g_b, so that
+   The integrals of the gradients of a function over two bodies are g_a = A + L_a and g_b = -A +
+   L_b. A is the integral of the function over the interface, as area and normal, and L_a and L_b
+   are those over the free sides. Inside an interface, and where the side of one body continues that
+   of the other, also at walls, L_a and L_b are in proportion to the volumes V that the bodies have
+   at the node. (With images, as in explicit steps, an inclined interface would not be in balance
+   next to a wall, where nodes and images move along it independently.) L_a + L_b is g_a + g_b, so
+   that
 
       A = [g_a - g_b - (g_a + g_b) (V_a - V_b)/(V_a + V_b)]/2
 ------------------------------------------------------------------------- */
@@ -256,7 +262,8 @@ void MPMContactSearch::separate_points(MPMContacts &contacts) const
   const auto &nodes = contacts.nodes;
   auto &pairs = contacts.pairs;
 
-  // contact nodes by their index in the grids of the fields; images on periodic axes are the same node
+  // contact nodes by their index in the grids of the fields; images on periodic axes are the same
+  // node
 
   std::vector<std::vector<int>> wanted(nfields);
   for (int k = 0; k < nfields; k++) {

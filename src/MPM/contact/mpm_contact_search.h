@@ -45,17 +45,18 @@ class MPMContactSearch : protected Pointers {
   }
 
   void begin_run();
-  /** Finds what bodies have at the nodes that they share. In the first step of a run, looks for bodies that cannot be right.
-   *  Returns whether bodies may touch. Collective. */
+  /** Finds what bodies have at the nodes that they share. In the first step of a run, looks for
+   *  bodies that cannot be right. Returns whether bodies may touch. Collective. */
   bool begin_step();
   /** Finds contacts at nodes, for a step of this length. */
   void find(double dt, MPMContacts &);
   /** Finds all nodes with an interface, whatever the gap is, for a solver. */
   void find_interfaces(MPMContacts &);
-  /** Finds the area vector of the interface of two bodies at the node with this index; zero unless both have the node. */
+  /** Finds the area vector of the interface of two bodies at the node with this index; zero unless
+   *  both have the node. */
   void interface_at(int a, int b, const int *index, double *area) const;
-  /** Warns once if part of the force of the water is at nodes where bodies are not in contact, though they nearly fill them.
-   *  Collective, where bodies have water. */
+  /** Warns once if part of the force of the water is at nodes where bodies are not in contact,
+   *  though they nearly fill them. Collective, where bodies have water. */
   void report_missed_water();
 
  private:

@@ -7,12 +7,14 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Momentum is conserved to round-off as impulses come in pairs. With more than two bodies at a node all pairs are treated alike:
-   projected Jacobi iterations on the impulses of all pairs, so that the order in which the bodies are named has no influence.
+   Momentum is conserved to round-off as impulses come in pairs. With more than two bodies at a node
+   all pairs are treated alike: projected Jacobi iterations on the impulses of all pairs, so that
+   the order in which the bodies are named has no influence.
 
-   Where walls mirror one body and not the other, contact at a node changes the velocity of this body at the mirror nodes of the
-   node, too: these nodes are solved together. If they were solved one after the other, they would leave an approach in
-   each step: water went into the clamped end of a plate.
+   Where walls mirror one body and not the other, contact at a node changes the velocity of this
+   body at the mirror nodes of the node, too: these nodes are solved together. If they were solved
+   one after the other, they would leave an approach in each step: water went into the clamped end
+   of a plate.
 ------------------------------------------------------------------------- */
 
 #include "contact/mpm_contact_solver.h"
@@ -60,8 +62,8 @@ void MPMContactSolver::solve(MPMContacts &of, double step, bool are_decided, con
     for (const auto &problem : coupled) count(*problem.node, problem.start);
 }
 
-/** Sets the velocities of the bodies at a node before contact, and the action of walls on them. Returns whether walls move one
- *  body with its mirror nodes and another not. */
+/** Sets the velocities of the bodies at a node before contact, and the action of walls on them.
+ *  Returns whether walls move one body with its mirror nodes and another not. */
 bool MPMContactSolver::begin(const MPMContacts::Node &node, Velocities &start)
 {
   const int nfields = bodies.size();
@@ -78,7 +80,8 @@ bool MPMContactSolver::begin(const MPMContacts::Node &node, Velocities &start)
   return mirrors;
 }
 
-/** Sets the velocities of the bodies at a node by the impulses of its pairs; walls will move its mirror nodes with it. */
+/** Sets the velocities of the bodies at a node by the impulses of its pairs; walls will move its
+ *  mirror nodes with it. */
 void MPMContactSolver::set_velocities(const Problem &problem)
 {
   const MPMContacts::Node &node = *problem.node;
@@ -94,8 +97,8 @@ void MPMContactSolver::set_velocities(const Problem &problem)
     if (node.record[k]) bodies[k].move_mirrors(node.record[k], before[k]);
 }
 
-/** An iteration at a node. Impulses of all pairs follow from the same velocities, so that their order does not matter. Returns
- *  the change of the impulses. */
+/** An iteration at a node. Impulses of all pairs follow from the same velocities, so that their
+ *  order does not matter. Returns the change of the impulses. */
 double MPMContactSolver::iterate(const Problem &problem)
 {
   const MPMContacts::Node &node = *problem.node;
@@ -109,8 +112,8 @@ double MPMContactSolver::iterate(const Problem &problem)
 }
 
 /* ----------------------------------------------------------------------
-   Gauss-Seidel iterations for nodes that depend on each other; mirrored: by walls that move a body with its mirror nodes.
-   Where masses differ much, these converge slowly, and are accelerated.
+   Gauss-Seidel iterations for nodes that depend on each other; mirrored: by walls that move a body
+   with its mirror nodes. Where masses differ much, these converge slowly, and are accelerated.
 ------------------------------------------------------------------------- */
 
 void MPMContactSolver::solve_group(const Problem *first, const Problem *last, bool mirrored)

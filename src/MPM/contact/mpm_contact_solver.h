@@ -35,10 +35,11 @@ class MPMContactSolver : protected Pointers {
   }
 
   void begin_run() { unsolved.begin(); }
-  /** Changes the velocities of the nodes. decided: the states of contacts stay (MUSL, second field of velocities); otherwise
-   *  count is called for each node. */
+  /** Changes the velocities of the nodes. decided: the states of contacts stay (MUSL, second field
+   *  of velocities); otherwise count is called for each node. */
   void solve(MPMContacts &, double dt, bool decided, const Count &count);
-  /** Collective: one warning of nodes where iterations have not converged, the same for any number of ranks. */
+  /** Collective: one warning of nodes where iterations have not converged, the same for any number
+   *  of ranks. */
   void report_unsolved(const char *id);
 
  private:

@@ -6,25 +6,28 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Contact between bodies in the steps of a solver (mpm_body_contact.h). In explicit steps each node that bodies share is in contact by
-// itself: its velocities are those of both bodies, also one and two layers of nodes inside, so that the strain of a soft body next to
-// a hard one is that of the hard one. In the balance of forces, this would make a soft body about half a cell thinner. Here, nodes are
-// tied together along lines through the interface, by a single condition
+// Contact between bodies in the steps of a solver (mpm_body_contact.h). In explicit steps each node
+// that bodies share is in contact by itself: its velocities are those of both bodies, also one and
+// two layers of nodes inside, so that the strain of a soft body next to a hard one is that of the
+// hard one. In the balance of forces, this would make a soft body about half a cell thinner. Here,
+// nodes are tied together along lines through the interface, by a single condition
 //
 //    sum_k a_k n_k . (u_a,k - u_b,k) = g,   sum_k a_k = 1
 //
-// with the areas a_k of the interface at these nodes, and normals n_k: a_k n_k is the integral of the gradients of their functions over
-// the bodies. For a plane interface, a_k = N_k at its position, so that the condition holds for the motion there, and a pressure on it
-// is in balance with uniform stress, node by node, for any position between nodes and any direction of the plane.
+// with the areas a_k of the interface at these nodes, and normals n_k: a_k n_k is the integral of
+// the gradients of their functions over the bodies. For a plane interface, a_k = N_k at its
+// position, so that the condition holds for the motion there, and a pressure on it is in balance
+// with uniform stress, node by node, for any position between nodes and any direction of the plane.
 //
-// The gap g is the volume that both bodies lack along the line, over the area of the interface. Where a body covers only the
-// share c of the cross-section of the line, next to its edge, its volumes are divided by c (fix_mpm_contact_edges.cpp):
+// The gap g is the volume that both bodies lack along the line, over the area of the interface.
+// Where a body covers only the share c of the cross-section of the line, next to its edge, its
+// volumes are divided by c (fix_mpm_contact_edges.cpp):
 //
 //    g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
 //
-// Bodies that touch are held along the normal without any penalty, as long as this does not need a pull. With law stick, and law
-// coulomb while they stick, they are also held along the mean plane of the interface of the line, with law coulomb as long as
-// friction can hold them.
+// Bodies that touch are held along the normal without any penalty, as long as this does not need a
+// pull. With law stick, and law coulomb while they stick, they are also held along the mean plane
+// of the interface of the line, with law coulomb as long as friction can hold them.
 
 #include "contact/mpm_contact_trial.h"
 
@@ -41,29 +44,27 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// gap, in node spacings, at which bodies touch as they are if others do, and at which statics tries whether they touch
-static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
-static constexpr double TOUCHED = 1.0e-6;    // node spacings; a smaller gap is none
-static constexpr double TURNS =
-    1.0e-2;    // slip, in node spacings, that turns friction into its direction
-static constexpr double MOST_TURN = 0.5;    // least cosine of the turn of friction in one iteration
-static constexpr double SOONER = 0.3;       // factor on that length in each iteration
-static constexpr double WRONG =
-    1.0e-9;    // least pull to let go, relative to the largest push; least overlap, in node spacings
-
-static constexpr double LATER = 1.1;    // factor on the overlap at the start of a run, for later
-static constexpr double STILL_RIGHT = 1.0e-4;    // the same in later rounds
-static constexpr double ERRORS =
-    10.0;    // factor between the relative imbalance of all forces and errors of single ones
-static constexpr double ALONG_AXIS = 0.99;    // least cosine between a normal and an axis
-static constexpr double HELD = 1.0e-12;    // motion of a held row, relative to that without walls
-// changes between sliding and sticking of a tie in a step before it may take more friction; relative to the largest force, the increase
-// for each later change, and the limit
+// gap, in node spacings, at which bodies touch as they are if others do, and at which statics
+// tries whether they touch; a smaller gap than TOUCHED is none
+static constexpr double NEXT_TO = 0.08, NEARBY = 0.4, TOUCHED = 1.0e-6;
+// slip, in node spacings, that turns friction into its direction, its factor in each iteration, and
+// the least cosine of the turn of friction in one iteration
+static constexpr double TURNS = 1.0e-2, SOONER = 0.3, MOST_TURN = 0.5;
+// least pull to let go, relative to the largest push; least overlap, in node spacings; the same in
+// later rounds; factor between the relative imbalance of all forces and errors of single ones
+static constexpr double WRONG = 1.0e-9, STILL_RIGHT = 1.0e-4, ERRORS = 10.0;
+// factor on the overlap at the start of a run, for later
+static constexpr double LATER = 1.1;
+// least cosine between a normal and an axis
+static constexpr double ALONG_AXIS = 0.99;
+// motion of a held row, relative to that without walls
+static constexpr double HELD = 1.0e-12;
+// changes between sliding and sticking of a tie in a step before it may take more friction; relative
+// to the largest force, the increase for each later change, and the limit
 static constexpr int FREE_CHANGES = 2;
 static constexpr double MORE_EACH = 1.0e-2, MOST_MORE = 0.05;
-static constexpr int MOST_RELEASES = 3,
-                     MOST_RELEASES_SLIDING =
-                         6;    // times that a tie parts in a step before it slips
+// times that a tie parts in a step before it slips
+static constexpr int MOST_RELEASES = 3, MOST_RELEASES_SLIDING = 6;
 // rounds in which everything wrong is changed, and the worst half; in later ones, only the worst
 static constexpr int AT_ONCE = 6, HALF = 18;
 
@@ -93,8 +94,8 @@ int MPMContactTrial::rows_of_tie() const
    ties
 ------------------------------------------------------------------------- */
 
-/** Finds directions along the interface in which bodies can move against each other; none along components that walls hold in both
- *  bodies (held). */
+/** Finds directions along the interface in which bodies can move against each other; none along
+ *  components that walls hold in both bodies (held). */
 void MPMContactTrial::find_tangents(Tie &tie, int held) const
 {
   const int dim = bodies.dim();
@@ -158,7 +159,8 @@ void MPMContactTrial::add_links(Tie &tie, const std::vector<int> &pairs, double 
     if (diagonal < HELD * free) diagonal = 0.0;
 }
 
-/** Does this rank know the nodes next to the ends of these lines? It may have a part of a line that no point of it reaches. */
+/** Does this rank know the nodes next to the ends of these lines? It may have a part of a line that
+ *  no point of it reaches. */
 bool MPMContactTrial::knows_ends(const Tie &tie, const std::vector<int> &parts) const
 {
   for (const int part : parts) {
@@ -223,8 +225,8 @@ void MPMContactTrial::find_ties()
   check_overlap();
 }
 
-/** Ends with an error if bodies share more of the volume of a node than at the start of the run, beyond the limit of the warning
- *  there. Collective. */
+/** Ends with an error if bodies share more of the volume of a node than at the start of the run,
+ *  beyond the limit of the warning there. Collective. */
 void MPMContactTrial::check_overlap()
 {
   double mine = 0.0, most;
@@ -334,7 +336,8 @@ void MPMContactTrial::add_squares(const double *rows, const double *v, double *s
   }
 }
 
-/** Adds to force[dim] the forces of these rows of a tie on the bodies at a link; a has the sign of the row. */
+/** Adds to force[dim] the forces of these rows of a tie on the bodies at a link; a has the sign of
+ *  the row. */
 void MPMContactTrial::add_row_forces(const Tie &tie, const Link &link, const double *rows,
                                      double *force) const
 {
@@ -390,17 +393,21 @@ void MPMContactTrial::take_stop()
 }
 
 /* ----------------------------------------------------------------------
-   Coulomb's law, without any regularization. A tie that sticks has rows along the interface, whose forces show when friction cannot
-   hold them. A tie that slides has friction mu N against the direction w of its slip, on the nodes of both bodies in their shares of
-   the interface, and sticks again if it would slide back. This is Newton's method for the projection of P. Alart, A. Curnier, Comput.
-   Methods Appl. Mech. Eng. 92 (1991) 353, with an exact condition for ties that stick. With the slip s in the step,
+   Coulomb's law, without any regularization. A tie that sticks has rows along the interface, whose
+   forces show when friction cannot hold them. A tie that slides has friction mu N against the
+   direction w of its slip, on the nodes of both bodies in their shares of the interface, and sticks
+   again if it would slide back. This is Newton's method for the projection of P. Alart, A. Curnier,
+   Comput. Methods Appl. Mech. Eng. 92 (1991) 353, with an exact condition for ties that stick. With
+   the slip s in the step,
 
       w = (s + d w0)/|s + d w0|
 
-   where w0 is the direction of the previous iteration, or of the force with which the tie stuck: friction does not jump when a tie begins
-   to slide, and w is that of s in the end. As d becomes a small part of s, iterations converge to that direction fast, also in short
-   steps: with a constant d, each one would leave d/(d + |s|) of the error. In 2d, w is w0, and friction changes with N alone. N may be
-   negative until it is decided which ties part: as long as the sets stay, forces have no kinks
+   where w0 is the direction of the previous iteration, or of the force with which the tie stuck:
+   friction does not jump when a tie begins to slide, and w is that of s in the end. As d becomes a
+   small part of s, iterations converge to that direction fast, also in short steps: with a constant
+   d, each one would leave d/(d + |s|) of the error. In 2d, w is w0, and friction changes with N
+   alone. N may be negative until it is decided which ties part: as long as the sets stay, forces
+   have no kinks
 ------------------------------------------------------------------------- */
 
 bool MPMContactTrial::rubs() const
@@ -422,8 +429,8 @@ void MPMContactTrial::find_slip(const Tie &tie, const double *u, double *slip) c
   for (int d = 0; d < 3; d++) slip[d] -= along * tie.n[d];
 }
 
-/** Finds w of tie.slip, a unit vector. Returns |s + d w0|, or 0 where w is not the direction of that. A tie that slides back keeps its
- *  direction until it sticks. */
+/** Finds w of tie.slip, a unit vector. Returns |s + d w0|, or 0 where w is not the direction of
+ *  that. A tie that slides back keeps its direction until it sticks. */
 double MPMContactTrial::find_direction(const Tie &tie, double *direction) const
 {
   if (bodies.dim() == 2) {
@@ -461,7 +468,8 @@ void MPMContactTrial::add_pair_force(const Tie &tie, const double *on_a, double 
     }
 }
 
-/** Has this tie been let go so often in the step that it now goes on without anything that holds it along the interface? */
+/** Has this tie been let go so often in the step that it now goes on without anything that holds it
+ *  along the interface? */
 bool MPMContactTrial::is_released(const Tie &tie) const
 {
   return tie.releases >= (law.law == MPMContactLaw::STICK ? MOST_RELEASES : MOST_RELEASES_SLIDING);
@@ -553,7 +561,8 @@ void MPMContactTrial::add_friction_blocks(double *blocks)
   }
 }
 
-/** How wrong is the state of a tie in contact with friction, relative to the largest force? Positive: it changes. */
+/** How wrong is the state of a tie in contact with friction, relative to the largest force?
+ *  Positive: it changes. */
 double MPMContactTrial::friction_error(const Tie &tie, double largest) const
 {
   if (!has_friction() || !tie.can_slide() || is_released(tie) || !(largest > 0.0)) return 0.0;
@@ -580,10 +589,11 @@ void MPMContactTrial::switch_friction(Tie &tie) const
   tie.changes++;
 }
 
-/** Lets a tie touch from now on, after an overlap of this size. A tie with an inclined normal may be pulled by its own shear while it
- *  sticks or rubs, and overlap when it is let go, so that neither is a solution: after some changes it slips instead. With
- *  friction, a tie that has slid by more than friction could hold at the same stiffness keeps sliding: if it stuck first, its shear forces
- *  could pull it off again along an inclined normal, and so on without end. */
+/** Lets a tie touch from now on, after an overlap of this size. A tie with an inclined normal may
+ *  be pulled by its own shear while it sticks or rubs, and overlap when it is let go, so that
+ *  neither is a solution: after some changes it slips instead. With friction, a tie that has slid
+ *  by more than friction could hold at the same stiffness keeps sliding: if it stuck first, its
+ *  shear forces could pull it off again along an inclined normal, and so on without end. */
 void MPMContactTrial::activate(Tie &tie, const double *u, double approach) const
 {
   tie.active = true;
@@ -598,8 +608,8 @@ void MPMContactTrial::activate(Tie &tie, const double *u, double approach) const
   for (int d = 0; d < 3; d++) tie.direction[d] = tie.slip[d] / length;
 }
 
-/** Finds how wrong the state of each tie is after the motion u, relative to the largest force or the node spacing, and whether by
- *  its friction. Returns the largest error. Collective. */
+/** Finds how wrong the state of each tie is after the motion u, relative to the largest force or
+ *  the node spacing, and whether by its friction. Returns the largest error. Collective. */
 double MPMContactTrial::find_errors(const double *u, std::vector<double> &wrong,
                                     std::vector<char> &by_friction) const
 {
@@ -633,8 +643,9 @@ double MPMContactTrial::find_errors(const double *u, std::vector<double> &wrong,
 }
 
 /* ----------------------------------------------------------------------
-   At first, everything that is wrong is changed. If this oscillates, only the worst is, and what is almost right stays. While forces are
-   not in balance yet, errors that are not larger than the imbalance stay, too
+   At first, everything that is wrong is changed. If this oscillates, only the worst is, and what is
+   almost right stays. While forces are not in balance yet, errors that are not larger than the
+   imbalance stay, too
 ------------------------------------------------------------------------- */
 
 bool MPMContactTrial::decide(const double *u, double unbalanced)

@@ -30,7 +30,8 @@ class MPMContactTrial : public MPMBodyContact, protected Pointers {
 
   /** Prepares a run. */
   void begin_run();
-  /** Adds the forces of contact to the nodes, which have all other forces except those of walls; walls act after this. */
+  /** Adds the forces of contact to the nodes, which have all other forces except those of walls;
+   *  walls act after this. */
   void act(MPMContactReport &);
 
   // MPMBodyContact
@@ -85,8 +86,8 @@ class MPMContactTrial : public MPMBodyContact, protected Pointers {
     double *ra, *rb;        // node records
     double weight, n[3];    // share of the interface, and its normal at the node
   };
-  /** Two bodies at a line of nodes through their interface, with joined lines: a constraint along the normals and, where they
-   *  stick, along the interface. Its rows are in this order. */
+  /** Two bodies at a line of nodes through their interface, with joined lines: a constraint along
+   *  the normals and, where they stick, along the interface. Its rows are in this order. */
   struct Tie {
     int first, last;            // range in links
     int a, b;                   // indices of bodies
@@ -103,7 +104,8 @@ class MPMContactTrial : public MPMBodyContact, protected Pointers {
     double push[3], base[3];    // [row] impulse so far; impulse by the motion of walls alone
     double force[3];            // [row] force of a on b
     double stop[3];             // [row] impulse at the end of the step
-    // sliding ties: slip of a on b in the step, its direction in the previous iteration, friction force on a
+    // sliding ties: slip of a on b in the step, its direction in the previous iteration, friction
+    // force on a
     double slip[3], direction[3], friction[3];
     double inertia;    // weight d of the previous direction [distance], see find_direction()
 

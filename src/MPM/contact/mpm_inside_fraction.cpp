@@ -26,8 +26,8 @@ void MPMInsideFraction::find(const MPMField &field, const Domain &box)
     if (box.boundary[d][0] == FIXED) face[0] = (box.boxlo[d] - origin) / h;
     if (box.boundary[d][1] == FIXED) face[1] = (box.boxhi[d] - origin) / h;
 
-    // fraction of the function of a node that is between the faces. Points with a size fill the cells, and
-    // have the mean of the linear function
+    // fraction of the function of a node that is between the faces. Points with a size fill the
+    // cells, and have the mean of the linear function
 
     const auto inside = [&](int node) {
       int first;

@@ -17,8 +17,9 @@ namespace LAMMPS_NS {
 class Domain;
 class MPMField;
 
-/** Fraction of the volume of a node that is inside of the fixed faces of the box. Bodies that touch there fill this part: a node
- *  in the plane of a face has half of its volume inside. Nodes outside are mirror nodes of those inside. */
+/** Fraction of the volume of a node that is inside of the fixed faces of the box. Bodies that touch
+ *  there fill this part: a node in the plane of a face has half of its volume inside. Nodes outside
+ *  are mirror nodes of those inside. */
 class MPMInsideFraction {
  public:
   static constexpr int REACH = 2;    ///< of the function of a node [node spacings]
@@ -31,7 +32,8 @@ class MPMInsideFraction {
 
   /** Prepares a run on the lattice of this field. */
   void find(const MPMField &, const Domain &);
-  /** Fraction of a node. Replaces the index of a node outside by that of its mirror node inside; mirrored: was it replaced? */
+  /** Fraction of a node. Replaces the index of a node outside by that of its mirror node inside;
+   *  mirrored: was it replaced? */
   double at(int *index, int dim, bool &mirrored) const;
   using Sides = Side[2];
   /** The faces across an axis. */

@@ -7,18 +7,19 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The velocities of two bodies at a node after the momentum equation show whether they approach each other along the normal of
-   the interface. If so, equal and opposite impulses remove the approach, and in the plane of the interface as much of the
-   sliding as the law of friction allows:
+   The velocities of two bodies at a node after the momentum equation show whether they approach
+   each other along the normal of the interface. If so, equal and opposite impulses remove the
+   approach, and in the plane of the interface as much of the sliding as the law of friction allows:
 
      n from a to b,  m = m_a m_b/(m_a + m_b),  u = v_a - v_b
      J_n = max(0, m u.n),   J_t = m (u - (u.n) n) scaled down to at most mu J_n
 
-   (S.G. Bardenhagen, J.U. Brackbill, D. Sulsky, Comput. Methods Appl. Mech. Eng. 187 (2000) 529; with a normal that both
-   bodies share: J.A. Nairn, CMES 92 (2013) 271.)
+   (S.G. Bardenhagen, J.U. Brackbill, D. Sulsky, Comput. Methods Appl. Mech. Eng. 187 (2000) 529;
+   with a normal that both bodies share: J.A. Nairn, CMES 92 (2013) 271.)
 
-   Pore water takes a part J_w of J_n, dt int N p n over the surface of a body, as on walls. The rest is between grains and gives
-   friction: J_t <= mu (J_n - J_w). Where J_n would be below J_w, grains part, and the water alone pushes.
+   Pore water takes a part J_w of J_n, dt int N p n over the surface of a body, as on walls. The
+   rest is between grains and gives friction: J_t <= mu (J_n - J_w). Where J_n would be below J_w,
+   grains part, and the water alone pushes.
 ------------------------------------------------------------------------- */
 
 #include "contact/mpm_node_contact.h"
@@ -29,8 +30,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// the approach of bodies that slide along each other is round-off, which must not decide whether they stick: it must be at
-// least this part of their speeds
+// the approach of bodies that slide along each other is round-off, which must not decide whether
+// they stick: it must be at least this part of their speeds
 
 static constexpr double APPROACH = 1.0e-12;
 
@@ -120,13 +121,15 @@ void MPMNodeContact::push(int dim) const
 }
 
 /* ----------------------------------------------------------------------
-   Finds the velocity u of a relative to b, and un along the normal. Returns the mass that yields to an impulse.
+   Finds the velocity u of a relative to b, and un along the normal. Returns the mass that yields to
+   an impulse.
 
-   A body that a wall holds does not yield: the wall takes the impulse of contact. If it were treated as free, the other body
-   would move on into it, a little in each step.
+   A body that a wall holds does not yield: the wall takes the impulse of contact. If it were
+   treated as free, the other body would move on into it, a little in each step.
 
-   At a mirror, a node moves with its mirror node, and both have the mass of both; contact pushes on each. Components that are
-   mirrored in both bodies are the same at both nodes: contact at the node inside determines them.
+   At a mirror, a node moves with its mirror node, and both have the mass of both; contact pushes on
+   each. Components that are mirrored in both bodies are the same at both nodes: contact at the node
+   inside determines them.
 ------------------------------------------------------------------------- */
 
 double MPMNodeContact::approach(int dim, int neighbors, double *u, double &un) const
@@ -159,8 +162,8 @@ double MPMNodeContact::approach(int dim, int neighbors, double *u, double &un) c
   return inverse * std::max(ra[3], rb[3]) > 1.0e-6 ? square / inverse / neighbors : 0.0;
 }
 
-/** Limits the normal impulse by the law, and sets the state. length: size of the tangential impulse that would stop sliding.
- *  Returns the share of this impulse that remains. */
+/** Limits the normal impulse by the law, and sets the state. length: size of the tangential impulse
+ *  that would stop sliding. Returns the share of this impulse that remains. */
 double MPMNodeContact::limit(const MPMContactLaw &law, double mass, int dim, double length,
                              double dt, double &J)
 {

@@ -25,7 +25,8 @@ struct MPMContactLaw {
   double normal_strength = 0.0, shear_strength = 0.0, release_work = 0.0;
 
   double pressure_unit = 1.0;    ///< impulse by a unit of pressure, area, and time
-  /** Bodies whose approach is zero up to round-off are in contact (with law stick, they are not). */
+  /** Bodies whose approach is zero up to round-off are in contact (with law stick, they are
+   *  not). */
   bool keeps_rest = false;
   /** Impulses below this part of the momentum do not count as changes in iterations. */
   double rounded = 1.0e-2;
@@ -78,9 +79,10 @@ struct MPMNodeContact {
   void begin(const MPMNodeWalls &of_a, const MPMNodeWalls &of_b);
   /** Adds the impulses to the velocities of the bodies. */
   void push(int dim) const;
-  /** One iteration: the impulse for the present velocities, within the limits of the law. neighbors: number of bodies that
-   *  one body may meet here, by which the mass is divided. decided: the state stays (MUSL, second field of velocities).
-   *  Returns the change of the impulse, relative to it. */
+  /** One iteration: the impulse for the present velocities, within the limits of the law.
+   *  neighbors: number of bodies that one body may meet here, by which the mass is divided.
+   *  decided: the state stays (MUSL, second field of velocities). Returns the change of the
+   *  impulse, relative to it. */
   double iterate(const MPMContactLaw &, int dim, int neighbors, double dt, bool decided);
 
  private:

@@ -29,15 +29,15 @@ struct MPMRigidBody : MPMRigidMotion {
 
   /** Inertia about the center, in space. */
   void inertia(double out[3][3]) const;
-  /** Finds the angular velocity from the angular momentum. What holds an axis takes up the moment that keeps the angular velocity
-   *  around it zero. */
+  /** Finds the angular velocity from the angular momentum. What holds an axis takes up the moment
+   *  that keeps the angular velocity around it zero. */
   void spin();
   /** Nothing moves along what is held. */
   void hold();
   /** Adds an impulse and its moment about the center [6], except along what is held. */
   void push(const double *J);
-  /** Moves center and orientation to the end of the step: rotation by the angular velocity at its middle, which keeps the angular
-   *  momentum. */
+  /** Moves center and orientation to the end of the step: rotation by the angular velocity at its
+   *  middle, which keeps the angular momentum. */
   void move(double dt);
   /** Change of velocity and angular velocity [6] by an impulse and its moment: [6][6]. */
   void find_mobility(double *mobility);

@@ -24,10 +24,12 @@ static constexpr double FREE = 1.0e-12;       // change of a velocity by walls t
 static constexpr double NOTHING = 1.0e-13;    // entry of a column, of its largest
 static constexpr double TIED = 1.0e-14;       // what is left of the approach of bodies that touch
 static constexpr int MOST_ROUNDS = 6;
-// of the diagonal, the first one with which there are factors: walls can make rows depend on each other
+// of the diagonal, the first one with which there are factors: walls can make rows depend on each
+// other
 static constexpr double LIFTS[] = {0.0, 1.0e-13, 1.0e-11, 1.0e-9};
 
-/** Numbers on all ranks of the rows that this one knows, and which of them have nodes on which walls act. Collective. */
+/** Numbers on all ranks of the rows that this one knows, and which of them have nodes on which
+ *  walls act. Collective. */
 void MPMTies::number_rows(std::vector<char> &walled, const std::vector<char> &is_free)
 {
   const int size = contact->rows_of_group();
@@ -77,7 +79,8 @@ void MPMTies::begin(MPMBodyContact &of, const std::vector<double> &mass, int wid
   with_acts = acts;
   const std::size_t n = mass.size() * width;
 
-  // where walls leave a motion that is no special one as it is, they also do nothing with one that is there alone, as P_w is symmetric
+  // where walls leave a motion that is no special one as it is, they also do nothing with one that
+  // is there alone, as P_w is symmetric
 
   std::vector<char> is_free(n, 1), walled;
   if (has_walls) {

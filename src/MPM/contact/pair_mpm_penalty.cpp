@@ -244,7 +244,8 @@ double PairMPMPenalty::current_radius(int i)
   return rings ? std::min(now, growth * (1.0 + 1e-10) * largest[atom->type[i]]) : now;
 }
 
-/** As in MPMFrictionHeat, with the mean conductivity along all axes; 0: its material does not conduct. */
+/** As in MPMFrictionHeat, with the mean conductivity along all axes; 0: its material does not
+ *  conduct. */
 double PairMPMPenalty::effusivity_of(int i) const
 {
   const int field = field_of(i);

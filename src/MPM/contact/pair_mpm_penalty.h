@@ -47,11 +47,13 @@ struct MPMPenaltyCoeff {
 
 /** Contact between points of different fields (fix mpm), whatever their lattices.
  *
- *  Points are spheres (2d: disks) whose diameter is the spacing of points according to their present volume.
- *  Two spheres that overlap by delta repel each other along the line of their centers with F = E A delta/(r_i
- *  + r_j), where A is the face of the smaller one. Aligned faces feel the pressure E delta/spacing, as if a
- *  layer of material of modulus E were between the outermost points. With an axis of symmetry, all of this is
- *  along the circle that is midway between the two. */
+ *  Points are spheres (2d: disks) whose diameter is the spacing of points according to their
+ *  present volume. Two spheres that overlap by delta repel each other along the line of their
+ *  centers with F = E A delta/(r_i
+ *  + r_j), where A is the face of the smaller one. Aligned faces feel the pressure E delta/spacing,
+ *  as if a
+ *  layer of material of modulus E were between the outermost points. With an axis of symmetry, all
+ *  of this is along the circle that is midway between the two. */
 class PairMPMPenalty : public MPMPair<MPMPenaltyCoeff>, private MPMPenaltyOptions {
  public:
   PairMPMPenalty(class LAMMPS *lmp) : MPMPair(lmp, "mpm/penalty") {}
@@ -81,8 +83,8 @@ class PairMPMPenalty : public MPMPair<MPMPenaltyCoeff>, private MPMPenaltyOption
              return c.damping > 0.0;
            });
   }
-  /** Call at init(), after that of this style: the dissipated energy becomes heat of the points, for fix
-   *  mpm/heat. */
+  /** Call at init(), after that of this style: the dissipated energy becomes heat of the points,
+   *  for fix mpm/heat. */
   void make_heat() { heats = true; }
   /** Power of this heat for a point of this rank, from the forces of the step. */
   double heating(int i) const { return i < (int) heat.size() ? heat[i] : 0.0; }

@@ -27,7 +27,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// paths along a sheet that are shorter than this many distances: a fold whose layers touch has one of pi/2 distances around it
+// paths along a sheet that are shorter than this many distances: a fold whose layers touch has one
+// of pi/2 distances around it
 static constexpr double NEAR = 2.0;
 // nodes that are so much closer than the distance may get to the other side
 static constexpr double DEEP = 0.5;
@@ -92,7 +93,8 @@ void PairMPMSheet::compute(int eflag, int vflag)
 }
 
 /* ----------------------------------------------------------------------
-   once per neighbor list: of its pairs those with a node of a sheet that are not near each other along it
+   once per neighbor list: of its pairs those with a node of a sheet that are not near each other
+   along it
 ------------------------------------------------------------------------- */
 
 void PairMPMSheet::find_pairs()
@@ -130,8 +132,9 @@ int PairMPMSheet::body_of(int i) const
 }
 
 /* ----------------------------------------------------------------------
-   The bound of the elements does not know of contacts. A node between two others that hold still has a frequency of
-   sqrt(2 k/m), and 2/omega is the limit. With faces it bears others as well, by twice as much
+   The bound of the elements does not know of contacts. A node between two others that hold still
+   has a frequency of sqrt(2 k/m), and 2/omega is the limit. With faces it bears others as well, by
+   twice as much
 ------------------------------------------------------------------------- */
 
 void PairMPMSheet::warn_about_step()
@@ -157,7 +160,8 @@ void PairMPMSheet::warn_about_step()
 }
 
 /* ----------------------------------------------------------------------
-   Layers that lie too close in the mesh jump apart. Those of a restart file have come as close as they are by forces
+   Layers that lie too close in the mesh jump apart. Those of a restart file have come as close as
+   they are by forces
 ------------------------------------------------------------------------- */
 
 void PairMPMSheet::warn_about_start()
@@ -196,8 +200,8 @@ void PairMPMSheet::warn_about_start()
 }
 
 /* ----------------------------------------------------------------------
-   A node of another layer that is in a triangle keeps at most this distance from the corners of it, and feels nothing there if it is
-   above that of the contact
+   A node of another layer that is in a triangle keeps at most this distance from the corners of it,
+   and feels nothing there if it is above that of the contact
 ------------------------------------------------------------------------- */
 
 void PairMPMSheet::warn_about_gaps()
@@ -220,8 +224,9 @@ void PairMPMSheet::warn_about_gaps()
 }
 
 /* ----------------------------------------------------------------------
-   Nodes repel each other, and one may still be pushed through the middle of a face. Each time that neighbor lists are made, which is before a
-   node has moved by half of the skin, the side of a face on which nodes are next to it is compared with that of the time before
+   Nodes repel each other, and one may still be pushed through the middle of a face. Each time that
+   neighbor lists are made, which is before a node has moved by half of the skin, the side of a face
+   on which nodes are next to it is compared with that of the time before
 ------------------------------------------------------------------------- */
 
 void PairMPMSheet::warn_about_passages()
@@ -238,7 +243,8 @@ void PairMPMSheet::warn_about_passages()
   passages.forget();    // the next run begins with what it sees first
 }
 
-/** A warning of what the first of those ranks has found that have found something; null: nothing. Has one? On all ranks together. */
+/** A warning of what the first of those ranks has found that have found something; null: nothing.
+ *  Has one? On all ranks together. */
 bool PairMPMSheet::tell_first(const Passages::Sight *found, const char *what) const
 {
   int rank = found ? comm->me : comm->nprocs, first;
@@ -281,10 +287,12 @@ PairMPMSheet::from_all_ranks(const std::vector<Passages::Sight> &mine) const
   return all;
 }
 
-/** Nodes that are next to faces of this rank, but not near these along the surface; mine: these faces. */
+/** Nodes that are next to faces of this rank, but not near these along the surface; mine: these
+ *  faces. */
 std::vector<Passages::Sight> PairMPMSheet::look_at_faces(std::vector<Passages::FaceID> &mine)
 {
-  // nodes that come to a face from next to it: nodes at edges and rims keep those that go around them farther away
+  // nodes that come to a face from next to it: nodes at edges and rims keep those that go around
+  // them farther away
   constexpr double MARGIN = 0.1;
   std::vector<Passages::Sight> sights;
   const double range = distance + neighbor->skin;
@@ -316,7 +324,8 @@ bool PairMPMSheet::touches(int i, const SeenFace &face)
   return true;
 }
 
-/** Visit atoms, of the first ones, that may be closer to a face than range, with the face and the positions of its nodes. */
+/** Visit atoms, of the first ones, that may be closer to a face than range, with the face and the
+ *  positions of its nodes. */
 void PairMPMSheet::for_atoms_near(
     const std::vector<SeenFace> &list, int natoms, double range,
     const std::function<void(int i, int f, const double *const at[3])> &visit) const
@@ -409,7 +418,8 @@ void PairMPMSheet::init_style()
                "comm_modify vel yes");
   warned_deep = warned_dt = warned_gap = warned_through = warned_lost = false;
 
-  // atoms may have been displaced since the last run: only those that are on the wrong side keep what they know
+  // atoms may have been displaced since the last run: only those that are on the wrong side keep
+  // what they know
 
   approaches.erase(std::remove_if(approaches.begin(), approaches.end(),
                                   [](const Approach &a) {

@@ -46,15 +46,15 @@ struct MPMSheetCoeff {
   MPM_NS::Options declare();
 };
 
-/** Contact of surfaces and lines (fix mpm/elements with thickness or section) that no lattice moves: with
- *  themselves, with each other, and with any other atoms. Two nodes or atoms that are closer than a distance
- *  D repel each other with k (D - r), except for nodes of one body that are near each other along it (by a
- *  path shorter than 2 D without deformation). D must be large enough for the mesh that nodes cannot pass
- *  between those of another layer.
+/** Contact of surfaces and lines (fix mpm/elements with thickness or section) that no lattice
+ *  moves: with themselves, with each other, and with any other atoms. Two nodes or atoms that are
+ *  closer than a distance D repel each other with k (D - r), except for nodes of one body that are
+ *  near each other along it (by a path shorter than 2 D without deformation). D must be large
+ *  enough for the mesh that nodes cannot pass between those of another layer.
  *
- *  With faces, nodes touch the triangles of a surface (in 2d its lines) instead of its nodes. A node has a
- *  side of each face that is close. It keeps this side when it passes through the face, and is pushed
- *  back. */
+ *  With faces, nodes touch the triangles of a surface (in 2d its lines) instead of its nodes. A
+ *  node has a side of each face that is close. It keeps this side when it passes through the face,
+ *  and is pushed back. */
 class PairMPMSheet : public MPMPair<MPMSheetCoeff>, private MPMSheetOptions {
  public:
   PairMPMSheet(class LAMMPS *lmp) : MPMPair(lmp, "mpm/sheet") {}

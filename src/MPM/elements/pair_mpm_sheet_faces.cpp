@@ -6,7 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Pair style mpm/sheet with faces yes: atoms that touch the triangles of surfaces, and in 2d their lines.
+// Pair style mpm/sheet with faces yes: atoms that touch the triangles of surfaces, and in 2d their
+// lines.
 
 #include "elements/pair_mpm_sheet.h"
 
@@ -25,7 +26,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Faces of a body in the order of their lowest nodes, and room for ghosts that all nodes of a face need. */
+/** Faces of a body in the order of their lowest nodes, and room for ghosts that all nodes of a face
+ *  need. */
 void PairMPMSheet::find_faces_of(Body &body) const
 {
   for (const auto &face : body.elements->all_faces()) {
@@ -45,7 +47,8 @@ void PairMPMSheet::find_faces_of(Body &body) const
       std::max(comm->cutghostuser, distance + neighbor->skin + body.elements->largest_extent());
 }
 
-/** All faces of which this rank has the nodes, each image once. Returns the length of the longest edge of all ranks. */
+/** All faces of which this rank has the nodes, each image once. Returns the length of the longest
+ *  edge of all ranks. */
 double PairMPMSheet::see_faces()
 {
   const int dim = domain->dimension;
@@ -87,8 +90,9 @@ double PairMPMSheet::see_faces()
 }
 
 /* ----------------------------------------------------------------------
-   once per neighbor list: atoms of this rank and faces that may touch before the next one. An atom keeps the side of a face that it had in the step
-   before, also when it has come from another rank, as it may have gone through in this one
+   once per neighbor list: atoms of this rank and faces that may touch before the next one. An atom
+   keeps the side of a face that it had in the step before, also when it has come from another rank,
+   as it may have gone through in this one
 ------------------------------------------------------------------------- */
 
 void PairMPMSheet::find_faces()
@@ -158,8 +162,9 @@ void PairMPMSheet::find_faces()
 }
 
 /* ----------------------------------------------------------------------
-   contacts of atoms of this rank. Where an atom is next to a face, and not above or below it, the side of this one is that on which it is. It is
-   kept above and below, and on all faces as long as the atom has gone through one of them
+   contacts of atoms of this rank. Where an atom is next to a face, and not above or below it, the
+   side of this one is that on which it is. It is kept above and below, and on all faces as long as
+   the atom has gone through one of them
 ------------------------------------------------------------------------- */
 
 void PairMPMSheet::for_face_contacts(const std::function<void(const FaceContact &)> &visit)

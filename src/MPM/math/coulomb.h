@@ -13,8 +13,9 @@
 
 namespace MPM_NS {
 
-/** Coulomb's law of friction: a force t along two surfaces that press on each other with N >= 0 is at most mu N + c, with a
- *  larger coefficient up to which they stick. Forces may be impulses or tractions, as long as all of them are. */
+/** Coulomb's law of friction: a force t along two surfaces that press on each other with N >= 0 is
+ *  at most mu N + c, with a larger coefficient up to which they stick. Forces may be impulses or
+ *  tractions, as long as all of them are. */
 struct CoulombFriction {
   double kinetic = 0.0;    ///< mu while the surfaces slide
   double still = 0.0;      ///< mu up to which they stick, not below kinetic
@@ -22,8 +23,8 @@ struct CoulombFriction {
   /** Do they slide under the force t that would make them stick? */
   bool slides(double t, double N, double c = 0.0) const { return t > still * N + c; }
 
-  /** Radial return to the cone: the share of t that friction bears. 1: they stick; 0: nothing can hold them, also where t is
-   *  zero but for round-off. */
+  /** Radial return to the cone: the share of t that friction bears. 1: they stick; 0: nothing can
+   *  hold them, also where t is zero but for round-off. */
   double share(double t, double N, double c = 0.0) const
   {
     if (still * N + c == 0.0) return 0.0;
@@ -33,7 +34,8 @@ struct CoulombFriction {
   /** Distance from the cone of sliding friction, positive outside. */
   double excess(double t, double N) const { return t - kinetic * std::max(N, 0.0); }
 
-  /** Friction per speed of sliding, which falls to zero with the speed below least (a regularization). */
+  /** Friction per speed of sliding, which falls to zero with the speed below least (a
+   *  regularization). */
   double drag(double speed, double N, double least) const
   {
     return kinetic * N / std::max(speed, least);

@@ -364,7 +364,8 @@ void FixMPMMesh::setup(int)
   warn_of_sides();
 }
 
-/** Strain jumps at sides of cells. Where points begin on these, rounding decides whose strain they have, and as many cells have none. */
+/** Strain jumps at sides of cells. Where points begin on these, rounding decides whose strain they
+ *  have, and as many cells have none. */
 void FixMPMMesh::warn_of_sides() const
 {
   constexpr double ON_SIDE = 1.0e-9, MANY = 0.05;    // of a function of a node; of all points
@@ -388,8 +389,8 @@ void FixMPMMesh::warn_of_sides() const
 }
 
 /* ----------------------------------------------------------------------
-   of cells with one quadrangle or hexahedron a point each, points keep their volume without more; fluids are not asked, as flows of
-   few points in a cell are near to what they should be
+   of cells with one quadrangle or hexahedron a point each, points keep their volume without more;
+   fluids are not asked, as flows of few points in a cell are near to what they should be
 ------------------------------------------------------------------------- */
 
 void FixMPMMesh::warn_of_locking()
@@ -500,8 +501,8 @@ void FixMPMMesh::check_dt()
 }
 
 /* ----------------------------------------------------------------------
-   scalar: number of points; vector: kinetic and stored energy, work of forces from outside, points that are outside of
-   the mesh by less than OUTSIDE; forces of the conditions on the body
+   scalar: number of points; vector: kinetic and stored energy, work of forces from outside, points
+   that are outside of the mesh by less than OUTSIDE; forces of the conditions on the body
 ------------------------------------------------------------------------- */
 
 double FixMPMMesh::compute_scalar()

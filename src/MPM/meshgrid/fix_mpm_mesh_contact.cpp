@@ -7,20 +7,21 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Where two bodies have mass at a node of the mesh and their points touch, impulses are those of fix mpm/contact
-   (MPMNodeContact).
+   Where two bodies have mass at a node of the mesh and their points touch, impulses are those of
+   fix mpm/contact (MPMNodeContact).
 
-   Normals are those of the plane that tells the points of both bodies apart best (math/plane_between.h), in the cells
-   around the node. Linear functions reach one cell, so that the gradient of the volume of a body at its corner points along
-   the diagonal, and a block that slides would be stopped by what is below it; the plane between two rows of
-   points is that of the rows, also where one of them ends.
+   Normals are those of the plane that tells the points of both bodies apart best
+   (math/plane_between.h), in the cells around the node. Linear functions reach one cell, so that
+   the gradient of the volume of a body at its corner points along the diagonal, and a block that
+   slides would be stopped by what is below it; the plane between two rows of points is that of the
+   rows, also where one of them ends.
 
-   Gap. The distance of the points along that normal, of those that are farthest ahead, less half of the width of each: the volumes
-   of bodies at a node, by which fix mpm/contact knows whether they touch, are not that of the node where cells and points do
-   not match.
+   Gap. The distance of the points along that normal, of those that are farthest ahead, less half of
+   the width of each: the volumes of bodies at a node, by which fix mpm/contact knows whether they
+   touch, are not that of the node where cells and points do not match.
 
-   Conditions of the mesh hold all bodies at a node in the same way. Normals and impulses are in the directions that are
-   free, so that contact leaves these conditions as they are.
+   Conditions of the mesh hold all bodies at a node in the same way. Normals and impulses are in the
+   directions that are free, so that contact leaves these conditions as they are.
 ------------------------------------------------------------------------- */
 
 #include "meshgrid/fix_mpm_mesh_contact.h"
@@ -252,7 +253,8 @@ void FixMPMMeshContact::find_normals(const MPMMeshBodies &of)
   if (mixed) separate_mixed(of);
 }
 
-/** Where bodies have got into each other: along the normal of the plane that tells their points apart best. */
+/** Where bodies have got into each other: along the normal of the plane that tells their points
+ *  apart best. */
 void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
 {
   constexpr int N = PlaneBetween::NREAL;
@@ -283,7 +285,8 @@ void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
 }
 
 /* ----------------------------------------------------------------------
-   Half of the width of a point along n: that of a square or cube of its volume, stretched as planes with this normal are
+   Half of the width of a point along n: that of a square or cube of its volume, stretched as planes
+   with this normal are
 ------------------------------------------------------------------------- */
 
 void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
@@ -331,8 +334,8 @@ void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
 }
 
 /* ----------------------------------------------------------------------
-   Impulses at a node. Of more than two bodies, those of all pairs follow from the same velocities, so that their order does not
-   matter (projected Jacobi iterations)
+   Impulses at a node. Of more than two bodies, those of all pairs follow from the same velocities,
+   so that their order does not matter (projected Jacobi iterations)
 ------------------------------------------------------------------------- */
 
 void FixMPMMeshContact::solve(const MPMMeshBodies &of, const Node &at,

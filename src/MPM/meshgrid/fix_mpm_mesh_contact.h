@@ -35,7 +35,8 @@ struct MPMMeshContactOptions : MPMContactLaw {
   MPM_NS::Options declare();
 };
 
-/** Data of fix mpm/mesh for contact and heat. Data of nodes have the row b * nodes + node for body b of several bodies. */
+/** Data of fix mpm/mesh for contact and heat. Data of nodes have the row b * nodes + node for body
+ *  b of several bodies. */
 struct MPMMeshBodies {
   const MPM_NS::BackgroundMesh &mesh;
   MPMMeshRanks &ranks;
@@ -46,7 +47,8 @@ struct MPMMeshBodies {
   std::size_t stride;                                          ///< distance from row to row
 };
 
-/** Contact of bodies, groups of points of one fix mpm/mesh, each with its own velocities at the nodes. */
+/** Contact of bodies, groups of points of one fix mpm/mesh, each with its own velocities at the
+ *  nodes. */
 class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
  public:
   FixMPMMeshContact(class LAMMPS *, int, char **);
@@ -67,8 +69,9 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
 
   /** Prepares a run. */
   void begin_run(const MPM_NS::BackgroundMesh &);
-  /** Applies impulses between bodies to velocities [row] of nodes where they touch. decided: for velocities that were
-   *  mapped back, which are in contact at the same nodes as found earlier in this step. Collective. */
+  /** Applies impulses between bodies to velocities [row] of nodes where they touch. decided: for
+   *  velocities that were mapped back, which are in contact at the same nodes as found earlier in
+   *  this step. Collective. */
   void act(const MPMMeshBodies &, std::vector<MPM_NS::MeshVector> &velocities, bool decided);
 
   static constexpr int MAX_BODIES = 8;
@@ -81,8 +84,8 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   struct Near {
     int row;    // index of the node among the shared nodes
     bool is_of_b;
-    double weight,
-        r[3];    // node function at the point; vector from the node to the point, in sizes of the node
+    double weight;    // node function at the point
+    double r[3];      // vector from the node to the point, in sizes of the node
     int point;
   };
   std::string mesh_id;
@@ -90,7 +93,8 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   MPMPoints *points = nullptr;
   std::vector<double> sizes;    // [node] size of the volume that belongs to it
   std::vector<Node> nodes;
-  /** Contacts, with normals within the directions that conditions leave free; found: [index in found_at] */
+  /** Contacts, with normals within the directions that conditions leave free; found: [index in
+   *  found_at] */
   std::vector<MPMNodeContact> pairs, found;
   std::vector<int> found_at;    // nodes of found
   double overlap = 0.0;         // largest overlap in this step, in sizes of points

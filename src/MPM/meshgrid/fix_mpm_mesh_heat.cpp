@@ -7,14 +7,17 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The equations are those of fix mpm/heat with the transfer relax (mpm_conduction.cpp), with the functions of the cells in place of those
-   of a lattice. In the total frame points stay in their cells, so that no node has next to no capacity, and flow goes by
+   The equations are those of fix mpm/heat with the transfer relax (mpm_conduction.cpp), with the
+   functions of the cells in place of those of a lattice. In the total frame points stay in their
+   cells, so that no node has next to no capacity, and flow goes by
 
      C_i dT_i/dt = - sum_p V_p (F^-1 k F^-T sum_j T_j grad N_jp) . grad N_ip + sides,
 
-   with gradients in the reference configuration and the present volume V_p. Nodes are on the boundary: their temperatures are those that groups
-   prescribe, and the heat for it is what comes through the group. That of sides is lumped at their nodes, as capacities are. A step is
-   made of stages, so many that the rate of no node times their duration is above one: the rows of the matrix bound its eigenvalues.
+   with gradients in the reference configuration and the present volume V_p. Nodes are on the
+   boundary: their temperatures are those that groups prescribe, and the heat for it is what comes
+   through the group. That of sides is lumped at their nodes, as capacities are. A step is made of
+   stages, so many that the rate of no node times their duration is above one: the rows of the
+   matrix bound its eigenvalues.
 ------------------------------------------------------------------------- */
 
 #include "meshgrid/fix_mpm_mesh_heat.h"
@@ -252,8 +255,9 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
   }
 }
 
-/** Points that are partly molten have the conductivity of neither phase if it jumps there: as mpm_conduction.cpp, with the temperatures that nodes
- *  have within an eighth of their range in the cell on either side, with which fronts are nearer to their places than with a quarter. */
+/** Points that are partly molten have the conductivity of neither phase if it jumps there: as
+ *  mpm_conduction.cpp, with the temperatures that nodes have within an eighth of their range in the
+ *  cell on either side, with which fronts are nearer to their places than with a quarter. */
 Conduction FixMPMMeshHeat::conduction_of(const MPMMeshBodies &of, const Thermal &t, int i,
                                          bool nodes_known) const
 {
@@ -274,7 +278,8 @@ Conduction FixMPMMeshHeat::conduction_of(const MPMMeshBodies &of, const Thermal 
   return mean_conduction(*t.fix->material, history, T - reach, T + reach);
 }
 
-/** V F^-1 k F^-T of a conductivity across and along an interface, whose normal in the deformed body is along F^-T N. */
+/** V F^-1 k F^-T of a conductivity across and along an interface, whose normal in the deformed body
+ *  is along F^-T N. */
 void FixMPMMeshHeat::set_layers(const Cut &cut, const double *cofactors, double J, double V,
                                 double *k)
 {
@@ -324,9 +329,11 @@ void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
   }
 }
 
-/** In cells that an interface of materials cuts, functions of nodes have no kink, and too much heat would go through: their points have the harmonic mean
- *  of the conductivities across the interface and the arithmetic one along it, of which the places of points tell the normal. In the total frame
- *  points stay in their cells. Not with conductivities that vary or have axes, of which a warning tells, once. */
+/** In cells that an interface of materials cuts, functions of nodes have no kink, and too much heat
+ *  would go through: their points have the harmonic mean of the conductivities across the interface
+ *  and the arithmetic one along it, of which the places of points tell the normal. In the total
+ *  frame points stay in their cells. Not with conductivities that vary or have axes, of which a
+ *  warning tells, once. */
 void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
 {
   if (layers_known) return;
@@ -443,7 +450,8 @@ void FixMPMMeshHeat::hold(const MPMMeshBodies &of)
   }
 }
 
-/** A stage. Heat that a node would get whose temperature is prescribed leaves through the group that does so. */
+/** A stage. Heat that a node would get whose temperature is prescribed leaves through the group
+ *  that does so. */
 void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
 {
   for (const int node : of.ranks.nodes) rate[node] = 0.0;
@@ -505,7 +513,8 @@ void FixMPMMeshHeat::take(const MPMMeshBodies &of, double dt)
 }
 
 /* ----------------------------------------------------------------------
-   scalar: heat that points have taken so far; vector: for each condition its power in the last step, and heat so far
+   scalar: heat that points have taken so far; vector: for each condition its power in the last
+   step, and heat so far
 ------------------------------------------------------------------------- */
 
 double FixMPMMeshHeat::compute_scalar()

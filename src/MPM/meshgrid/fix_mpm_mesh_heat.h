@@ -49,7 +49,8 @@ struct MPMMeshHeatOptions {
   MPMMeshHeatCondition next;    // being read
 };
 
-/** Conduction of heat between points on a mesh (fix mpm/mesh, frame total), with conditions at its physical groups. */
+/** Conduction of heat between points on a mesh (fix mpm/mesh, frame total), with conditions at its
+ *  physical groups. */
 class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
  public:
   FixMPMMeshHeat(class LAMMPS *, int, char **);
@@ -81,8 +82,8 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
     int i;
     const Thermal *thermal;
     double capacity;
-    double k
-        [9];    // conductivity for gradients in the reference configuration, times the volume, row-major
+    // conductivity for gradients in the reference configuration, times the volume, row-major
+    double k[9];
   };
   /** A condition at a node, with its area. */
   struct NodeCondition {

@@ -192,7 +192,8 @@ bool MPMMeshBody::lacks_nodes() const
 }
 
 /* ----------------------------------------------------------------------
-   In the total frame forces are of the first Piola-Kirchhoff stress tau F^-T on gradients in the reference configuration
+   In the total frame forces are of the first Piola-Kirchhoff stress tau F^-T on gradients in the
+   reference configuration
 ------------------------------------------------------------------------- */
 
 void MPMMeshBody::points_to_nodes()
@@ -276,9 +277,10 @@ double MPMMeshBody::mass_of_all(int node) const
 }
 
 /* ----------------------------------------------------------------------
-   The work of a force is that at the mean of the velocities before and after the step, which is what it does to the kinetic
-   energy of the node. A load is of the body that is there; where two bodies meet at a loaded side, each has the share of its mass at
-   the node, so that the load neither presses them on each other nor parts them
+   The work of a force is that at the mean of the velocities before and after the step, which is
+   what it does to the kinetic energy of the node. A load is of the body that is there; where two
+   bodies meet at a loaded side, each has the share of its mass at the node, so that the load
+   neither presses them on each other nor parts them
 ------------------------------------------------------------------------- */
 
 void MPMMeshBody::find_velocities()
@@ -372,9 +374,10 @@ void MPMMeshBody::map_back()
 }
 
 /* ----------------------------------------------------------------------
-   In the updated frame points move with the velocities that strain them. Nodes that points barely reach can have any velocity
-   after the momentum equation, whose gradient would be that of the points: it is that of the mapped velocities, too. In the total frame forces do not depend on where
-   points are
+   In the updated frame points move with the velocities that strain them. Nodes that points barely
+   reach can have any velocity after the momentum equation, whose gradient would be that of the
+   points: it is that of the mapped velocities, too. In the total frame forces do not depend on
+   where points are
 ------------------------------------------------------------------------- */
 
 void MPMMeshBody::move_and_strain()
@@ -454,13 +457,14 @@ void MPMMeshBody::load_state(const int *list, int n, const FixMPMMaterial *mater
 }
 
 /* ----------------------------------------------------------------------
-   h/(c + |v|) with the height of the cell; in the total frame it shrinks with the smallest stretch, and points stay in their
-   cells
+   h/(c + |v|) with the height of the cell; in the total frame it shrinks with the smallest stretch,
+   and points stay in their cells
 ------------------------------------------------------------------------- */
 
 double MPMMeshBody::stable_dt(tagint &tag) const
 {
-  // at the end of a step points have moved since their cells were found, unless there was a new neighbor list
+  // at the end of a step points have moved since their cells were found, unless there was a new
+  // neighbor list
 
   const auto cell_now = [this](int i) {
     BackgroundMesh::Place place = places[i];

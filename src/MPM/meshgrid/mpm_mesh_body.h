@@ -74,8 +74,8 @@ class MPMMeshBody : protected Pointers {
   // of nodes; with contact, of the nodes of each body in turn
 
   std::vector<char> has_node;    ///< on this rank
-  /** Present positions of the nodes of the reference configuration, for a follower pressure and for means. They are always kept, as
-   *  either may be added after a restart. Updated frame: empty. */
+  /** Present positions of the nodes of the reference configuration, for a follower pressure and for
+   *  means. They are always kept, as either may be added after a restart. Updated frame: empty. */
   std::vector<MPM_NS::MeshVector> positions;
   std::vector<char> counts_cell;    ///< [cell] is this the first rank with points in the cell?
   double load_work = 0.0;           ///< work of external forces on nodes of this rank
@@ -105,8 +105,8 @@ class MPMMeshBody : protected Pointers {
 
   // a step, in this order
 
-  /** Lists the points of this rank, after these have changed. Sums go over points in the order of their IDs, which does not
-   *  depend on what was before. Collective. */
+  /** Lists the points of this rank, after these have changed. Sums go over points in the order of
+   *  their IDs, which does not depend on what was before. Collective. */
   void list_points();
   /** Finds the cells of all points. */
   void find_places();

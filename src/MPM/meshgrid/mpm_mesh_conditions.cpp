@@ -25,7 +25,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// sides whose normals differ by less than 30 degrees are those of a curved wall, others meet at an edge
+// sides whose normals differ by less than 30 degrees are those of a curved wall, others meet at an
+// edge
 
 static constexpr double SMOOTH = 0.866;
 
@@ -69,7 +70,8 @@ MPMMeshForces::NodeCondition &MPMMeshForces::add(int node, int condition)
 }
 
 /* ----------------------------------------------------------------------
-   a node where sides meet at an edge, or at walls of several conditions, has no velocity along any of their normals
+   a node where sides meet at an edge, or at walls of several conditions, has no velocity along any
+   of their normals
 ------------------------------------------------------------------------- */
 
 void MPMMeshForces::add_slip(int condition)

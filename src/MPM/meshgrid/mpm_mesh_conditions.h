@@ -36,8 +36,8 @@ struct MPMMeshCondition {
   MPM_NS::NumberOrVariable value[3];
 };
 
-/** Returns the group for which conditions of this kind are given twice with one of the first n values in both,
- *  or an empty string. */
+/** Returns the group for which conditions of this kind are given twice with one of the first n
+ *  values in both, or an empty string. */
 template <class Condition>
 std::string group_given_twice(const std::vector<Condition> &all, int kind, int n = 1)
 {
@@ -69,20 +69,20 @@ class MPMMeshForces : protected Pointers {
   bool has_pressure() const { return npressure > 0; }
   /** Is there any pressure or traction? */
   bool has_loads() const;
-  /** Lets pressure act on sides whose nodes have moved to these positions. cells: those whose sides this rank
-   *  handles. Collective. */
+  /** Lets pressure act on sides whose nodes have moved to these positions. cells: those whose sides
+   *  this rank handles. Collective. */
   void follow(const std::vector<char> &cells, const std::vector<MPM_NS::MeshVector> &positions,
               class MPMMeshRanks &ranks);
 
-  /** Start of a run: warns of loads on sides whose nodes have no mass. carries: does this rank count the node,
-   *  and does the node have mass? Collective. */
+  /** Start of a run: warns of loads on sides whose nodes have no mass. carries: does this rank
+   *  count the node, and does the node have mass? Collective. */
   void warn_of_lost_loads(const std::string &user, const std::function<bool(int)> &carries) const;
 
   /** Adds a share of the force of all loads on a node [force]. count: include it in the output. */
   void add_load(int node, double share, bool count, double *force);
 
-  /** Applies the conditions of a node to its velocity v. mass_per_time: converts the change to the force on the
-   *  body for the output; 0: it is not counted. */
+  /** Applies the conditions of a node to its velocity v. mass_per_time: converts the change to the
+   *  force on the body for the output; 0: it is not counted. */
   void constrain(int node, double mass_per_time, double *v);
 
   /** Resets the sums for the output. */

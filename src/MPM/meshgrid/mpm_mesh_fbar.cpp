@@ -30,12 +30,14 @@ static double determinant_in(int dim, const double *F)
 }
 
 /* ----------------------------------------------------------------------
-   F-bar (E.A. de Souza Neto, D. Peric, M. Dutko, D.R.J. Owen, Int. J. Solids Struct. 33 (1996) 3277) with means <> over the points around,
-   which are symmetric: the sum over points of w a <b> is that of w <a> b. In the total frame the strain of a point has the volume ratio <J>
-   with the J that the motion of its nodes has there, weighted by initial volumes. The change of the stored energy is the sum of V0 tau : D
-   with the dilatation d<J>/<J>, so that the force has the mean stress J <p> of Cauchy stresses p, and gradients with the motion of
-   the nodes. In the updated frame it is the change of volume in the step that is averaged, by present volumes. In 2d these are changes in
-   the plane, and p is the mean of the stresses there
+   F-bar (E.A. de Souza Neto, D. Peric, M. Dutko, D.R.J. Owen, Int. J. Solids Struct. 33 (1996)
+   3277) with means <> over the points around, which are symmetric: the sum over points of w a <b>
+   is that of w <a> b. In the total frame the strain of a point has the volume ratio <J> with the J
+   that the motion of its nodes has there, weighted by initial volumes. The change of the stored
+   energy is the sum of V0 tau : D with the dilatation d<J>/<J>, so that the force has the mean
+   stress J <p> of Cauchy stresses p, and gradients with the motion of the nodes. In the updated
+   frame it is the change of volume in the step that is averaged, by present volumes. In 2d these
+   are changes in the plane, and p is the mean of the stresses there
 ------------------------------------------------------------------------- */
 
 void MPMMeshFbar::find_stress()
@@ -101,8 +103,9 @@ void MPMMeshFbar::find_strain(const std::vector<MeshVector> &velocities)
 }
 
 /* ----------------------------------------------------------------------
-   The velocity gradient of a point, column-major, becomes that of the motion with the mean change of volume. In the total frame it is the
-   change of F in the step, where the nodes have moved on already
+   The velocity gradient of a point, column-major, becomes that of the motion with the mean change
+   of volume. In the total frame it is the change of F in the step, where the nodes have moved on
+   already
 ------------------------------------------------------------------------- */
 
 void MPMMeshFbar::scale(int i, double *L) const

@@ -17,7 +17,8 @@
 namespace LAMMPS_NS {
 class MPMMeshBody;
 
-/** Averages of volume changes and of the mean stress over the points around, against volumetric locking (F-bar). */
+/** Averages of volume changes and of the mean stress over the points around, against volumetric
+ *  locking (F-bar). */
 class MPMMeshFbar {
  public:
   explicit MPMMeshFbar(MPMMeshBody &);
@@ -25,9 +26,11 @@ class MPMMeshFbar {
   /** Finds the mean stresses for the forces of this step. Collective. */
   void find_stress();
   double mean_stress(int i) const { return volumetric[i].stress; }
-  /** Finds the mean volume changes for the strain by these velocities; nodes of the total frame have moved. Collective. */
+  /** Finds the mean volume changes for the strain by these velocities; nodes of the total frame
+   *  have moved. Collective. */
   void find_strain(const std::vector<MPM_NS::MeshVector> &velocities);
-  /** Makes the velocity gradient L of a point, column-major, that of the motion with the mean change of volume. */
+  /** Makes the velocity gradient L of a point, column-major, that of the motion with the mean
+   *  change of volume. */
   void scale(int i, double *L) const;
   double memory_usage() const;
 
