@@ -62,9 +62,12 @@ def pages():
 
 
 def readmes():
+    """also notes beside them, such as src/MPM/*/DECISIONS.md"""
     return [os.path.join(ROOT, "README.md")] + sorted(
         glob.glob(os.path.join(ROOT, "*", "README.md")) +
-        glob.glob(os.path.join(ROOT, "examples", "*", "README.md")))
+        glob.glob(os.path.join(ROOT, "examples", "*", "README.md")) +
+        glob.glob(os.path.join(SOURCES, "README.md")) +
+        glob.glob(os.path.join(SOURCES, "*", "*.md")))
 
 
 def find_python():
@@ -129,7 +132,7 @@ def test_numbers_of_the_ledger_agree():
     """the table of the page with the source, and what other pages say of single entries with the table"""
     page = read(os.path.join(PAGES, "compute_mpm_energy.rst"))
     table = dict(re.findall(r"^   \* - (\d+)\n     - (\w+)$", page, re.M))
-    source = read(os.path.join(SOURCES, "compute_mpm_energy.h"))
+    source = read(os.path.join(SOURCES, "output", "compute_mpm_energy.h"))
     entries = re.findall(r"^ +([A-Z]+)[,\s]", source[source.index("enum Entry"):source.index("};", source.index("enum Entry"))], re.M)
     assert [name.upper() for name in table.values()] + ["NENTRY"] == entries, "%s\n%s" % (table, entries)
     assert list(table) == [str(k + 1) for k in range(len(table))], table

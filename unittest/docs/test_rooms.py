@@ -136,8 +136,12 @@ def test_each_room_tells_what_it_has():
         text = mt.read(path) if os.path.exists(path) else ""
         if not 20 <= text.count("\n") <= 60:
             wrong.append("src/MPM/%s/README.md has %d lines, not 20 to 60" % (room, text.count("\n")))
-        wrong += ["src/MPM/%s is not in the README of its room" % name for name in files()
-                  if os.path.dirname(name) == room and not named(os.path.basename(name), text)]
+        have = [os.path.basename(name) for name in files() if os.path.dirname(name) == room]
+        wrong += ["src/MPM/%s/%s is not in the README of its room" % (room, name) for name in have
+                  if not named(name, text)]
+        wrong += ["src/MPM/%s/README.md names %s, which is not there" % (room, word)
+                  for word in re.findall(r"^\| (`[^|]*`) \|", text, re.M) for word in re.findall(r"`([^`]+)`", word)
+                  if not any(named(name, "`%s`" % word) for name in have)]
     assert not wrong, "\n".join(wrong)
 
 
