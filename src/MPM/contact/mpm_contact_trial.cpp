@@ -21,7 +21,7 @@
 //
 // The gap g is the volume that both bodies lack along the line, over the area of the interface.
 // Where a body covers only the share c of the cross-section of the line, next to its edge, its
-// volumes are divided by c (fix_mpm_contact_edges.cpp):
+// volumes are divided by c (MPMContactLines):
 //
 //    g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
 //
