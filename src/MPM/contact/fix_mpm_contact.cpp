@@ -15,12 +15,12 @@
 
 #include "contact/fix_mpm_contact.h"
 
-#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
 #include "comm.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_physics.h"
 #include "force.h"
 #include "modify.h"
 #include "refine/fix_mpm_refine.h"

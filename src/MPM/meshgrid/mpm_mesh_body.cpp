@@ -9,11 +9,11 @@
 #include "meshgrid/mpm_mesh_body.h"
 
 #include "atom.h"
-#include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_physics.h"
 #include "field/mpm_time_limit.h"
 #include "fix.h"
 #include "force.h"
