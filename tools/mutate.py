@@ -12,6 +12,8 @@ tools/build.sh.  Kernels and laws are compiled and run for the baseline instruct
 
   --list FILE    mutants (default: tools/mutants.txt, which tells its format)
   --jobs N       mutants at a time (default: MPM_JOBS, or all cores)
+  --sample N     only so many of them, drawn at random
+  --seed N       for another draw (default: 0)
   --check        only look whether the list fits the source and the tests, without a build tree
   --no-build     the test programs are up to date
   --keep         leave what was compiled in BUILD/mutants
@@ -25,6 +27,7 @@ import fnmatch
 import json
 import math
 import os
+import random
 import re
 import shlex
 import shutil
@@ -323,12 +326,16 @@ def main():
     parser.add_argument("--list", default=os.path.join(ROOT, "tools", "mutants.txt"))
     parser.add_argument("--jobs", type=int,
                         default=int(os.environ.get("MPM_JOBS") or os.cpu_count()))
+    parser.add_argument("--sample", type=int)
+    parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--no-build", action="store_true")
     parser.add_argument("--keep", action="store_true")
     options = parser.parse_args()
 
     mutants = chosen(read_list(options.list), options.patterns)
+    if options.sample is not None and options.sample < len(mutants):
+        mutants = random.Random(options.seed).sample(mutants, options.sample)
     stale = [mutant for mutant in mutants if mutant.source() is None]
     for mutant in stale:
         print("%s: the text is not exactly once in %s" % (mutant.name, mutant.file))

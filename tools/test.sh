@@ -2,10 +2,15 @@
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
 #
-# Builds as tools/build.sh does and runs all tests:
-#   tools/test.sh [ctest arguments], e.g. -L unit or -R topology
-# Without arguments, and when no LAMMPS is asked for, the tests with label smoke
-# are run with the oldest supported LAMMPS, too, which has 64-bit atom IDs.
+# Builds as tools/build.sh does and runs tests:
+#   tools/test.sh                    all but the long ones: a quarter of an hour on two cores
+#   tools/test.sh all                everything: the long tests with sanitizers, many random inputs, and some mutants; all
+#                                    instruction sets; label smoke with the oldest supported LAMMPS, with 64-bit atom IDs
+#   tools/test.sh room heat pore     all tests of these folders of unittest
+#   tools/test.sh changed [COMMIT]   those of the rooms with files that differ from this commit (default: main),
+#                                    or that include one of these files; without the tests that are long as a whole
+#   tools/test.sh mutants [PATTERN]  all mutants, see tools/mutate.py: hours
+#   tools/test.sh -R topology        the tests that these arguments of ctest choose, with the long ones
 # The last line printed is "N passed, N failed"; failed also when nothing ran.
 # Environment: see tools/build.sh
 
@@ -14,9 +19,40 @@ set -u
 # whatever fails before the tests can be counted is one failure
 trap '[ -n "${counted:-}" ] || echo "0 passed, 1 failed"' EXIT
 
-oldest=20250204
-old_tree=lammps-$oldest-bigbig
-[ $# -gt 0 ] || [ -n "${LAMMPS_SOURCE_DIR:-}${MPM_LAMMPS:-}" ] && oldest=
+oldest=
+old_tree=lammps-20250204-bigbig
+case ${1:-} in
+  all)
+    shift
+    [ -n "${LAMMPS_SOURCE_DIR:-}${MPM_LAMMPS:-}" ] || oldest=20250204
+    ;;
+  room)
+    shift
+    [ $# -gt 0 ] || die "usage: tools/test.sh room ROOM..."
+    set -- -L "^($(IFS='|'; echo "$*"))\$"
+    ;;
+  changed)
+    rooms=$(python3 "$repo/tools/changed_rooms.py" "${2:-main}") || exit 1
+    say "rooms: ${rooms//|/ }"
+    set -- -L "^($rooms)\$" -LE '^long$'
+    ;;
+  mutants)
+    shift
+    setup all
+    build_project all unittests
+    python3 "$repo/tools/mutate.py" --no-build "$@" || exit 1
+    echo "1 passed, 0 failed"
+    counted=yes
+    exit 0
+    ;;
+  "")
+    set -- -LE '^long$'
+    # cases of other tests that take long are left out, too; the package is compiled in less time, unless the build tree
+    # has it already
+    export MPM_QUICK=1
+    if [ ! -e "$build/.args" ] || grep -q "MPM_QUICK=on" "$build/.args"; then quick=on; fi
+    ;;
+esac
 
 # build the oldest LAMMPS's tests in a tree of their own, and run them.  It is the one place where the package is
 # compiled with 64-bit IDs and image flags, and without precompiled headers, which hide that a source lacks an include

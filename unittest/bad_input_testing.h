@@ -9,8 +9,8 @@
 // processor time, so that the tests also pass on a busy machine.
 
 #include "mpm_lammps.h"
+#include "patterns.h"
 
-#include <regex>
 #include <string>
 #include <sys/time.h>
 
@@ -33,12 +33,6 @@ inline std::string answer(const std::string &input)
   const std::string text = error_of(input);
   allow_seconds(0);
   return text;
-}
-
-/** Whether a regular expression matches a part of the text. */
-inline bool contains(const std::string &text, const std::string &pattern)
-{
-  return std::regex_search(text, std::regex(pattern));
 }
 
 /** The text with the first occurrence of from replaced by to. */

@@ -27,6 +27,7 @@
 #include "force.h"
 #include "input.h"
 #include "lammps.h"
+#include "long_case.h"
 #include "material/batch.h"
 #include "material/material.h"
 #include "modify.h"

@@ -31,6 +31,15 @@ class Skip(Exception):
     """Raised by a test that cannot run here."""
 
 
+QUICK = "MPM_QUICK" in os.environ    # tools/test.sh without arguments leaves out what takes long
+
+
+def long_case():
+    """Begins a test that takes long."""
+    if QUICK:
+        raise Skip("a long one: tools/test.sh all")
+
+
 class Result:
     """Exit code (negative: killed by a signal), output and time of a command."""
 

@@ -73,6 +73,7 @@ class Waves : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(Waves, CompressionPasses)
 {
+  LONG_CASE();
   for (const double ratio : {1.0, 4.0, 0.25}) {
     const double T = 2.0 * ratio / (1.0 + ratio);
     double error[2], peak_error[2];
@@ -102,6 +103,7 @@ TEST_P(Waves, CompressionPasses)
 // displacement impulse/Z2 that a pulse carries. Tension from the first bar does not pass
 TEST_P(Waves, TensionParts)
 {
+  LONG_CASE();
   double error[2];
   for (int k = 0; k < 2; k++) {
     const double h = k ? 0.01 : 0.02;

@@ -34,6 +34,7 @@ std::array<double, 2> extremes(const std::vector<Scene::State> &points)
 // benchmark T1: ten cells across with two points each, where no face is at a face of cells
 SERIAL_TEST(Relax, SolidsHaveTheirVolumeAndInertia)
 {
+  LONG_CASE();
   for (const auto &solid : solids()) {
     const ScratchFile file("solid.stl", text_of(solid.soup));
     const double width = std::string(solid.name) == "L" ? 3.0 : solid.volume < 1.0 ? 1.0 : 2.0;

@@ -4,6 +4,7 @@
 # labels: examples
 # sanitize: no
 # parts: 1 1 2
+# long: 3
 # timeout: 1200
 """Every example runs to its end without a warning, makes its pictures, and gives the numbers of
 its reference log (log.*.g++.1), in all columns of all rows that the run has; two processes give the
@@ -11,7 +12,8 @@ numbers of one; published numbers are met where there are some.
 
 Parts 1 and 2 are the runs of half of the examples each, part 3 the runs with two processes, of which
 a third of the steps will do. An example that is run with a coarser lattice is begun with its own one, too,
-for the first rows of its log."""
+for the first rows of its log. tools/test.sh without arguments runs what takes a second or two, and of the others the steps until
+the second row of the log, if these take no longer."""
 
 import cmath
 import glob
@@ -27,6 +29,7 @@ import mpm_testing as mt
 
 EXAMPLES = os.path.join(mt.ROOT, "examples")
 SECONDS = 400    # for one run, on a busy machine
+QUICK = 1.5      # seconds by the log, of an example that is run whole, or of the start of another one, by tools/test.sh without arguments
 
 # node spacing times this, where the default one is for a nicer picture or takes too long
 COARSER = {"taylor-bar": 2.0, "spall": 2.0, "cook-membrane": 2.0, "hypervelocity": 2.0, "ring-collision": 2.0, "spinning-disk": 2.0,
@@ -374,10 +377,32 @@ def check_log(path, output, name):
     print("largest difference from the log: %.1e of the range of a column" % most)
 
 
+def begin(path):
+    """The start of an example, as far as the second row of its log."""
+    log = reference(path)
+    loops = [(float(t), int(n)) for t, n in re.findall(r"^Loop time of (\S+) .* for (\d+) steps", read(log), re.M)]
+    if len(re.findall(STEPS, read(path), re.M)) != 1:
+        mt.long_case()
+    names, rows = max(mt.thermo(read(log)), key=lambda table: len(table[1]))
+    steps = int(rows[1][names.index("Step")])
+    if steps * max(t / n for t, n in loops if n) > QUICK:
+        mt.long_case()
+    with Example(path, steps=steps, coarse=False) as example:
+        check_run(example)
+        compare(example.result.output, read(log), LOG_TOLERANCE, log, "first", CHAOTIC.get(os.path.basename(os.path.dirname(path))))
+
+
+def seconds(log):
+    return sum(float(t) for t in re.findall(r"^Loop time of (\S+)", read(log), re.M)) if log else 0.0
+
+
 def make_tests(path, part):
     name = os.path.basename(path)[3:].replace("-", "_")
 
     def one_process():
+        if mt.QUICK and seconds(reference(path)) > QUICK:
+            begin(path)
+            return
         if os.path.exists(output_of(path)):
             os.remove(output_of(path))
         with Example(path) as example:

@@ -3,6 +3,7 @@
 #
 # labels: docs
 # sanitize: no
+# timeout: 3600
 """The list of tools/mutate.py fits the source and the tests, so that its mutants can be made at any time."""
 
 import os
@@ -20,6 +21,16 @@ def test_list_fits_the_source_and_the_tests():
     mt.ok(result)
     count = re.search(r"^(\d+) mutants, 0 stale, 0 tests", result.output, re.M)
     assert count and int(count.group(1)) >= 150, result.output
+
+
+def test_some_mutants_are_killed():
+    """others with each commit; all of them take hours: tools/mutate.py"""
+    mt.long_case()
+    commit = mt.run(["git", "-C", mt.ROOT, "rev-parse", "HEAD"])
+    seed = int(commit.output[:8], 16) if commit.code == 0 else 0
+    result = mt.run(MUTATE[:2] + ["--no-build", "--sample", "30", "--seed", str(seed), "--jobs", "1"], timeout=3600)
+    print(result.output)
+    mt.ok(result)
 
 
 def test_what_does_not_fit_is_told():

@@ -179,6 +179,7 @@ SERIAL_TEST(Stretch, ElevenfoldStress)
 PARAMETER_TEST(Cantilever, BendsAsFiniteElements, const char *,
                Values("shape cpdi transfer apic", "shape cpdi2 transfer apic"))
 {
+  LONG_AFTER(1);
   if (nranks() > 1) GTEST_SKIP() << "one is enough";
   const double half = 0.03125;    // of a point
   Scene run(plane("si", "f f", "0 5 -5 2 -0.1 0.1", 1, 0.05) +
@@ -506,6 +507,7 @@ SERIAL_TEST(Ring, SecondOrder)
 
 SERIAL_TEST(Ring, SchemesAgree)
 {
+  LONG_CASE();
   const double usl = widening_ring("transfer apic", 10, 1.0, 0.01);
   for (const char *scheme : {"musl", "usf", "usavg"})
     EXPECT_NEAR(widening_ring(strprintf("transfer apic scheme %s", scheme), 10, 1.0, 0.01) / usl,

@@ -123,7 +123,7 @@ SERIAL_TEST(Blocks, WithAnInclinedInterface)
 // where friction is large, nothing slides: as with law stick, on any slope
 SERIAL_TEST(Blocks, StickOnAnySlope)
 {
-  for (const double slope : {0.2, 0.5, 0.8, 1.1, 1.5}) {
+  for (const double slope : first_of(2, {0.5, 1.5, 0.2, 0.8, 1.1})) {
     double force[2];
     for (const int friction : {0, 1}) {
       Scene run(blocks(friction ? "law coulomb 2.0" : "law stick", 0.51, slope, 1e6, 0.2) +
@@ -243,10 +243,11 @@ SERIAL_TEST(Block, SlidesIn3d)
     double mu, slope, iterations, place = 0.3;
   };
   for (const Case &c :
-       {Case{"newmark", " transfer flip 1.0", 0.1, 0.5, 45.0},
-        Case{"newmark", " transfer flip 1.0", 0.6, 1.2, 45.0}, Case{"euler", "", 0.1, 0.5, 45.0},
-        Case{"euler", "", 0.6, 1.2, 45.0}, Case{"euler", "", 1.5, 2.0, 75.0},
-        Case{"euler", "", 0.3, 0.5, 75.0, 0.335}}) {
+       first_of(2,
+                {Case{"newmark", " transfer flip 1.0", 0.1, 0.5, 45.0},
+                 Case{"euler", "", 0.6, 1.2, 45.0}, Case{"euler", "", 0.1, 0.5, 45.0},
+                 Case{"newmark", " transfer flip 1.0", 0.6, 1.2, 45.0},
+                 Case{"euler", "", 1.5, 2.0, 75.0}, Case{"euler", "", 0.3, 0.5, 75.0, 0.335}})) {
     Scene run(block_on_base(c.transfer, c.mu, c.slope, strprintf("%s parts 1", c.scheme), c.place) +
               "run 3\n");
     const std::string name = strprintf("%s, friction %g: ", c.scheme, c.mu);
@@ -264,7 +265,7 @@ SERIAL_TEST(Block, SlidesIn3d)
 // with law stick, lines of nodes would be pulled while they stick, and go into the other body when they are let go: they slip
 SERIAL_TEST(Block, SticksIn3d)
 {
-  for (const char *scheme : {"euler", "static"}) {
+  for (const char *scheme : first_of(1, {"static", "euler"})) {
     const std::string scene =
         replaced(block_on_base("", 2.0, 0.5, strprintf("%s parts 1", scheme), 0.36),
                  "law coulomb 2", "law stick") +
@@ -330,16 +331,21 @@ SERIAL_TEST(Block, BearsUpToItsEdges)
 {
   const std::string base = "0.1 1.7 0.1 1.1 0 0.2", block = "0.3 1.1 0.3 0.9 0.2 0.8";
   EXPECT_NEAR(measured("block of 6 cells", settlement(base, block, 0.1)), 1.0, 0.08);
-  EXPECT_NEAR(measured("block of 12 cells", settlement(base, block, 0.05)), 1.0, 0.025);
   EXPECT_NEAR(measured("bars", settlement("0.1 1.5 0.5 0.9 0 0.4", "0.6 1 0.1 1.1 0.4 0.8", 0.1)),
               1.0, 0.4);
+}
+SERIAL_TEST(Block, BearsUpToItsEdgesOnAFineLattice)
+{
+  LONG_CASE();
+  const double ratio = settlement("0.1 1.7 0.1 1.1 0 0.2", "0.3 1.1 0.3 0.9 0.2 0.8", 0.05);
+  EXPECT_NEAR(measured("block of 12 cells", ratio), 1.0, 0.025);
 }
 
 // the same without inertia: a wall holds a block, under which the base is drawn away. What bears the block is its weight, and what holds it is friction, but for
 // lines at the wall, which hold it there
 SERIAL_TEST(Block, IsHeldWhileItsBaseSlidesIn3d)
 {
-  for (const double mu : {0.1, 0.6, 1.5}) {
+  for (const double mu : first_of(1, {0.6, 0.1, 1.5})) {
     Scene run("units si\nboundary f f f\natom_style mpm\nregion box block 0 1.2 0 1 0 1\n"
               "create_box 2 box\nneighbor 0.02 bin\n"
               "region low block 0.1 1.1 0.1 0.9 0 0.2\nregion up block 0 0.4 0.3 0.7 0.2 0.6\n"
@@ -362,7 +368,7 @@ SERIAL_TEST(Block, IsHeldWhileItsBaseSlidesIn3d)
 // a block that slides on another one comes to rest after v^2/(2 mu g), and friction has its energy
 SERIAL_TEST(Block, SlidesToRest)
 {
-  for (const char *scheme : {"euler", "newmark", "midpoint"}) {
+  for (const char *scheme : first_of(1, {"newmark", "euler", "midpoint"})) {
     const std::string grid = *scheme == 'e' ? "fix %s mpm 0.1\n"
                                             : "fix %s mpm 0.1 transfer flip 1.0\n";
     const double mu = 0.3, g = 10.0, v = 0.6, mass = 0.8 * 0.4 * 1000.0;

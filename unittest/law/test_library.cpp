@@ -13,6 +13,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <regex>
 
 using namespace MPM_NS;
 using namespace material_testing;

@@ -15,6 +15,8 @@
 #include "material/random_field.h"
 #include "material/temperature_factor.h"
 
+#include <regex>
+
 using namespace MPM_NS;
 using namespace material_testing;
 

@@ -10,6 +10,7 @@
 #include "bad_input_testing.h"
 #include "mesh/stl_testing.h"
 
+#include <regex>
 #include <sstream>
 
 using namespace MPM_TEST;

@@ -12,6 +12,8 @@
 #include "error.h"
 #include "exceptions.h"
 
+#include <regex>
+
 using namespace MPM_TEST;
 
 static const std::string good_scene = space("lj", "f f f", "0 8 0 8 0 8", 2) + R"(

@@ -49,7 +49,7 @@ def whole(text):
 def demo_tree(folder):
     settings = ["LAMMPS_BUILD_DIR=" + STOCK, "MPM_TEST=off", "MPM_PLUGIN=off", "MPM_DEMO=on"]
     settings += [line for line in mt.read(os.path.join(BUILD, "CMakeCache.txt")).splitlines()
-                 if line.startswith(("CMAKE_BUILD_TYPE:", "CMAKE_CXX_FLAGS"))]
+                 if line.startswith(("CMAKE_BUILD_TYPE:", "CMAKE_CXX_FLAGS", "MPM_QUICK:"))]
     mt.ok(mt.run(["cmake", "-S", mt.ROOT, "-B", folder] + [word for s in settings for word in ("-D", s)]))
 
 

@@ -2,7 +2,7 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # labels: input fuzz
-# timeout: 600
+# timeout: 2000
 """A short run of tools/fuzz.py, and inputs that a long one has found to fail."""
 
 import os
@@ -30,13 +30,22 @@ timestep 0.01
 """
 
 
-def test_inputs_with_mistakes_and_scenes():
+def fuzz(inputs, scenes, seed):
     with tempfile.TemporaryDirectory() as folder:
-        result = mt.run([sys.executable, FUZZ, "--inputs", "150", "--scenes", "12", "--jobs", "1",
-                         "--out", folder], timeout=580)
+        result = mt.run([sys.executable, FUZZ, "--inputs", str(inputs), "--scenes", str(scenes), "--seed", str(seed),
+                         "--jobs", "1", "--out", folder], timeout=1800)
     mt.ok(result)
-    assert re.search(r"^150 inputs: ", result.output, re.M), result.output
-    assert re.search(r"^12 scenes: 12 ran", result.output, re.M), result.output
+    assert re.search(r"^%d inputs: " % inputs, result.output, re.M), result.output
+    assert re.search(r"^%d scenes: %d ran" % (scenes, scenes), result.output, re.M), result.output
+
+
+def test_inputs_with_mistakes_and_scenes():
+    fuzz(30, 3, 1)
+
+
+def test_many_inputs_with_mistakes_and_scenes():
+    mt.long_case()
+    fuzz(500, 40, 4)
 
 
 def write_program(path, command):

@@ -108,6 +108,7 @@ CODE
     compile "$kernels" "${name}_isa.o" "${march[@]}" -O0 -g0
   done
 
+  compile "$root/unittest/patterns.cpp" patterns.o -O0
   library=("${objects[@]}")
   for test in declare/test_option transfer/test_shape lattice/test_grid image/test_image mesh/test_gmsh transfer/test_kernels transfer/test_scalar \
     transfer/test_cpdi_kernels material/test_materials material/test_tangent; do

@@ -8,6 +8,8 @@
 
 #include "bad_input_testing.h"
 
+#include <regex>
+
 using namespace MPM_TEST;
 
 namespace {
