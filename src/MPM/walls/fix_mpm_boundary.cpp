@@ -1380,8 +1380,7 @@ void FixMPMBoundary::find_water(const FieldNodes &list, double dt)
   };
   for (const auto &line : list.lines)
     for (int k = 0, n = list.faces[line.face].length(); k < n; k++) mark(line.node[k]);
-  for (const auto &crossing : list.crossings)
-    for (int k = 0; k < crossing.n; k++) mark(crossing.node[k]);
+  for (const auto &crossing : list.crossings) crossing.mark_blocks(near);
   for (const auto &single : list.singles) mark(single.node);
   if (pore_surface_force(*list.field, near, water))
     for (double &w : water) w *= dt;

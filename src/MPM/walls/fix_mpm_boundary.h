@@ -21,6 +21,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "field/mpm_line_ties.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_trial_contact.h"
+#include "field/node_line.h"
 #include "fix.h"
 #include "walls/mpm_region_surface.h"
 #include "walls/mpm_wall_gap.h"
@@ -185,13 +186,10 @@ class FixMPMBoundary :
     bool touched = true;    // separate: the surface of the material touches it in this step
   };
   // a line of nodes along an axis, from the inside of a region through its surface to the outside
-  struct Crossing {
-    int axis, n;
-    int64_t node[4];    // -1: out of reach of points
-    int64_t base;       // node of the line from which the line was found
-    int64_t behind;     // next node in the region, which only material inside reaches
-    double surface;     // position of the surface on the line
-    double weight[4];
+  struct Crossing : NodeLine {
+    int64_t base;        // node of the line from which the line was found
+    int64_t behind;      // next node in the region, which only material inside reaches
+    double surface;      // position of the surface on the line
     double normal[3];    // of the surface at the crossing
     int full;            // index of its contact
     int inside;          // number of nodes behind the surface, which come first
@@ -215,10 +213,7 @@ class FixMPMBoundary :
   };
   // in trials: a line of nodes through the surface of material that is not at the wall yet, in the
   // direction from the wall to the material, see fix_mpm_boundary_approach.cpp
-  struct Approach {
-    int axis, n;
-    int64_t node[4];    // -1: out of reach of points
-    double weight[4];
+  struct Approach : NodeLine {
     double normal[3];    // of the wall
     double gap;          // between wall and material [distance]
   };

@@ -90,9 +90,7 @@ void FixMPMBoundary::map_region_gaps(FieldNodes &list, double dt)
   const double seen = 0.5 * (stencil_order(field.options.shape) + 1);
   std::vector<char> near(field.grid.blocks.size(), 0);
   for (const auto &single : list.singles) near[single.node / NODES_PER_BLOCK] = 1;
-  for (const auto &crossing : list.crossings)
-    for (int k = 0; k < crossing.n; k++)
-      if (crossing.node[k] >= 0) near[crossing.node[k] / NODES_PER_BLOCK] = 1;
+  for (const auto &crossing : list.crossings) crossing.mark_blocks(near);
   if (!region_moves()) region->prematch();
   gap.map(field, near, region->nregion == 1, 2.45 * seen, distance_from_region(field, dt));
 }
