@@ -15,6 +15,7 @@
 
 #include "contact/fix_mpm_contact.h"
 
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
 #include "comm.h"

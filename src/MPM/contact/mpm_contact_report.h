@@ -25,6 +25,10 @@ class MPMContactReport : protected Pointers {
     double impulse[3] = {0.0, 0.0, 0.0};    ///< on the second body in the last step
     double count = 0.0;                     ///< nodes in contact
     double work = 0.0;                      ///< of friction so far, without the unit of energy
+
+    /** Counts a contact, but not the work of its friction with the velocities that its records have
+     *  now, which it returns. */
+    double add(const MPMNodeContact &, int dim);
   };
 
   explicit MPMContactReport(class LAMMPS *lmp) : Pointers(lmp) {}

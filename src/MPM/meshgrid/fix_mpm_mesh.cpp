@@ -146,7 +146,8 @@ FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   } catch (const std::runtime_error &e) {
     error->all(FLERR, 3, "Fix mpm/mesh: {}: {}", file, e.what());
   }
-  body = std::make_unique<MPMMeshBody>(lmp, *this, *this, *mesh, *forces);
+  const MPMMeshOptions &mine = *this;
+  body = std::make_unique<MPMMeshBody>(lmp, *this, mine, *mesh, *forces);
   if (comm->me == 0)
     utils::logmesg(lmp,
                    "Fix mpm/mesh {}: {} cells, {} nodes, the smallest height of a cell is {:.6g}\n",

@@ -10,6 +10,7 @@
 #define LMP_MPM_MESH_FBAR_H
 
 #include "mesh/background_mesh.h"
+#include "meshgrid/mpm_mesh_conditions.h"
 #include "meshgrid/mpm_mesh_means.h"
 
 #include <vector>
