@@ -9,7 +9,7 @@
   same_bits.py --compare OLD.json NEW.json                   list what differs; status 1 if any does
 
 The scenes are the inputs *.in of a folder, so that both builds run the same ones: all of
-unittest/test_pairs.cpp, each with a restart in its middle, which its executable writes (--test, default:
+unittest/scenes/test_pairs.cpp, each with a restart in its middle, which its executable writes (--test, default:
 build/unittest/test_pairs); shapes, transfers, schemes and frames on bench/in.block and in.block2d; all
 laws of bench/bench_materials.cpp; the coupling of bench/in.*; and the examples, coarse and short.
 

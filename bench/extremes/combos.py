@@ -27,7 +27,7 @@ AFFINE = ("apic", "aflip", "tpic", "polypic")
 
 def valid(shape, transfer, scheme):
     """Combinations that fix mpm accepts: the others have no meaning (light where no light node can do
-    harm, aflip and tpic in the total frame), or are known to be wrong. unittest/test_extreme_tables.py
+    harm, aflip and tpic in the total frame), or are known to be wrong. unittest/scenes/test_extreme_tables.py
     tests that they are refused."""
     kind = transfer.split()[0]
     if kind == "fmpm" and scheme != "usl":

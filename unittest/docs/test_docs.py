@@ -7,7 +7,6 @@
 """The manual builds without warnings, is complete, and its links lead somewhere. (That its examples
 run is tested in test_docs_examples.py.)"""
 
-import fnmatch
 import glob
 import os
 import re
@@ -265,20 +264,6 @@ def test_pages_have_the_order_of_the_lammps_manual():
             wrong.append("%s: no versionadded" % relative(path))
         if "part of the MPM package" not in text:
             wrong.append("%s: Restrictions do not name the package" % relative(path))
-    check(wrong)
-
-
-def test_every_source_file_is_in_the_table_of_the_developer_guide():
-    text = read(os.path.join(PAGES, "Developer_mpm.rst"))
-    table = text[text.index("\nFiles\n"):text.index("\nData structures\n")]
-    names = re.findall(r"(?<![\w.])(?:[a-z]+/\*|(?:[a-z]+/)?[a-z]\w*\*?(?:\.(?:h|cpp))?)(?![\w.])", table)
-    wrong = []
-    for path in sorted(glob.glob(os.path.join(SOURCES, "*.[hc]*")) +
-                       glob.glob(os.path.join(SOURCES, "*", "*.[hc]*"))):
-        name = os.path.relpath(path, SOURCES)
-        base = name.rsplit(".", 1)[0]
-        if not any(fnmatch.fnmatch(name, n) or fnmatch.fnmatch(base, n) for n in names):
-            wrong.append("src/MPM/%s is not in the table of files in Developer_mpm.rst" % name)
     check(wrong)
 
 

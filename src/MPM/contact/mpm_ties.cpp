@@ -55,11 +55,11 @@ void MPMTies::number_rows(std::vector<char> &walled, const std::vector<char> &is
   std::vector<int> keys(begins.back() + counts.back());
   MPI_Allgatherv(mine.data(), count, MPI_INT, keys.data(), counts.data(), begins.data(), MPI_INT,
                  world);
-  const int ngroups_of_all = (int) keys.size() / (NKEY + 1);
-  all = ngroups_of_all * size;
+  const int ngroups_everywhere = (int) keys.size() / (NKEY + 1);
+  all = ngroups_everywhere * size;
   walled.assign(all, 0);
   std::map<Key, int> numbers;
-  for (int g = 0; g < ngroups_of_all; g++) {
+  for (int g = 0; g < ngroups_everywhere; g++) {
     const int *const from = &keys[(std::size_t) g * (NKEY + 1)];
     Key key;
     std::copy_n(from, NKEY, key.begin());
@@ -197,7 +197,7 @@ void MPMTies::close(double *v)
     contact->find_approach(v, true, rows.data());
     double part[2], squares[2];
     contact->add_squares(rows.data(), round == 0 ? v : nullptr, part);
-    sum_in_order(lmp, 2, part, of_ranks, squares);
+    sum_in_order(lmp, 2, part, gathered, squares);
     if (round == 0) enough = TIED * TIED * squares[1];
     // rounding errors are all that is left
     if (!(squares[0] > enough) || (round > 1 && squares[0] > 0.5 * before)) return;
@@ -212,8 +212,8 @@ void MPMTies::close(double *v)
     factors.solve(sums.data(), impulse.data());
     for (int number = 0; number < all; number++) {
       if (place[number] < 0) continue;
-      const double of_row = impulse[place[number]];
-      for (const Entry &entry : columns[number]) v[entry.k] -= of_row * entry.value;
+      const double row_impulse = impulse[place[number]];
+      for (const Entry &entry : columns[number]) v[entry.k] -= row_impulse * entry.value;
     }
     std::fill(rows.begin(), rows.end(), 0.0);
     for (std::size_t row = 0; row < rows.size(); row++)

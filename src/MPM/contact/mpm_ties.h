@@ -56,7 +56,7 @@ class MPMTies : protected Pointers {
   std::vector<Eigen::Triplet<double>> S;      // of all rows
   std::vector<int> place;    // [number] its position in the factors, -1: the row does not hold
   MPM_NS::EnvelopeFactors factors;
-  std::vector<double> rows, mine, of_ranks, sums, impulse;
+  std::vector<double> rows, mine, gathered, sums, impulse;
 
   void number_rows(std::vector<char> &walled, const std::vector<char> &is_free);
   void find_products();

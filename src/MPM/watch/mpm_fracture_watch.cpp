@@ -32,7 +32,7 @@ static constexpr double TENSION =
     1.0e-3;    // of density times wave speed squared: a solid holds together
 
 /** Distance of neighbors, in node spacings, from which on bodies have come apart in trials: a cantilever
- *  of rubber, with three spacings; see Developer_mpm.rst. */
+ *  of rubber, with three spacings. Bounds of tests with bars: unittest/BOUNDS.md (Fracture). */
 static double limit(Shape shape)
 {
   return shape == QUADRATIC ? 1.2 : shape == CUBIC ? 1.15 : 1.0;
