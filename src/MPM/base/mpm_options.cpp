@@ -8,8 +8,9 @@
 
 #include "base/mpm_options.h"
 
+#include "base/mpm_cycle.h"
+#include "base/mpm_find_fixes.h"
 #include "error.h"
-#include "field/mpm_field.h"
 #include "fix.h"
 #include "input.h"
 #include "modify.h"
@@ -71,21 +72,6 @@ void LAMMPS_NS::refuse_second(LAMMPS *lmp, const Fix &user, const std::string &r
                     remedy);
 }
 
-void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
-                             const OptionRules &rules)
-{
-  refuse_field(lmp, fmt::format("Fix {} {}", user.style, user.id), field, rules);
-}
-
-void LAMMPS_NS::refuse_field(LAMMPS *lmp, const std::string &user, const MPMField &field,
-                             const OptionRules &rules)
-{
-  for (const auto &rule : rules)
-    if (rule.broken)
-      lmp->error->all(FLERR, Error::NOLASTLINE, "{} cannot be used with {} of fix mpm {}: {}", user,
-                      rule.keyword, field.id(), rule.text);
-}
-
 void LAMMPS_NS::find_variable(LAMMPS *lmp, NumberOrVariable &v, const std::string &user)
 {
   if (v.variable.empty()) return;
@@ -111,7 +97,7 @@ void LAMMPS_NS::evaluate_in_step(LAMMPS *lmp, bool any, const std::function<void
   if (any) lmp->modify->clearstep_compute();
   f();
   if (!any) return;
-  const auto fields = MPMField::all(lmp);
-  const int steps = fields.empty() ? 1 : fields[0]->steps_to_next();
+  const auto cycles = find_fixes<MPMCycle>(lmp);
+  const int steps = cycles.empty() ? 1 : cycles[0]->steps_to_next();
   lmp->modify->addstep_compute(lmp->update->ntimestep + steps);
 }

@@ -17,7 +17,6 @@
 namespace LAMMPS_NS {
 class Fix;
 class LAMMPS;
-class MPMField;
 
 /** Reads the arguments from iarg on as declared, up to the end or to the word last. Returns the index of this
  *  word, or of the end. */
@@ -31,13 +30,6 @@ int read_precision(LAMMPS *, int narg, char **arg, bool &single);
 void require_field(LAMMPS *, const Fix &user);
 /** Stops with an error if there is another fix of this style. remedy: what one of them does, or what to do. */
 void refuse_second(LAMMPS *, const Fix &user, const std::string &remedy = "remove one");
-
-/** Stops with an error if a field (fix mpm) violates one of the rules of a fix. In each rule, the keyword is
- *  the property of the field that cannot be used, and the text gives the reason and the remedy. */
-void refuse_field(LAMMPS *, const Fix &user, const MPMField &field, const MPM_NS::OptionRules &);
-/** The same for a command. */
-void refuse_field(LAMMPS *, const std::string &user, const MPMField &field,
-                  const MPM_NS::OptionRules &);
 
 /** Finds the variable, if the value is one, and stops with an error if it does not exist or is not equal-style.
  *  user: who needs it, for example fix mpm/rigid force. */

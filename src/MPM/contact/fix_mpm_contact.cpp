@@ -15,15 +15,16 @@
 
 #include "contact/fix_mpm_contact.h"
 
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
 #include "comm.h"
 #include "error.h"
 #include "field/mpm_field.h"
-#include "field/mpm_physics.h"
+#include "field/mpm_forces.h"
+#include "field/mpm_refined_body.h"
 #include "force.h"
 #include "modify.h"
-#include "refine/fix_mpm_refine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -200,7 +201,7 @@ void FixMPMContact::check_refined(MPMContactBody &body)
 {
   body.refined = nullptr;
   const std::string name = body.field->id();
-  for (auto *fix : find_fixes<FixMPMRefine>(lmp))
+  for (auto *fix : find_fixes<MPMRefinedBody>(lmp))
     if (fix->has(name)) body.refined = fix;
   if (!body.refined) return;
   body.finer = body.refined->finer_than(name);

@@ -22,9 +22,9 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "contact/mpm_contact_trial.h"
 #include "contact/mpm_node_contact.h"
 #include "declare/option.h"
+#include "field/mpm_friction_heat.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
-#include "heat/mpm_friction_heat.h"
 
 #include <memory>
 #include <string>
@@ -71,7 +71,7 @@ class FixMPMContact :
   /** Does this fix treat contact between these two fields (IDs)? */
   bool couples(const std::string &a, const std::string &b) const;
   /** Is this field (ID) one of the bodies? */
-  bool touches(const std::string &name) const;
+  bool touches(const std::string &name) const override;
   /** Does this fix have the same contact law and parameters as another one? */
   bool has_law_of(const FixMPMContact &) const;
 

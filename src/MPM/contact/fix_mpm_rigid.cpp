@@ -29,14 +29,14 @@
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_fluid.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
-#include "flow/fix_mpm_incompressible.h"
 #include "force.h"
 #include "math/coulomb.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
 #include "modify.h"
-#include "pore/fix_mpm_pore.h"
 #include "update.h"
 #include "walls/mpm_patch_sums.h"
 #include "walls/mpm_region_body.h"
@@ -278,8 +278,9 @@ double FixMPMRigid::speed() const
   return MathExtra::len3(v) + farthest * MathExtra::len3(omega);
 }
 
-double FixMPMRigid::stable_dt() const
+double FixMPMRigid::stable_dt(tagint &tag) const
 {
+  tag = 0;
   double h = HUGE_VAL;
   int every = 1;
   for (const auto *field : MPMField::all(lmp)) {
@@ -294,7 +295,7 @@ double FixMPMRigid::stable_dt() const
 /** Zero: the body is in none. */
 double FixMPMRigid::spacing_of_flow() const
 {
-  for (const auto *flow : find_fixes<FixMPMIncompressible>(lmp)) {
+  for (const auto *flow : find_fixes<MPMFluid>(lmp)) {
     const double h = flow->spacing_around(region_id);
     if (h > 0.0) return h;
   }
@@ -539,7 +540,7 @@ static constexpr double LAYER_FROM = 1.0, LAYER_TO = 3.0;    // of the surface, 
 
 void FixMPMRigid::find_water()
 {
-  const auto pores = find_fixes<FixMPMPore>(lmp);
+  const auto pores = find_fixes<MPMPorePressure>(lmp);
   if (pores.empty()) return;
   std::vector<MPMPatchSums::Place> places;
   std::vector<double> by_water, by_all;
@@ -547,7 +548,7 @@ void FixMPMRigid::find_water()
   int part = -1;
   for (auto *field : MPMField::all(lmp)) {
     part++;
-    if (!pores[0]->has_water(*field)) continue;
+    if (!pores[0]->pressure_in_forces(*field)) continue;
     const auto &grid = field->grid;
     h = std::max(h, field->lattice.h);
     const double half = 0.5 * (grid.side - 1) * field->lattice.h,

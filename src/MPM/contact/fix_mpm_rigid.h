@@ -15,11 +15,12 @@ FixStyle(mpm/rigid,FixMPMRigid);
 #ifndef LMP_FIX_MPM_RIGID_H
 #define LMP_FIX_MPM_RIGID_H
 
+#include "base/mpm_step_limit.h"
 #include "contact/mpm_rigid_body.h"
 #include "declare/option.h"
+#include "field/mpm_friction_heat.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
-#include "heat/mpm_friction_heat.h"
 #include "math_extra.h"
 
 #include <array>
@@ -58,7 +59,12 @@ struct MPMRigidOptions : MPMRigidBody {
  *  In a flow of fix mpm/incompressible for which its region is solid, any bounded region can be the
  *  shape, also in 2d. That fix then moves the body together with the pressure, see
  *  MPMFlowBodies. */
-class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private MPMRigidOptions {
+class FixMPMRigid :
+    public Fix,
+    public MPMNodeAction,
+    public MPMRubbing,
+    public MPMStepLimit,
+    private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
   FixMPMRigid(class LAMMPS *, int, char **);
@@ -78,8 +84,9 @@ class FixMPMRigid : public Fix, public MPMNodeAction, public MPMRubbing, private
   /** Signed distance of x from the surface, negative inside; far if it is larger. Not for bodies in
    *  a flow. */
   double distance(const double *x, double far) const;
-  /** Largest time step in which no point of the body crosses a cell. */
-  double stable_dt() const;
+  /** Largest time step in which no point of the body crosses a cell. tag: 0. */
+  double stable_dt(tagint &tag) const override;
+  bool makes_steps() const override { return false; }
 
   // for flows
 

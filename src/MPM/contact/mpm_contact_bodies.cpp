@@ -9,11 +9,12 @@
 #include "contact/mpm_contact_bodies.h"
 
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_node_sums.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_refined_body.h"
 #include "modify.h"
-#include "refine/fix_mpm_refine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -252,8 +253,7 @@ bool MPMContactBodies::map(bool with_volumes)
     predict_walls(body);
     map_content(body, with_volumes);
     body.water.clear();
-    if (pressure_of_physics(*body.field))
-      surface_force_of_physics(*body.field, body.near, body.water);
+    if (pore_pressure(*body.field)) pore_surface_force(*body.field, body.near, body.water);
   }
   return true;
 }

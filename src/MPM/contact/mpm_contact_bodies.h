@@ -24,7 +24,7 @@ class Grid;
 }
 
 namespace LAMMPS_NS {
-class FixMPMRefine;
+class MPMRefinedBody;
 class MPMField;
 
 /** A body in contact with others, and what it has at nodes. */
@@ -32,14 +32,14 @@ struct MPMContactBody {
   MPMField *field;
   MPMReach reach = {};
   std::vector<int> images = {};    ///< blocks with periodic images
-  FixMPMRefine *refined =
+  MPMRefinedBody *refined =
       nullptr;    ///< body on several lattices to which this field belongs, or null
   std::vector<MPMField *> finer = {};    ///< parts of that body on finer lattices
   std::vector<char> near = {};           ///< [slot] do bodies share nodes of this block?
   std::vector<double> gradient = {};     ///< [node][3] of the volume (or mass)
   std::vector<double> fraction = {};     ///< [node] volume over that of the node
-  std::vector<double> water = {};        ///< [node][3] of MPMPhysics::surface_force(); empty: none
-  std::vector<char> held = {};           ///< bits, FixMPMBoundary::mark_held()
+  std::vector<double> water = {};    ///< [node][3] of MPMPorePressure::surface_force(); empty: none
+  std::vector<char> held = {};       ///< bits, FixMPMBoundary::mark_held()
   FixMPMBoundary::Foreseen foreseen = {};
 
   /** Index of the node with this record. */

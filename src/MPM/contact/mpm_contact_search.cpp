@@ -27,6 +27,7 @@
 #include "comm.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_halo.h"
 #include "field/mpm_node_sums.h"
@@ -193,7 +194,7 @@ void MPMContactSearch::report_missed_water()
   constexpr double MOST = 0.05;
   if (warned_of_water ||
       std::all_of(bodies.list.begin(), bodies.list.end(), [](const MPMContactBody &body) {
-        return !pressure_of_physics(*body.field);
+        return !pore_pressure(*body.field);
       }))
     return;
   double all[2];

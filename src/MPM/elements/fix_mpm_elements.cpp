@@ -1332,7 +1332,7 @@ double FixMPMElements::stored_energy() const
    not less than theirs. Bending and the gas add stiffness, so that squares add.
 ------------------------------------------------------------------------- */
 
-double FixMPMElements::stable_dt_local(tagint &tag, double &speed) const
+double FixMPMElements::stable_dt(tagint &tag, double &speed) const
 {
   constexpr double LITTLE_GAS =
       0.14;    // 1 % of the time step, less than what the bound has to spare
@@ -1408,7 +1408,7 @@ void FixMPMElements::check_dt() const
 {
   tagint tag;
   double speed;
-  const double limit = stable_dt_local(tag, speed);
+  const double limit = stable_dt(tag, speed);
   if (update->dt <= limit) return;
   if (speed == 0.0)
     error->one(
@@ -1437,7 +1437,7 @@ void FixMPMElements::check_free_dt()
   if (compression || warned_slack) return;
   tagint tag;
   double speed, limit;
-  const double mine = stable_dt_local(tag, speed);
+  const double mine = stable_dt(tag, speed);
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
   if (!(update->dt > SLACK * limit)) return;
   warned_slack = true;

@@ -18,7 +18,7 @@ FixStyle(mpm/elements,FixMPMElements);
 #include "base/mpm_state.h"
 #include "declare/option.h"
 #include "elements/mpm_thin_body.h"
-#include "field/mpm_trial_forces.h"
+#include "field/mpm_internal_force.h"
 #include "material/plane_stress.h"
 #include "mesh/bending.h"
 #include "mesh/gmsh.h"
@@ -75,7 +75,7 @@ class MPMElementsPressure {
  *
  *  An element belongs to one of its nodes and migrates with it; the others may be ghosts.
  */
-class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMElementsOptions {
+class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPMElementsOptions {
  public:
   FixMPMElements(class LAMMPS *, int, char **);
   ~FixMPMElements() override;
@@ -106,8 +106,8 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
   int pack_reverse_comm(int, int, double *) override;
   void unpack_reverse_comm(int, int *, double *) override;
 
-  /** Does a fix mpm move the nodes? */
-  bool on_lattice() const { return has_lattice; }
+  int group_of_points() const override { return groupbit; }
+  bool on_lattice() const override { return has_lattice; }
 
   /** Sets the pressure, which pushes a closed surface outward, and an open one toward the side from which its elements
    *  go around counterclockwise (in 2d: to the right of lines). Valid until the next init(). closed: an error if the
@@ -116,19 +116,15 @@ class FixMPMElements : public FixMPMState, public MPMTrialForces, private MPMEle
 
   /** Energy stored by the elements of this rank [pressure * volume]; on the first rank, minus the work done so far by
    *  the pressure in a closed surface. */
-  double stored_energy() const;
+  double stored_energy() const override;
 
   /** Forces of the elements and of the pressure on the points of this rank, [nlocal][3], as added to atom->f. */
   const double *forces() const override { return force_on.data(); }
 
-  /** Smallest stable time step of this rank's elements: 2/omega with a bound of the highest
-   *  frequency omega. tag: a node of the limiting element; speed: its wave speed, or 0 if the gas in
-   *  a closed surface contributes more. Collective. */
-  double stable_dt_local(tagint &tag, double &speed) const;
-
-  /** Stops with an error if the time step exceeds the stable one of an element. */
-  void check_dt() const;
-
+  /** From 2/omega with a bound of the highest frequency omega; speed is 0 if the gas in a closed surface contributes
+   *  more than waves. */
+  double stable_dt(tagint &tag, double &speed) const override;
+  void check_dt() const override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   bool forces_after(const double *u, double *force, double &carried) override;

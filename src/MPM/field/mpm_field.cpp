@@ -11,7 +11,6 @@
 #include "atom.h"
 #include "base/mpm_points.h"
 #include "domain.h"
-#include "elements/fix_mpm_elements.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_affine.h"
@@ -20,6 +19,7 @@
 #include "field/mpm_every.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_physics.h"
@@ -27,12 +27,11 @@
 #include "field/mpm_smoothing.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
+#include "field/mpm_watch.h"
 #include "force.h"
 #include "material/batch.h"
 #include "modify.h"
-#include "step/fix_mpm.h"
 #include "update.h"
-#include "watch/mpm_fracture_watch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +65,6 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   if (options.smooths_volumes()) smoothing.reset(new MPMSmoothing(lmp, *this));
   if (options.heat) heating.reset(new MPMTransferHeat(lmp, *this));
   if (options.locking != Options::NO_CURE) locking.reset(new MPMLocking(lmp, *this, state));
-  if (options.watches_fracture()) fracture_watch.reset(new MPMFractureWatch(lmp, *this));
   guard.reset(new MPMGuard(lmp, *this));
   time_limit.reset(new MPMTimeLimit(lmp, *this));
   map.reset(new MPMPointMap(lmp, *this));
@@ -79,13 +77,13 @@ MPMField::~MPMField() = default;
 std::vector<MPMField *> MPMField::all(LAMMPS *lmp)
 {
   std::vector<MPMField *> list;
-  for (auto *ifix : find_fixes<FixMPM>(lmp)) list.push_back(ifix->field.get());
+  for (auto *ifix : find_fixes<MPMFieldOwner>(lmp)) list.push_back(ifix->field.get());
   return list;
 }
 
 MPMField *MPMField::find(LAMMPS *lmp, const std::string &id)
 {
-  auto *ifix = dynamic_cast<FixMPM *>(lmp->modify->get_fix_by_id(id));
+  auto *ifix = dynamic_cast<MPMFieldOwner *>(lmp->modify->get_fix_by_id(id));
   return ifix ? ifix->field.get() : nullptr;
 }
 
@@ -150,7 +148,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   jacobians.init();
 
   find_materials();
-  elements = find_fixes<FixMPMElements>(lmp);
+  elements = find_fixes<MPMInternalForce>(lmp);
   if (materials.empty())
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
 
@@ -241,8 +239,8 @@ bool MPMField::is_point(int i) const
 
 bool MPMField::is_element_node(int i) const
 {
-  for (auto *ifix : elements)
-    if (atom->mask[i] & ifix->groupbit) return true;
+  for (const auto *body : elements)
+    if (atom->mask[i] & body->group_of_points()) return true;
   return false;
 }
 
@@ -329,4 +327,21 @@ double MPMField::memory_usage() const
                            &work.places, &work.stress, &work.no_volume, &work.xnew, &work.history})
     bytes += list->capacity() * sizeof(double);
   return bytes;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
+                             const OptionRules &rules)
+{
+  refuse_field(lmp, fmt::format("Fix {} {}", user.style, user.id), field, rules);
+}
+
+void LAMMPS_NS::refuse_field(LAMMPS *lmp, const std::string &user, const MPMField &field,
+                             const OptionRules &rules)
+{
+  for (const auto &rule : rules)
+    if (rule.broken)
+      lmp->error->all(FLERR, Error::NOLASTLINE, "{} cannot be used with {} of fix mpm {}: {}", user,
+                      rule.keyword, field.id(), rule.text);
 }

@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_FIELD_H
 #define LMP_MPM_FIELD_H
 
+#include "base/mpm_cycle.h"
 #include "field/mpm_field_options.h"
 #include "field/mpm_jacobians.h"
 #include "field/mpm_ledger.h"
@@ -27,23 +28,24 @@ struct BatchKernels;
 
 namespace LAMMPS_NS {
 class Fix;
-class FixMPMElements;
 class FixMPMMaterial;
 class MPMAffine;
 class MPMBoxes;
 class MPMCpdi;
 class MPMEvery;
-class MPMFractureWatch;
 class MPMFrame;
 class MPMGuard;
+class MPMInternalForce;
 class MPMLocking;
 class MPMPhysics;
 class MPMPlan;
 class MPMPointMap;
 class MPMPointState;
 class MPMSmoothing;
+class MPMStretch;
 class MPMTimeLimit;
 class MPMTransferHeat;
+class MPMWatch;
 class MPMRows;
 struct MPMPoints;
 
@@ -67,9 +69,9 @@ class MPMField : protected Pointers {
   MPMNodes nodes;
   MPMPoints *points;    ///< of the present Atom object, which replicate exchanges: set in init()
 
-  std::vector<FixMPMMaterial *> materials;    ///< all of them, see find_materials()
-  std::vector<FixMPMElements *> elements;     ///< all of them, set in init()
-  MPMPlan *plan = nullptr;                    ///< of all fields, set in init()
+  std::vector<FixMPMMaterial *> materials;     ///< all of them, see find_materials()
+  std::vector<MPMInternalForce *> elements;    ///< all of them, set in init()
+  MPMPlan *plan = nullptr;                     ///< of all fields, set in init()
 
   const MPM_NS::MPMKernels *kernels = nullptr;
   const MPM_NS::BatchKernels *batch_kernels = nullptr;
@@ -91,7 +93,7 @@ class MPMField : protected Pointers {
   /** [n][dim] gradients on the lattice that other physics keep for points; set by their init_physics(). */
   std::vector<const MPMRows *> slopes;
   /** Physics that change how points strain; set by their init_physics(). */
-  std::vector<MPMPhysics *> stretching;
+  std::vector<MPMStretch *> stretching;
   /** det F of points, for other physics, which ask for it in their topology_changed(). */
   MPMJacobians jacobians;
 
@@ -101,7 +103,7 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPMPointMap> map;
   std::unique_ptr<MPMGuard> guard;
   std::unique_ptr<MPMTimeLimit> time_limit;
-  std::unique_ptr<MPMFractureWatch> fracture_watch;
+  std::unique_ptr<MPMWatch> fracture_watch;    ///< set by fix mpm
   std::unique_ptr<MPMAffine> affine;
   std::unique_ptr<MPMBoxes> boxes;
   std::unique_ptr<MPMCpdi> domains;
@@ -174,6 +176,24 @@ class MPMField : protected Pointers {
 
   double memory_usage() const;
 };
+
+/** Owner of a field. Implemented by fix mpm. */
+class MPMFieldOwner : public MPMCycle {
+ public:
+  std::unique_ptr<MPMField> field;
+
+  int steps_to_next() const override { return field->steps_to_next(); }
+
+ protected:
+  ~MPMFieldOwner() = default;    // owned and deleted as a Fix
+};
+
+/** Stops with an error if a field violates one of the rules of a fix. In each rule, the keyword is
+ *  the property of the field that cannot be used, and the text gives the reason and the remedy. */
+void refuse_field(LAMMPS *, const Fix &user, const MPMField &field, const MPM_NS::OptionRules &);
+/** The same for a command. */
+void refuse_field(LAMMPS *, const std::string &user, const MPMField &field,
+                  const MPM_NS::OptionRules &);
 
 }    // namespace LAMMPS_NS
 #endif

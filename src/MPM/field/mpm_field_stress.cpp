@@ -11,19 +11,20 @@
 #include "field/mpm_field.h"
 
 #include "comm.h"
-#include "contact/fix_mpm_contact.h"
+#include "field/mpm_forces.h"
+#include "field/mpm_node_action.h"
 #include "field/mpm_physics.h"
-#include "refine/fix_mpm_refine.h"
+#include "field/mpm_refined_body.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
 
-/** Is it, or another lattice of the same body, in a fix mpm/contact? */
+/** Does it, or another lattice of the same body, touch other bodies by a node action? */
 bool MPMField::has_contact() const
 {
-  const auto contacts = find_fixes<FixMPMContact>(lmp);
-  const auto bodies = find_fixes<FixMPMRefine>(lmp);
+  const auto contacts = find_fixes<MPMNodeAction>(lmp);
+  const auto bodies = find_fixes<MPMRefinedBody>(lmp);
   const auto list = MPMField::all(lmp);
   return std::any_of(list.begin(), list.end(), [&](const MPMField *field) {
     const bool mine = field == this || std::any_of(bodies.begin(), bodies.end(), [&](auto *body) {
@@ -43,10 +44,7 @@ bool MPMField::has_contact() const
 
 void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
 {
-  const bool alone =
-      !has_contact() && std::none_of(all.begin(), all.end(), [](const auto *physics) {
-        return physics->joins_motion();
-      });
+  const bool alone = !has_contact() && find_fixes<MPMPorePressure>(lmp).empty();
   const auto who = std::find_if(all.begin(), all.end(), [&](const auto *physics) {
     return alone && physics->brings_to_rest();
   });

@@ -28,14 +28,15 @@
    with it is at most 3 % above that in the plane, less than what the limit h/c has to spare.
 ------------------------------------------------------------------------- */
 
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_frame_total.h"
+#include "field/mpm_node_action.h"
 #include "field/mpm_point_map.h"
 #include "force.h"
 #include "modify.h"
-#include "walls/fix_mpm_boundary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,8 +59,8 @@ template <class Plane> class MPMFrameAxisymmetric : public Plane {
   {
     Plane::check();
     if (domain->boxlo[0] > AT_AXIS * field.lattice.h) return;
-    for (auto *ifix : this->modify->get_fix_by_style("^mpm/boundary$"))
-      if (dynamic_cast<FixMPMBoundary *>(ifix)->holds_axis(field)) return;
+    for (const auto *action : find_fixes<MPMNodeAction>(this->lmp))
+      if (action->holds_axis(field)) return;
     this->error->all(
         FLERR,
         "Fix mpm {} axisymmetric: the face of the box at x = 0 is the axis of symmetry, "

@@ -8,6 +8,7 @@
 
 #include "field/mpm_guard.h"
 
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_pair_styles.h"
 #include "base/mpm_points.h"
 #include "comm.h"
@@ -17,6 +18,7 @@
 #include "field/mpm_cpdi.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_integrators.h"
+#include "field/mpm_node_action.h"
 #include "field/mpm_point_batches.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_traffic.h"
@@ -29,7 +31,6 @@
 #include "neighbor.h"
 #include "output.h"
 #include "pair.h"
-#include "refine/fix_mpm_refine.h"
 #include "thermo.h"
 #include "update.h"
 
@@ -192,7 +193,11 @@ void MPMGuard::check_points() const
   MPI_Allreduce(count, all, NKINDS, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(example, example_all, NKINDS, MPI_LMP_TAGINT, MPI_MAX, world);
 
-  if (all[POINT] == 0 && !emits_points(field) && !FixMPMRefine::serves_contact(field))
+  const auto actions = find_fixes<MPMNodeAction>(lmp);
+  const bool may_be_empty = std::any_of(actions.begin(), actions.end(), [this](const auto *action) {
+    return action->may_be_empty(field);
+  });
+  if (all[POINT] == 0 && !may_be_empty)
     error->all(FLERR,
                "Fix mpm {} has no material points: its group {} has no atoms with a volume; "
                "make points with create_points, or give atoms a volume with set ... volume",

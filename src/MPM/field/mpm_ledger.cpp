@@ -9,8 +9,9 @@
 #include "field/mpm_ledger.h"
 
 #include "atom.h"
-#include "elements/fix_mpm_elements.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
@@ -115,7 +116,7 @@ void MPMLedger::account_for_forces()
   const TransferStep s = field.step_data();
   double outer = 0.0, inner = 0.0, stress = 0.0, loads = 0.0;
   double L[9 * BATCH], velocity[3 * BATCH] = {};    // no velocity along z in 2d
-  const double *const pressure = pressure_of_physics(field);
+  const double *const pressure = pore_pressure(field);
   double total_stress[6 * BATCH + 8];
 
   const auto account = [&](const MPMPointMap::Run &run, int first, int n, const int *base) {
@@ -130,11 +131,11 @@ void MPMLedger::account_for_forces()
     }
     if (!run.material) return;    // nodes of elements
 
-    if (pressure) add_pressure(pressure, b, first, n, total_stress);
+    if (pressure) subtract_pressure(pressure, b, first, n, total_stress);
     stress += stress_power(b, first, n, L);
-    if (!physics_adds_stress(field, first, first + n)) return;
+    if (!has_added_stress(field, first, first + n)) return;
     std::fill_n(total_stress, 6 * n, 0.0);
-    add_stress_of_physics(field, first, n, total_stress);
+    add_stress(field, first, n, total_stress);
     b = rows_from(field, r, first);
     b.velocity = velocity;
     b.tau = total_stress;

@@ -100,5 +100,15 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   double stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;
 };
 
+/** Keeps the energies that a run has started with. Implemented by a compute. */
+class MPMEnergyStart {
+ public:
+  /** Sums and accounts at the start of the ledger, for restart files; empty before the start. */
+  virtual const std::vector<double> &start_sums() const = 0;
+
+ protected:
+  ~MPMEnergyStart() = default;    // owned and deleted as a Compute
+};
+
 }    // namespace LAMMPS_NS
 #endif

@@ -14,7 +14,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"
-#include "step/mpm_stages.h"
+#include "field/mpm_strain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -153,7 +153,7 @@ void MPMLocking::strain(const double *L, double dt)
         }
         frame.stretch(i + p, more, dt, averaged + nL * p);
       }
-      MPMStages::update_stress(field, r, run, i, n, averaged, dt);
+      update_stress(field, r, run, i, n, averaged, dt);
     }
 }
 

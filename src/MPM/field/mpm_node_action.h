@@ -11,6 +11,8 @@
 
 #include "lattice/grid.h"
 
+#include <string>
+
 namespace LAMMPS_NS {
 
 /** Action on the nodes of the fields after the momentum equation: boundaries, contact, ... Fixes that derive
@@ -70,6 +72,14 @@ class MPMNodeAction {
   /** Does the action decide in STEP which parts of this field are in contact? Velocities that are mapped back
    *  are not accurate enough in this respect to move points, except those whose domains deform (CPDI). */
   virtual bool decides_contact(const class MPMField &) const { return false; }
+
+  /** Can the field with this ID touch other bodies by this action? */
+  virtual bool touches(const std::string & /*field*/) const { return false; }
+  /** Does the action keep the nodes of this field at x = 0, an axis of symmetry, from moving along x? */
+  virtual bool holds_axis(const class MPMField &) const { return false; }
+  /** May this field be without points at the start of a run, because they come later, or because others need its
+   *  nodes? */
+  virtual bool may_be_empty(const class MPMField &) const { return false; }
 
   /** Changes the velocities of the nodes of the fields; in STEP, also the old velocities of FLIP where material
    *  is held for good (see fix_mpm_boundary.cpp). */

@@ -13,14 +13,13 @@
 #include "field/mpm_edges.h"
 #include "field/mpm_every.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_halo.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
 #include "platform.h"
-#include "watch/mpm_fracture_watch.h"
-#include "watch/mpm_point_extremes.h"
 
 #include <algorithm>
 
@@ -28,11 +27,14 @@ using namespace LAMMPS_NS;
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPlan::make()
+void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
 {
   fields = MPMField::all(lmp);
   actions = find_fixes<MPMNodeAction>(lmp);
   physics = find_fixes<MPMPhysics>(lmp);
+  added_stresses = find_fixes<MPMAddedStress>(lmp);
+  loads = find_fixes<MPMLoad>(lmp);
+  pore_pressures = find_fixes<MPMPorePressure>(lmp);
   std::stable_sort(actions.begin(), actions.end(), [](auto *a, auto *b) {
     return a->turn() < b->turn();
   });
@@ -43,8 +45,7 @@ void MPMPlan::make()
   for (auto *other : physics) other->init_physics(*this);
 
   stages.clear();
-  static void (*const make_list[])(MPMPlan &) = {make_usl, make_usf, make_musl, make_usavg};
-  make_list[fields[0]->options.scheme](*this);    // in the order of MPMFieldOptions::Scheme
+  scheme(*this);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -180,7 +181,7 @@ void MPMPlan::find_blocks_now()
 
 void MPMPlan::start()
 {
-  watch.start();
+  watch->start();
   for (auto &stage : stages) std::fill(stage.seconds.begin(), stage.seconds.end(), 0.0);
   wall_start = platform::walltime();
   cpu_start = platform::cputime();
@@ -240,7 +241,7 @@ std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) c
   return sums;
 }
 
-void MPMPlan::report(const MPMField &field, double bytes_per_point) const
+void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::string &state) const
 {
   constexpr double IDLE = 0.9;      // of the time is the processor's, or else others have taken it
   constexpr double SMALL = 0.05;    // share of a stage that is not worth a word
@@ -256,12 +257,11 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
   MPI_Allreduce(local, sum, 5, MPI_DOUBLE, MPI_SUM, world);
   const double npoints = sum[0] / counts.steps;
   const std::vector<Cost> list = costs(field, 1.0e9 * comm->nprocs / sum[0]);
-  const std::string state = point_extremes(lmp, field);
   if (comm->me) return;
 
   if (sum[0] == 0.0) {    // of a field that is there for contact, or has not got any yet
     utils::logmesg(lmp, "MPM {}: no points\n", field.id());
-    if (&field == fields[0]) utils::logmesg(lmp, watch.report());
+    if (&field == fields[0]) utils::logmesg(lmp, watch->report());
     return;
   }
   double total = 0.0;
@@ -292,7 +292,7 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point) const
              most = fmt::format("{:.6g}", counts.dt_max);
   text += fmt::format("\n  {} steps, time step {}{}\n", counts.steps,
                       least == most ? least : least + " to " + most, state);
-  if (&field == fields[0]) text += watch.report();
+  if (&field == fields[0]) text += watch->report();
   utils::logmesg(lmp, text);
   if (least_use < IDLE && &field == fields.back())
     utils::logmesg(lmp,

@@ -10,16 +10,20 @@
 #define LMP_MPM_PLAN_H
 
 #include "field/mpm_node_action.h"
+#include "field/mpm_watch.h"
 #include "pointers.h"
-#include "watch/mpm_energy_watch.h"
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMAddedStress;
 class MPMField;
+class MPMLoad;
 class MPMPhysics;
+class MPMPorePressure;
 
 /** The step of all fields as a list of named stages, which is made once at the start of a run. Each of the
  *  four schemes is one such list, see mpm_step.cpp. The cost of each stage is measured. */
@@ -42,14 +46,18 @@ class MPMPlan : protected Pointers {
 
   std::vector<MPMField *> fields;
   std::vector<MPMNodeAction *> actions;    ///< in the order in which they act
-  std::vector<MPMPhysics *> physics;       ///< in the order of definition
+  // in the order of definition
+  std::vector<MPMPhysics *> physics;
+  std::vector<MPMAddedStress *> added_stresses;
+  std::vector<MPMLoad *> loads;
+  std::vector<MPMPorePressure *> pore_pressures;
 
-  MPMEnergyWatch watch;
+  std::unique_ptr<MPMWatch> watch;    ///< of all fields
 
-  explicit MPMPlan(class LAMMPS *lmp) : Pointers(lmp), watch(lmp, fields) {}
+  explicit MPMPlan(class LAMMPS *lmp) : Pointers(lmp) {}
 
-  /** Find all fields, node actions, and physics, and make the list. */
-  void make();
+  /** Find all fields, node actions, and physics, and make the list of stages with the scheme. */
+  void make(const std::function<void(MPMPlan &)> &scheme);
 
   /** Append a stage that runs for each field for which wanted is true (null: for all). There is no such stage
    *  if no field wants it. */
@@ -65,8 +73,8 @@ class MPMPlan : protected Pointers {
   void start();
   /** Called in each step of LAMMPS; runs the stages if a step of the cycle is due. */
   void step();
-  /** Writes the summary of a run for one field to screen and log file: state, energy, and cost. */
-  void report(const MPMField &, double bytes_per_point) const;
+  /** Writes the summary of a run for one field to screen and log file: state (a text), energy, and cost. */
+  void report(const MPMField &, double bytes_per_point, const std::string &state) const;
 
   /** Find the blocks in reach of points, for all fields whose points have moved in memory or out of reach. */
   void find_blocks();
@@ -96,12 +104,6 @@ class MPMPlan : protected Pointers {
   std::vector<Cost> costs(const MPMField &, double scale) const;
   double wall_start = 0.0, cpu_start = 0.0;    // at the start of the run [s]
 };
-
-/** Make the list of stages of one scheme. */
-void make_usl(MPMPlan &);
-void make_usf(MPMPlan &);
-void make_musl(MPMPlan &);
-void make_usavg(MPMPlan &);
 
 }    // namespace LAMMPS_NS
 #endif

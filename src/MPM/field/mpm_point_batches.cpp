@@ -14,10 +14,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
 #include "field/mpm_physics.h"
-#include "flow/fix_mpm_incompressible.h"
-#include "flow/mpm_flow_solids.h"
 #include "material/material.h"
-#include "meshgrid/fix_mpm_mesh.h"
 
 #include <memory>
 #include <vector>
@@ -79,7 +76,5 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
       flush();
     }
   }
-  for (auto *mesh : find_fixes<FixMPMMesh>(lmp)) mesh->visit_batches(groupbit, visit);
-  for (auto *flow : find_fixes<FixMPMIncompressible>(lmp))
-    if (flow->solids_of()) flow->solids_of()->visit_batches(groupbit, visit);
+  for (auto *owner : find_fixes<MPMPointOwner>(lmp)) owner->visit_batches(groupbit, visit);
 }

@@ -8,9 +8,9 @@
 
 #include "field/mpm_rest.h"
 
-#include "elements/fix_mpm_elements.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_field.h"
+#include "field/mpm_internal_force.h"
 #include "transfer/kernels.h"
 
 #include "atom.h"

@@ -17,7 +17,6 @@
 #include "field/mpm_point_batches.h"
 #include "field/mpm_point_map.h"
 #include "force.h"
-#include "loads/fix_mpm_emit.h"
 #include "material/batch.h"
 #include "material/material.h"
 #include "math/matrix.h"
@@ -110,13 +109,4 @@ MPMTraffic LAMMPS_NS::remove_points(LAMMPS *lmp, const std::function<bool(int i)
   // the sum over all fields counts, see MPMEnergyWatch
   if (meant && !MPMField::all(lmp).empty()) MPMField::all(lmp)[0]->guard->brought -= all.points;
   return all;
-}
-
-/* ---------------------------------------------------------------------- */
-
-bool LAMMPS_NS::emits_points(const MPMField &field)
-{
-  for (const auto *emitter : find_fixes<FixMPMEmit>(field.lmp))
-    if (emitter->emits_into(field)) return true;
-  return false;
 }

@@ -44,8 +44,5 @@ void end_traffic(LAMMPS *);
  *  the sums over all processes. Collective; an exchange must follow. */
 MPMTraffic remove_points(LAMMPS *, const std::function<bool(int i)> &leaves, bool meant);
 
-/** Does a fix bring points into this field during runs? If so, it may be empty at the start. */
-bool emits_points(const MPMField &);
-
 }    // namespace LAMMPS_NS
 #endif

@@ -1359,6 +1359,11 @@ void FixMPMIncompressible::check_density(double of_fluid, const std::string &who
                of_fluid, id, style, density);
 }
 
+void FixMPMIncompressible::visit_batches(int group_bits, const BatchVisitor &visit)
+{
+  if (solids) solids->visit_batches(group_bits, visit);
+}
+
 double FixMPMIncompressible::spacing_around(const std::string &region) const
 {
   return std::count(region_ids.begin(), region_ids.end(), region) ? h : 0.0;

@@ -18,6 +18,8 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 #include "base/mpm_state.h"
 #include "base/mpm_step_limit.h"
 #include "declare/option.h"
+#include "field/mpm_fluid.h"
+#include "field/mpm_point_batches.h"
 #include "flow/mpm_flow_gas.h"
 #include "flow/mpm_flow_lattice.h"
 #include "solve/krylov.h"
@@ -102,6 +104,8 @@ struct MPMIncompressibleOptions {
 class FixMPMIncompressible :
     public FixMPMState,
     public MPMStepLimit,
+    public MPMFluid,
+    public MPMPointOwner,
     private MPMIncompressibleOptions {
  public:
   FixMPMIncompressible(class LAMMPS *, int, char **);
@@ -125,15 +129,12 @@ class FixMPMIncompressible :
    *  acceleration, or a moving region or wall passes one, or the limit of explicit viscosity, of solids, or of surface
    *  tension. tag: of the limiting point; 0: another limit. */
   double stable_dt(tagint &tag) const override;
-  /** Node spacing of this flow if the region is solid for it, else 0. */
-  double spacing_around(const std::string &region) const;
-  /** Node spacing. */
-  double spacing() const { return h; }
+  double spacing_around(const std::string &region) const override;
+  double spacing() const override { return h; }
+  void visit_batches(int group_bits, const BatchVisitor &) override;
   MPMFlowSolids *solids_of() const { return solids.get(); }    ///< null: none
-  /** Density of points in groups with these bits, that are no solids. */
-  double density_of_groups(int mask) const;
-  /** Stops with an error if the density of the fluid given by another fix differs. who: the start of the message. */
-  void check_density(double of_fluid, const std::string &who) const;
+  double density_of_groups(int mask) const override;
+  void check_density(double of_fluid, const std::string &who) const override;
 
  private:
   MPMFlowLattice cells;

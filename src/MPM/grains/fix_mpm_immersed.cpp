@@ -46,11 +46,11 @@
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_fluid.h"
 #include "field/mpm_halo.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 #include "fix_gravity.h"
-#include "flow/fix_mpm_incompressible.h"
 #include "force.h"
 #include "math_const.h"
 #include "math_extra.h"
@@ -135,14 +135,14 @@ void FixMPMImmersed::init()
         "out, or use that for the fluid",
         id);
   if (field) return;
-  const auto *const flow =
-      dynamic_cast<const FixMPMIncompressible *>(modify->get_fix_by_id(field_id));
+  const auto *const driver = modify->get_fix_by_id(field_id);
+  const auto *const flow = dynamic_cast<const MPMFluid *>(driver);
   if (!flow)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/immersed {}: there is no fix mpm {}, nor a fix mpm/incompressible", id,
                field_id);
   flow->check_density(density, fmt::format("Fix mpm/immersed {}", id));
-  check_grains(flow, flow->spacing());
+  check_grains(driver, flow->spacing());
 }
 
 /* ----------------------------------------------------------------------
@@ -726,4 +726,11 @@ double FixMPMImmersed::memory_usage()
                    grains.capacity() * sizeof(Grain) + used.capacity() +
                    (immersed.capacity() + slots.capacity()) * sizeof(int) +
                    (nodes.capacity() + canonical.capacity()) * sizeof(int64_t));
+}
+
+/** Grains in a fluid are the only ones that meet something, unless there are other bodies. */
+bool FixMPMImmersed::keeps_group(int number) const
+{
+  return igroup == number && modify->get_fix_by_style("^mpm/surface$").empty() &&
+      MPMField::all(lmp).size() == 1;
 }

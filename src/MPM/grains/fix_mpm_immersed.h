@@ -16,6 +16,7 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 #define LMP_FIX_MPM_IMMERSED_H
 
 #include "declare/option.h"
+#include "field/mpm_listed_points.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
 #include "grains/mpm_drag.h"
@@ -41,7 +42,11 @@ struct MPMImmersedOptions {
 /** Drag and buoyancy between grains smaller than the node spacing and a fluid. The fluid is a field
  *  (fix mpm), with momentum exchange at the nodes around each grain, or an incompressible flow, which uses
  *  only the laws of this fix and exchanges momentum by itself (MPMFlowGrains). */
-class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOptions {
+class FixMPMImmersed :
+    public Fix,
+    public MPMNodeAction,
+    public MPMListedPoints,
+    private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
@@ -56,6 +61,8 @@ class FixMPMImmersed : public Fix, public MPMNodeAction, private MPMImmersedOpti
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
   void act(double dt, Stage) override;
+
+  bool keeps_group(int group) const override;
 
   // for flows
 

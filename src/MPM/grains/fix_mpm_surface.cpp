@@ -21,10 +21,10 @@
 #include "field/mpm_guard.h"
 #include "field/mpm_node_sums.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_refined_body.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
-#include "refine/fix_mpm_refine.h"
 #include "update.h"
 
 #include <algorithm>
@@ -156,7 +156,7 @@ void FixMPMSurface::init()
                  {{field->options.axisymmetric, "axisymmetric",
                    "a grain would be a ring: let bodies meet through fix mpm/contact, or use 3d "
                    "for grains"}});
-  if (comm->me == 0 && !find_fixes<FixMPMRefine>(lmp).empty())
+  if (comm->me == 0 && !find_fixes<MPMRefinedBody>(lmp).empty())
     error->warning(FLERR,
                    "Fix mpm/surface {}: points at the rims between the lattices of fix mpm/refine "
                    "count as surface, and have a radius, too: leave them out of group {} if they "

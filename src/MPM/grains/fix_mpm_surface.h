@@ -17,6 +17,7 @@ FixStyle(mpm/surface,FixMPMSurface);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
+#include "field/mpm_listed_points.h"
 
 #include <string>
 #include <vector>
@@ -37,7 +38,7 @@ struct MPMSurfaceOptions {
 /** Gives a contact radius to the material points at the surface of bodies and to those that have
  *  failed, and a radius of zero to all others, so that the pair styles of grains do not see points
  *  inside of bodies. The radius is that of the present volume of the point. */
-class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
+class FixMPMSurface : public FixMPMState, public MPMListedPoints, private MPMSurfaceOptions {
  public:
   FixMPMSurface(class LAMMPS *, int, char **);
   int setmask() override;
@@ -50,7 +51,7 @@ class FixMPMSurface : public FixMPMState, private MPMSurfaceOptions {
   double compute_scalar() override;
 
   /** Does this fix decide which points are in this group (those with a radius)? */
-  bool keeps_group(int group) const;
+  bool keeps_group(int group) const override;
 
   double memory_usage() override;
   void grow_arrays(int) override;

@@ -334,6 +334,19 @@ void FixMPMHeat::find_rubbers()
                "give its pair_coeff one of these, or drop the keyword");
 }
 
+bool FixMPMHeat::conducts(const MPMField &field) const
+{
+  return of(field).conducts();
+}
+
+void FixMPMHeat::give(const MPMField &field, std::size_t node, double heat, bool counts)
+{
+  auto &given = of(field).given;
+  if (given.empty()) given.resize(field.grid.nnodes(), 0.0);
+  given[node] += heat;
+  if (counts) book(FRICTION, heat);
+}
+
 /** Warns once of friction whose heat is lost, unless the input says that this is intended. */
 void FixMPMHeat::warn_of_friction()
 {

@@ -18,6 +18,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "base/mpm_state.h"
 #include "diffusion/mpm_diffusion_solver.h"
 #include "diffusion/mpm_super_step.h"
+#include "field/mpm_heat_sink.h"
 #include "field/mpm_physics.h"
 #include "heat/mpm_conduction.h"
 #include "heat/mpm_grain_heat.h"
@@ -58,6 +59,7 @@ struct MPMHeatOptions {
 class FixMPMHeat :
     public FixMPMState,
     public MPMPhysics,
+    public MPMHeatSink,
     private MPMHeatOptions,
     private MPMDiffusion {
  public:
@@ -85,6 +87,9 @@ class FixMPMHeat :
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
   double energy_at_hand() const override;
+
+  bool conducts(const MPMField &) const override;
+  void give(const MPMField &, std::size_t node, double heat, bool counts) override;
 
   /** Conduction in this field. */
   MPMConduction &of(const MPMField &) const;

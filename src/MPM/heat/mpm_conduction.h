@@ -14,6 +14,7 @@
 #include "diffusion/mpm_layer_mean.h"
 #include "diffusion/mpm_node_scalar.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_conductivity.h"
 #include "heat/mpm_heat_faces.h"
 #include "material/material.h"
 
@@ -235,11 +236,6 @@ class MPMConduction : protected Pointers {
   void init_layers();
   void find_unseen();
 };
-
-/** Principal conductivities k of a material at a point with the deformation gradient F [9, row-major]. The rows of n are
- *  their axes, unit vectors in space. All k are the same if the material is isotropic. */
-void principal_conductivities(const MPM_NS::Conduction &, const double *F, double k[3],
-                              double n[3][3]);
 
 }    // namespace LAMMPS_NS
 #endif

@@ -13,6 +13,7 @@
 #include "elements/fix_mpm_elements.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_ledger.h"
 #include "field/mpm_node_action.h"
@@ -169,13 +170,20 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
   solver = std::make_unique<MPMImplicit>(lmp, fields, mine, kept);
 }
 
+/** Does an implicit step of this field solve for a pressure of this physics, too? */
+static bool has_pressure(MPMPhysics *physics, const MPMField &field)
+{
+  auto *const water = dynamic_cast<MPMPorePressure *>(physics);
+  return water && water->node_pressure(field);
+}
+
 /** Refuses what implicit steps of a field do not support. */
 void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
 {
   auto *const field = &of;
   const auto &options = field->options;
   for (auto *other : plan.physics)
-    if (other->joins_motion() && (time == NEWMARK || time == MIDPOINT))
+    if (dynamic_cast<MPMPorePressure *>(other) && (time == NEWMARK || time == MIDPOINT))
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/implicit solves for the pressure of fix {} {} at the end of a step, which "
@@ -218,19 +226,19 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
         "without fix mpm/elements, and not around an axis: remove it",
         field->id());
   for (auto *other : plan.physics)
-    if (stabilize > 0.0 && other->node_pressure(*field))
+    if (stabilize > 0.0 && has_pressure(other, *field))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/implicit stabilize knows nothing of the pressure of fix {} {}: remove it",
                  dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
   for (auto *other : plan.physics)
-    if (other != this && !other->only_loads() && !other->precedes_motion() &&
-        !other->joins_motion())
+    if (other != this && !dynamic_cast<MPMLoad *>(other) && !other->precedes_motion() &&
+        !dynamic_cast<MPMPorePressure *>(other))
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
           "computes in explicit steps would not be in its balance: remove one of them",
           dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
-  for (const auto *elements : field->elements) {
+  for (const auto *elements : find_fixes<FixMPMElements>(lmp)) {
     if (!elements->is_thin())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/implicit knows the forces of surfaces and lines, but not those of the "
@@ -242,7 +250,7 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
                  "nothing of that of fix mpm/elements {}: use solver blocks",
                  elements->id);
     for (auto *other : plan.physics)
-      if (other->node_pressure(*field))
+      if (has_pressure(other, *field))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/implicit cannot solve for the pressure of fix {} {} together with the "
                    "elements of fix mpm/elements {}: use explicit steps",
@@ -261,7 +269,7 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
                  "steps",
                  style, name);
     for (auto *other : plan.physics)
-      if (other->node_pressure(*field))
+      if (has_pressure(other, *field))
         error->all(
             FLERR, Error::NOLASTLINE,
             "Fix mpm/implicit finds no contact and friction of walls together with the water "
@@ -342,7 +350,7 @@ void FixMPMImplicit::choose_stabilize(const MPMPlan &plan)
   const auto &only = *fields[0];
   const bool possible = fields.size() == 1 && may_stabilize(only) && !only.frame->is_total() &&
       std::none_of(plan.physics.begin(), plan.physics.end(), [&](auto *other) {
-                          return other->node_pressure(only);
+                          return has_pressure(other, only);
                         });
   stabilize = possible && total[STUCK] > 0.0 ? ENOUGH_TO_STABILIZE : 0.0;
   stabilize_if_stuck = possible && stabilize == 0.0;
@@ -381,7 +389,8 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 void FixMPMImplicit::setup(int)
 {
-  for (const auto *elements : fields[0]->elements)    // elements know of their pressure now
+  for (const auto *elements :
+       find_fixes<FixMPMElements>(lmp))    // elements know of their pressure now
     if (const char *const what = elements->beyond_trials())
       error->all(
           FLERR, Error::NOLASTLINE,

@@ -31,12 +31,12 @@
 #include "base/mpm_state.h"
 #include "contact/fix_mpm_contact.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_heat_sink.h"
+#include "field/mpm_refined_body.h"
 #include "field/mpm_rest.h"
-#include "heat/fix_mpm_heat.h"
 #include "implicit/mpm_mls_turn.h"
-#include "pore/fix_mpm_pore.h"
-#include "refine/fix_mpm_refine.h"
 #include "walls/fix_mpm_boundary.h"
 
 #include "atom.h"
@@ -98,13 +98,6 @@ void FixMPMRelax::init()
 void FixMPMRelax::init_physics(MPMPlan &plan)
 {
   fields = plan.fields;
-  for (const auto *pore : find_fixes<FixMPMPore>(lmp))
-    if (pore->moves())
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/relax cannot bring water with inertia to rest: use formulation u-p of fix "
-          "{} {} until bodies are at rest",
-          pore->style, pore->id);
   for (auto *field : fields) field->keep_old = true;
   may_start_by_half = can_start_by_half(plan);
 }
@@ -118,11 +111,11 @@ bool FixMPMRelax::can_start_by_half(const MPMPlan &plan) const
   const bool at_rest = std::all_of(plan.actions.begin(), plan.actions.end(), [](auto *action) {
     const auto *wall = dynamic_cast<FixMPMBoundary *>(action);
     return wall ? !wall->moves()
-                : dynamic_cast<FixMPMContact *>(action) || dynamic_cast<FixMPMRefine *>(action);
+                : dynamic_cast<FixMPMContact *>(action) || dynamic_cast<MPMRefinedBody *>(action);
   });
   const bool alone = std::all_of(plan.physics.begin(), plan.physics.end(), [this](auto *other) {
-    return other == this || other->only_loads() || dynamic_cast<FixMPMRefine *>(other) ||
-        dynamic_cast<FixMPMHeat *>(other);
+    return other == this || dynamic_cast<MPMLoad *>(other) ||
+        dynamic_cast<MPMRefinedBody *>(other) || dynamic_cast<MPMHeatSink *>(other);
   });
   return simple_fields && at_rest && alone;
 }

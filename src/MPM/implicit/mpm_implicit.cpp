@@ -11,9 +11,9 @@
 #include "contact/mpm_ties.h"
 #include "field/mpm_body_contact.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_line_ties.h"
 #include "field/mpm_node_action.h"
-#include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_stencil.h"
 #include "field/mpm_trial_contact.h"
@@ -113,8 +113,8 @@ void MPMImplicit::init()
   by_reach = field.domains || !field.elements.empty();
   for (auto &member : members) member->tangent.init();
   joint.reset();
-  for (auto *physics : field.plan->physics)
-    if (auto *const pressure = physics->node_pressure(field))
+  for (auto *water : field.plan->pore_pressures)
+    if (auto *const pressure = water->node_pressure(field))
       joint = std::make_unique<Joint>(*this, *pressure);
 }
 

@@ -19,7 +19,9 @@
 #include "elements/fix_mpm_elements.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
@@ -64,8 +66,8 @@ void MPMTangent::init()
   between.assign(field.elements.begin(), field.elements.end());
   if (averages) means.init(false, false);
   nelements = between.size();
-  for (auto *physics : field.plan->physics)
-    if (auto *const forces = physics->trial_forces(field)) between.push_back(forces);
+  for (auto *load : field.plan->loads)
+    if (auto *const forces = load->trial_forces(field)) between.push_back(forces);
   *batch = {};
   batch->h = field.lattice.h;
   int nhistory = 1;

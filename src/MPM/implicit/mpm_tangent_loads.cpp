@@ -6,15 +6,16 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Loads that follow the deformation of points (MPMPhysics::follow()), with their derivatives: the pressure on a surface that
+// Loads that follow the deformation of points (MPMLoad::follow()), with their derivatives: the pressure on a surface that
 // becomes larger and turns in the step. Forces of such loads on points depend on H as stress does, but not as derivatives of
 // an energy of these points: systems are not symmetric.
 
 #include "implicit/mpm_tangent.h"
 
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_passes.h"
-#include "field/mpm_physics.h"
+#include "field/mpm_plan.h"
 #include "force.h"
 #include "material/batch.h"
 
@@ -27,9 +28,9 @@ using namespace MPM_NS;
 bool MPMTangent::follows(int first, int n) const
 {
   if (!loaded) return false;
-  const auto &all = field.plan->physics;
-  return std::any_of(all.begin(), all.end(), [&](const auto *physics) {
-    return physics->follows(field, first, first + n);
+  const auto &all = field.plan->loads;
+  return std::any_of(all.begin(), all.end(), [&](const auto *load) {
+    return load->follows(field, first, first + n);
   });
 }
 
@@ -56,7 +57,7 @@ void MPMTangent::load_points(int first, int n, const double *H, double *stress)
     for (int c = 0; c < 9; c++) F[9 * p + c] = batch->F[c][p];
   double *const push = &load_forces[3 * (bigint) first];
   std::fill_n(push, 3 * n, 0.0);
-  for (const auto *physics : field.plan->physics) physics->follow(field, first, n, F, push, tau);
+  for (const auto *load : field.plan->loads) load->follow(field, first, n, F, push, tau);
   find_piola(first, n, H, tau, stress);
 }
 

@@ -17,6 +17,7 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
@@ -51,6 +52,7 @@ class FixMPMDashpot :
     public FixMPMState,
     public MPMNodeAction,
     public MPMPhysics,
+    public MPMAddedStress,
     private MPMDashpotOptions {
  public:
   FixMPMDashpot(class LAMMPS *, int, char **);

@@ -18,10 +18,11 @@
 #include "base/mpm_options.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_fluid.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_physics.h"
-#include "flow/fix_mpm_incompressible.h"
+#include "field/mpm_strain.h"
 #include "loads/mpm_mouth.h"
 #include "material/material.h"
 #include "math/matrix.h"
@@ -196,7 +197,7 @@ void FixMPMEmit::find_field()
   };
   field = nullptr;
   material = nullptr;
-  fluid = dynamic_cast<const FixMPMIncompressible *>(only("^mpm/incompressible$"));
+  fluid = dynamic_cast<const MPMFluid *>(only("^mpm/incompressible$"));
   if (fluid) return;
   Fix *const grid = only("^mpm$");
   if (!grid)
@@ -222,7 +223,7 @@ void FixMPMEmit::refuse_combinations() const
     if (wrong)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/emit {}: {} cannot be used with fix {} (style {}): remove it", id, wrong,
-                 fluid->id, fluid->style);
+                 dynamic_cast<const Fix *>(fluid)->id, dynamic_cast<const Fix *>(fluid)->style);
     return;
   }
   const auto &options = field->options;
@@ -322,7 +323,7 @@ void FixMPMEmit::make_mouth()
   section = 0.0;
   for (const auto &column : mouth->columns)
     section += column.area * (field ? field->frame->circle(column.x[0]) : 1.0);
-  const Fix &grid = fluid ? static_cast<const Fix &>(*fluid) : field->fix;
+  const Fix &grid = fluid ? dynamic_cast<const Fix &>(*fluid) : field->fix;
   if (mouth->length < h)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/emit {}: the mouth is {:.6g} long along the flow, less than a cell of fix "
@@ -549,7 +550,7 @@ void FixMPMEmit::emit()
   for (auto *other : find_fixes<FixMPMEmit>(lmp)) other->past.newest = (double) tag;
 
   const bool runs = field && field->running;
-  if (runs) MPMStages::give_initial_stress(*field, nlocal);
+  if (runs) give_initial_stress(*field, nlocal);
   MPMTraffic here, all;
   for (int i = nlocal; i < atom->nlocal; i++) {
     const MPMTraffic one = traffic_of(lmp, runs ? field : nullptr, i);

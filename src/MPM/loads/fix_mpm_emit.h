@@ -26,9 +26,9 @@ FixStyle(mpm/emit,FixMPMEmit);
 #include <vector>
 
 namespace LAMMPS_NS {
-class FixMPMIncompressible;
 class FixMPMMaterial;
 class MPMField;
+class MPMFluid;
 class MPMMouth;
 class Region;
 
@@ -76,6 +76,7 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
 
   /** Do the points enter this field? */
   bool emits_into(const MPMField &) const;
+  bool may_be_empty(const MPMField &field) const override { return emits_into(field); }
 
   // for incompressible flows
 
@@ -89,7 +90,7 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   int type;
   Region *region = nullptr;
   MPMField *field = nullptr;
-  const FixMPMIncompressible *fluid = nullptr;    // flow, in place of a field and a material
+  const MPMFluid *fluid = nullptr;    // flow, in place of a field and a material
   FixMPMMaterial *material = nullptr;
   std::unique_ptr<MPMMouth> mouth;
   double layer = 0.0;      // distance between layers

@@ -17,6 +17,7 @@ FixStyle(mpm/pml,FixMPMPML);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
 
@@ -40,7 +41,7 @@ struct MPMPMLOptions {
 /** Perfectly matched layers next to faces of the box (unsplit, after Basu and Chopra). Points there see stretched
  *  coordinates in which waves decay, and incoming waves are not reflected, at any angle. The initial stress of the layers
  *  is kept. */
-class FixMPMPML : public FixMPMState, public MPMPhysics, private MPMPMLOptions {
+class FixMPMPML : public FixMPMState, public MPMPhysics, public MPMStretch, private MPMPMLOptions {
  public:
   FixMPMPML(class LAMMPS *, int, char **);
   int setmask() override { return 0; }

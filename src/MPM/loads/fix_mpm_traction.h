@@ -17,6 +17,7 @@ FixStyle(mpm/traction,FixMPMTraction);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
 #include "loads/mpm_face_growth.h"
 #include "loads/mpm_moment.h"
@@ -46,7 +47,12 @@ struct MPMTractionOptions {
 /** Forces per area on the surface of bodies: dead loads, which keep their direction and total, pressure, which stays
  *  normal to the surface and acts on its present area, and the forces of a moment (MPMMoment). They are applied as forces
  *  on points (atom->f). A pressure on all of the surface of a body is a part of the internal forces instead. */
-class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractionOptions {
+class FixMPMTraction :
+    public FixMPMState,
+    public MPMPhysics,
+    public MPMAddedStress,
+    public MPMLoad,
+    private MPMTractionOptions {
  public:
   FixMPMTraction(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::POST_FORCE; }
@@ -65,7 +71,6 @@ class FixMPMTraction : public FixMPMState, public MPMPhysics, private MPMTractio
   bool looks_beyond_points() const override { return false; }
   bool adds_stress(const MPMField &, int first, int last) const override;
   void add_stress(const MPMField &, int first, int n, double *tau) const override;
-  bool only_loads() const override { return true; }
   bool follows(const MPMField &, int first, int last) const override;
   void follow(const MPMField &, int first, int n, const double *F, double *force,
               double *tau) const override;

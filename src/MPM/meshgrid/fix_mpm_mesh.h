@@ -32,7 +32,11 @@ class FixMPMMeshHeat;
 /** Material points on a mesh of linear elements of any shape (V.P. Nguyen, A. de Vaucorbeil, S.
  *  Bordas, The Material Point Method, Springer 2023, chapter 5), in place of the lattice of a fix
  *  mpm. As in fix mpm, initial_integrate() does the whole step. */
-class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptions {
+class FixMPMMesh :
+    public FixMPMState,
+    public MPMStepLimit,
+    public MPMPointOwner,
+    private MPMMeshOptions {
  public:
   FixMPMMesh(class LAMMPS *, int, char **);
   ~FixMPMMesh() override;
@@ -49,9 +53,7 @@ class FixMPMMesh : public FixMPMState, public MPMStepLimit, private MPMMeshOptio
   void restart(char *) override;
   double stable_dt(tagint &tag) const override { return body->stable_dt(tag); }
 
-  /** Visits the present state of its points in a group, see visit_point_batches(). Also valid
-   *  between runs. */
-  void visit_batches(int group_bits, const BatchVisitor &);
+  void visit_batches(int group_bits, const BatchVisitor &) override;
 
  private:
   std::unique_ptr<MPM_NS::BackgroundMesh> mesh;

@@ -9,6 +9,7 @@
 #include "meshgrid/mpm_mesh_body.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "error.h"

@@ -16,6 +16,7 @@ ComputeStyle(mpm/energy,ComputeMPMEnergy);
 #define LMP_COMPUTE_MPM_ENERGY_H
 
 #include "compute.h"
+#include "field/mpm_ledger.h"
 #include "watch/mpm_point_energies.h"
 
 #include <string>
@@ -32,7 +33,7 @@ namespace LAMMPS_NS {
  *  that the law neither stores nor dissipates is the error of time integration. The residual
  *  closes the balance of the stages of fix mpm and must be round-off.
  */
-class ComputeMPMEnergy : public Compute {
+class ComputeMPMEnergy : public Compute, public MPMEnergyStart {
  public:
   ComputeMPMEnergy(class LAMMPS *, int, char **);
   void init() override;
@@ -40,8 +41,7 @@ class ComputeMPMEnergy : public Compute {
   double compute_scalar() override;
   void compute_vector() override;
 
-  /** Sums and accounts at the start of the ledger, for restart files; empty before the start. */
-  const std::vector<double> &start_sums() const { return start; }
+  const std::vector<double> &start_sums() const override { return start; }
 
  private:
   enum Entry {

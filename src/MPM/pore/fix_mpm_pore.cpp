@@ -591,6 +591,11 @@ static void warn_of_soils(LAMMPS *lmp, const std::string &id, const std::vector<
 
 void FixMPMPore::init_physics(MPMPlan &plan)
 {
+  if (moves() && !find_fixes<FixMPMRelax>(lmp).empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/relax cannot bring water with inertia to rest: use formulation u-p of fix "
+               "{} {} until bodies are at rest",
+               style, id);
   fields.clear();
   wet.clear();
   steps.clear();

@@ -19,6 +19,7 @@ FixStyle(mpm/pore,FixMPMPore);
 #include "base/mpm_state.h"
 #include "declare/option.h"
 #include "diffusion/mpm_super_step.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
 #include "pore/mpm_pore.h"
 
@@ -64,7 +65,11 @@ struct MPMPoreOptions {
 
 /** Pore water in the points of soils, which move with the velocity of the soil. Treats the flow of the water,
  *  without its own inertia (u-p) or with it (u-v-p), and the water pressure in the forces. */
-class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions {
+class FixMPMPore :
+    public FixMPMState,
+    public MPMPhysics,
+    public MPMPorePressure,
+    private MPMPoreOptions {
  public:
   FixMPMPore(class LAMMPS *, int, char **);
   ~FixMPMPore() override;
@@ -85,7 +90,6 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
     if (of(field).has_water()) of(field).surface.extend_topology();
   }
   void topology_changed(MPMField &) override;
-  bool joins_motion() const override { return true; }
   MPMNodePressure *node_pressure(const MPMField &field) override
   {
     return of(field).has_water() ? &of(field) : nullptr;
@@ -110,11 +114,9 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, private MPMPoreOptions
   std::vector<std::string> quantities() const override;
   double quantity(int k, int i) const override;
 
-  /** Is there soil with water in this field? */
-  bool has_water(const MPMField &field) const { return of(field).has_water(); }
-  /** See MPMPore. */
   void find_forces_below_surface(const MPMField &field, const std::vector<char> &near,
-                                 std::vector<double> &of_water, std::vector<double> &of_all) const
+                                 std::vector<double> &of_water,
+                                 std::vector<double> &of_all) const override
   {
     of(field).find_forces_below_surface(near, of_water, of_all);
   }

@@ -71,7 +71,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   void begin_step(const MPMRows &state, const MPMRows &flow, const double *formula, bool waited);
   /** [n] J times the pressure in internal forces; null: there is none. */
   const double *pressure_in_forces() const { return has_water() ? in_forces.data() : nullptr; }
-  /** See MPMPhysics::surface_force(). */
+  /** See MPMPorePressure::surface_force(). */
   void find_surface_force(const MPMRows &state, const std::vector<char> &near,
                           std::vector<double> &force) const;
   /** Forces of points on nodes, [node][3], at nodes of blocks marked in near: of the water alone, and of soil

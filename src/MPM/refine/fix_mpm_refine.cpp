@@ -15,9 +15,10 @@
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
+#include "field/mpm_heat_sink.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
-#include "heat/fix_mpm_heat.h"
 #include "implicit/fix_mpm_relax.h"
 #include "loads/fix_mpm_dashpot.h"
 #include "modify.h"
@@ -174,9 +175,9 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
   }
   for (auto *physics : plan.physics) {
     auto *ifix = dynamic_cast<Fix *>(physics);
-    if (!physics->only_loads() && !dynamic_cast<FixMPMRefine *>(physics) &&
+    if (!dynamic_cast<MPMLoad *>(physics) && !dynamic_cast<FixMPMRefine *>(physics) &&
         !dynamic_cast<FixMPMRelax *>(physics) && !dynamic_cast<FixMPMDashpot *>(physics) &&
-        !dynamic_cast<FixMPMHeat *>(physics))
+        !dynamic_cast<MPMHeatSink *>(physics))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/refine {} does not go with fix {} {}, whose values at nodes would not be "
                  "continuous from one lattice to the other: {}",
@@ -279,14 +280,6 @@ bool FixMPMRefine::decides_contact(const MPMField &field) const
              return c->touches(name);
            });
          });
-}
-
-bool FixMPMRefine::serves_contact(const MPMField &field)
-{
-  const auto bodies = find_fixes<FixMPMRefine>(field.lmp);
-  return std::any_of(bodies.begin(), bodies.end(), [&](const auto *body) {
-    return body->decides_contact(field);
-  });
 }
 
 void FixMPMRefine::init_physics(MPMPlan &plan)

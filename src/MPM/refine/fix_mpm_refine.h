@@ -18,6 +18,7 @@ FixStyle(mpm/refine,FixMPMRefine);
 #include "field/mpm_node_action.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_reach.h"
+#include "field/mpm_refined_body.h"
 #include "fix.h"
 
 #include <memory>
@@ -30,23 +31,18 @@ class MPMTwoScale;
 
 /** Joins the points of several fields (fix mpm) to one body. Each field has half the node spacing of the previous one; see
  *  MPMTwoScale for each pair of them. */
-class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
+class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction, public MPMRefinedBody {
  public:
   FixMPMRefine(class LAMMPS *, int, char **);
   ~FixMPMRefine() override;
   int setmask() override { return 0; }    // called by fix mpm
   void post_run() override;
 
-  /** Fields of this body that are finer than the one with this name (ID); empty if that field is not part of the body. */
-  std::vector<MPMField *> finer_than(const std::string &name) const;
-  /** Activates the blocks of this field that the finer fields of the body need; also called before others use its blocks. */
-  void extend_for_finer(const MPMField &) const;
-  /** Does this field belong to a refined body that has contact with other bodies? Then it may have no points. */
-  static bool serves_contact(const MPMField &);
+  std::vector<MPMField *> finer_than(const std::string &name) const override;
+  void extend_for_finer(const MPMField &) const override;
   /** Pairs of successive lattices, from the coarsest on. Valid after init_action(). */
   const std::vector<std::unique_ptr<MPMTwoScale>> &lattices() const { return pairs; }
-  /** Is the field with this name (ID) part of the body? */
-  bool has(const std::string &name) const { return level(name) < (int) ids.size(); }
+  bool has(const std::string &name) const override { return level(name) < (int) ids.size(); }
   void init() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -62,6 +58,8 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction {
   void couple_topology() override;
   void blocks_found() override;
   bool decides_contact(const MPMField &) const override;
+  /** Where the body touches others, any of its lattices may be needed. */
+  bool may_be_empty(const MPMField &field) const override { return decides_contact(field); }
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override { return false; }
   void act(double dt, Stage) override;
 

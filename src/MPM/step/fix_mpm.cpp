@@ -14,6 +14,7 @@
 #include "base/mpm_points.h"
 #include "base/mpm_version.h"
 #include "comm.h"
+#include "compute.h"
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
@@ -24,21 +25,23 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_halo.h"
+#include "field/mpm_listed_points.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_strain.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"
-#include "grains/fix_mpm_surface.h"
 #include "group.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
-#include "output/compute_mpm_energy.h"
 #include "step/mpm_stages.h"
 #include "update.h"
 #include "watch/mpm_continuation.h"
+#include "watch/mpm_energy_watch.h"
 #include "watch/mpm_fracture_watch.h"
+#include "watch/mpm_point_extremes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +73,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
   read_options(lmp, declared, narg, arg, 4);
   if (!declared.given("origin")) std::copy_n(domain->boxlo, domain->dimension, options.origin);
   field.reset(new MPMField(lmp, *this, h, options, state));
+  if (options.watches_fracture()) field->fracture_watch.reset(new MPMFractureWatch(lmp, *field));
   continuation.reset(new MPMContinuation(lmp, *field));
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix mpm {}, MPM package {}: spacing {} {}\n", id, MPM_VERSION, h,
@@ -127,7 +131,8 @@ void FixMPM::init()
       if (each->every) each->every->forget_broken_step();
     check_fields();
     plan.reset(new MPMPlan(lmp));
-    plan->make();
+    plan->watch.reset(new MPMEnergyWatch(lmp, plan->fields));
+    plan->make(MPMStages::make_scheme);
   }
 
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
@@ -178,12 +183,8 @@ void FixMPM::check_include() const
 {
   const int listed = neighbor->includegroup;
   if (!listed) return;
-  const auto surfaces = modify->get_fix_by_style("^mpm/surface$");
-  for (auto *ifix : surfaces)
-    if (dynamic_cast<FixMPMSurface *>(ifix)->keeps_group(listed)) return;
-  if (surfaces.empty() && MPMField::all(lmp).size() == 1)
-    for (const auto *ifix : modify->get_fix_by_style("^mpm/immersed$"))
-      if (ifix->igroup == listed) return;
+  for (const auto *points : find_fixes<MPMListedPoints>(lmp))
+    if (points->keeps_group(listed)) return;
   error->all(FLERR,
              "Neigh_modify include {} leaves out material points that can touch others: use fix "
              "mpm/surface with keyword group {}, or the group of a fix mpm/immersed",
@@ -223,7 +224,7 @@ void FixMPM::setup_pre_neighbor()
   if (field.get() != all.back()) return;
   for (auto *physics : find_fixes<MPMPhysics>(lmp)) physics->setup_points();
   for (auto *one : all) {
-    MPMStages::give_initial_stress(*one);
+    give_initial_stress(*one);
     one->map->sort();
     one->map->valid = false;
   }
@@ -292,13 +293,14 @@ void FixMPM::pre_force(int)
 
 void FixMPM::post_run()
 {
-  if (plan) plan->watch.finish();
+  if (plan) plan->watch->finish();
   if (field->fracture_watch) field->fracture_watch->finish();
   field->running = false;
   field->guard->wrap_far_points();
   field->ledger.start.clear();
   if (field->affine) field->affine->remember_velocities();
-  if (field->counts.steps) field->plan->report(*field, bytes_per_point());
+  if (field->counts.steps)
+    field->plan->report(*field, bytes_per_point(), point_extremes(lmp, *field));
 }
 
 /* ----------------------------------------------------------------------
@@ -387,7 +389,7 @@ void FixMPM::write_restart(FILE *fp)
   saved.ledger = energies;
   std::vector<double> start = field->ledger.start;
   for (auto *compute : modify->get_compute_by_style("^mpm/energy$"))
-    if (start.empty()) start = dynamic_cast<ComputeMPMEnergy *>(compute)->start_sums();
+    if (start.empty()) start = dynamic_cast<MPMEnergyStart *>(compute)->start_sums();
   const std::string text = MPMFieldOptions(field->options).declare(3).kept();
   saved.nstart = (int) start.size();
   saved.ntext = (int) text.size();

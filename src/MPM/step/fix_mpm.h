@@ -16,6 +16,7 @@ FixStyle(mpm,FixMPM);
 #define LMP_FIX_MPM_H
 
 #include "base/mpm_state.h"
+#include "field/mpm_field.h"
 
 #include <memory>
 
@@ -29,9 +30,8 @@ class MPMPlan;
  *  The whole step is done in initial_integrate(): at this time atom->f is complete for any order of
  *  fixes, and at output all state is on one time level. The first instance drives all of them.
  */
-class FixMPM : public FixMPMState {
+class FixMPM : public FixMPMState, public MPMFieldOwner {
  public:
-  std::unique_ptr<MPMField> field;
   bool rests_dry = false;    ///< did mpm_geostatic give points a stress without pore water?
 
   FixMPM(class LAMMPS *, int, char **);

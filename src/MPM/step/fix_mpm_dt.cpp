@@ -9,22 +9,22 @@
 #include "step/fix_mpm_dt.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
+#include "base/mpm_step_limit.h"
 #include "comm.h"
-#include "contact/fix_mpm_rigid.h"
-#include "elements/fix_mpm_elements.h"
 #include "error.h"
 #include "field/mpm_field.h"
-#include "field/mpm_physics.h"
+#include "field/mpm_fluid.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_time_limit.h"
-#include "flow/fix_mpm_incompressible.h"
 #include "force.h"
-#include "grains/mpm_grains.h"
 #include "integrate.h"
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
 #include "pair.h"
+#include "step/mpm_grains.h"
 #include "timer.h"
 #include "update.h"
 
@@ -97,8 +97,11 @@ FixMPMDt::~FixMPMDt() = default;
 
 void FixMPMDt::init()
 {
-  if (modify->get_fix_by_style("^mpm$").empty() && find_fixes<MPMStepLimit>(lmp).empty() &&
-      modify->get_fix_by_style("^mpm/elements$").empty())
+  const auto limits = find_fixes<MPMStepLimit>(lmp);
+  if (MPMField::all(lmp).empty() && find_fixes<MPMInternalForce>(lmp).empty() &&
+      std::none_of(limits.begin(), limits.end(), [](const auto *one) {
+        return one->makes_steps();
+      }))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/dt needs a fix mpm, mpm/mesh, mpm/elements, or mpm/incompressible");
   for (auto *ifix : modify->get_fix_list()) {
@@ -148,13 +151,9 @@ FixMPMDt::Limit FixMPMDt::point_limit() const
   };
   for (auto *field : MPMField::all(lmp))
     compare(field->time_limit->stable_dt(tag, speed), field->options.every);
-  for (auto *ifix : modify->get_fix_by_style("^mpm/elements$"))
-    compare(dynamic_cast<FixMPMElements *>(ifix)->stable_dt_local(tag, speed));
+  for (const auto *body : find_fixes<MPMInternalForce>(lmp)) compare(body->stable_dt(tag, speed));
   speed = 0.0;
   for (const auto *other : find_fixes<MPMStepLimit>(lmp)) compare(other->stable_dt(tag));
-  tag = 0;
-  for (auto *ifix : modify->get_fix_by_style("^mpm/rigid$"))
-    compare(dynamic_cast<FixMPMRigid *>(ifix)->stable_dt());
   return smallest(mine);
 }
 
@@ -242,7 +241,7 @@ void FixMPMDt::setup_pre_force(int)
     if (dt_grains < (1.0 - SAME) * grains_left && dt_grains < wanted) set_dt(dt_grains);
   } else if (limit.dt < NO_POINTS.dt)
     set_dt(fraction * limit.dt);
-  else if (dt_max > 0.0 && !find_fixes<FixMPMIncompressible>(lmp).empty())
+  else if (dt_max > 0.0 && !find_fixes<MPMFluid>(lmp).empty())
     set_dt(dt_max);    // of a fluid at rest
   if (until == 0.0) return;
   if (comm->me == 0 && update->nsteps > 0 && time_at_start > (1.0 + ROUND_OFF) * until)
@@ -432,7 +431,7 @@ std::vector<double> FixMPMDt::saved_options() const
 void FixMPMDt::write_restart(FILE *fp)
 {
   const auto fields = MPMField::all(lmp);
-  const bool flows = update->whichflag == 1 && !find_fixes<FixMPMIncompressible>(lmp).empty();
+  const bool flows = update->whichflag == 1 && !find_fixes<MPMFluid>(lmp).empty();
   const bool running = flows || std::any_of(fields.begin(), fields.end(), [](const auto *field) {
                          return field->running;
                        });

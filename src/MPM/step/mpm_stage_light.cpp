@@ -15,6 +15,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_passes.h"
+#include "field/mpm_strain.h"
 #include "step/mpm_stages.h"
 
 using namespace LAMMPS_NS;

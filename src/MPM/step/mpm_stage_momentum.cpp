@@ -12,61 +12,13 @@
 #include "field/mpm_affine.h"
 #include "field/mpm_cpdi.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_passes.h"
-#include "field/mpm_physics.h"
 #include "step/mpm_stages.h"
-
-#include <cstdint>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/* ----------------------------------------------------------------------
-   no two of them have one: each refuses what it does not go with
-------------------------------------------------------------------------- */
-
-const double *LAMMPS_NS::pressure_of_physics(const MPMField &field)
-{
-  for (const auto *physics : field.plan->physics)
-    if (const double *const pressure = physics->pressure_in_forces(field)) return pressure;
-  return nullptr;
-}
-
-bool LAMMPS_NS::physics_adds_stress(const MPMField &field, int first, int last)
-{
-  const auto &all = field.plan->physics;
-  return std::any_of(all.begin(), all.end(), [&](const auto *physics) {
-    return physics->adds_stress(field, first, last);
-  });
-}
-
-void LAMMPS_NS::add_stress_of_physics(const MPMField &field, int first, int n, double *tau)
-{
-  for (const auto *physics : field.plan->physics) physics->add_stress(field, first, n, tau);
-}
-
-bool LAMMPS_NS::surface_force_of_physics(MPMField &field, const std::vector<char> &near,
-                                         std::vector<double> &force)
-{
-  const auto &all = field.plan->physics;
-  return std::any_of(all.begin(), all.end(), [&](const auto *physics) {
-    return physics->surface_force(field, near, force);
-  });
-}
-
-void LAMMPS_NS::add_pressure(const double *pressure, PointRows &rows, int first, int n,
-                             double *room)
-{
-  const double *tau = rows.tau;
-  const auto next = reinterpret_cast<std::uintptr_t>(rows.tau + 6 * n);    // of the next batch
-  for (int k = 0; k < 6 * BATCH; k += 8)
-    __builtin_prefetch(reinterpret_cast<const void *>(next + 8 * k));
-  rows.tau = room;
-  std::copy_n(tau, 6 * n, room);
-  for (int p = 0; p < n; p++, room += 6)
-    for (int c = 0; c < 3; c++) room[c] -= pressure[first + p];
-}
 
 /* ----------------------------------------------------------------------
    Where the frame has forces of its own (Piola-Kirchhoff stress, hoop stress), it makes them a batch at
@@ -78,9 +30,9 @@ void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
                             const int base[3], int box[6])
 {
   double *const tile = field.map->tile;
-  const double *const pressure = pressure_of_physics(field);
+  const double *const pressure = pore_pressure(field);
   const bool loaded =
-      p2g != field.kernel.p2g_momentum && physics_adds_stress(field, run.first, run.last);
+      p2g != field.kernel.p2g_momentum && has_added_stress(field, run.first, run.last);
   if ((!field.frame->changes_forces() && !pressure && !loaded) ||
       p2g == field.kernel.p2g_momentum) {
     p2g(rows, step, run.first, run.last, base, tile, box);
@@ -91,10 +43,10 @@ void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
   for (int i = run.first; i < run.last; i += BATCH) {
     const int n = std::min(BATCH, run.last - i);
     PointRows b = rows_from(field, rows, i);
-    if (pressure) add_pressure(pressure, b, i, n, stress);
+    if (pressure) subtract_pressure(pressure, b, i, n, stress);
     if (loaded) {
       if (!pressure) std::copy_n(b.tau, 6 * n, stress);
-      add_stress_of_physics(field, i, n, stress);
+      add_stress(field, i, n, stress);
       b.tau = stress;
     }
     field.frame->forces(b, i, n, room);

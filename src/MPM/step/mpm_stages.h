@@ -22,6 +22,9 @@ class MPMPlan;
 
 namespace MPMStages {
 
+  /** Makes the list of stages of the scheme of all fields. */
+  void make_scheme(MPMPlan &);
+
   // mpm_stage_momentum.cpp: points to nodes, and the equation of motion there
 
   /** What points give to nodes: mass, momentum, and force; mass and momentum; or forces, added to records
@@ -64,11 +67,6 @@ namespace MPMStages {
    *  takes the time dt. shift: see MPMFrame::shift_gradients(), as a share of dt. moves: also move the points
    *  with these velocities, if MPMField::mapped is there. */
   void strain_from_nodes(MPMField &, double dt, double share, double shift, bool moves = false);
-  /** Updates strain and stress of n <= BATCH consecutive points of a run. L: their velocity gradients. */
-  void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run &, int first,
-                     int n, const double *L, double dt);
-  /** Gives points without any stress, from first on, the pressure of their equation of state. */
-  void give_initial_stress(MPMField &, int first = 0);
 
   // mpm_stage_light.cpp: nodes with almost no mass
 

@@ -17,7 +17,6 @@
 #include "field/mpm_smoothing.h"
 #include "field/mpm_transfer_heat.h"
 #include "step/mpm_stages.h"
-#include "watch/mpm_fracture_watch.h"
 
 using namespace LAMMPS_NS;
 using namespace MPMStages;
@@ -89,7 +88,7 @@ void average_pressure(MPMPlan &plan)
 void begin(MPMPlan &plan)
 {
   const auto watch = [&plan]() {
-    plan.watch.step();
+    plan.watch->step();
   };
   plan.together("energy watch", watch, with<&Options::watches_gain>);
   plan.together("topology", [&plan]() {
@@ -183,7 +182,7 @@ void map_back(MPMPlan &plan)
 void end(MPMPlan &plan)
 {
   const auto watch = [&plan]() {
-    plan.watch.moved();
+    plan.watch->moved();
   };
   plan.together("energy watch", watch, with<&Options::watches_gain>);
   plan.place(MPMPlan::AFTER_MOTION);
@@ -197,7 +196,7 @@ void end(MPMPlan &plan)
 }    // namespace
 
 /** Update stress last, with the velocities that move the points. */
-void LAMMPS_NS::make_usl(MPMPlan &plan)
+static void make_usl(MPMPlan &plan)
 {
   begin_with_forces(plan);
   solve(plan);
@@ -212,7 +211,7 @@ void LAMMPS_NS::make_usl(MPMPlan &plan)
 }
 
 /** Update stress first, with the velocities of the start of the step. */
-void LAMMPS_NS::make_usf(MPMPlan &plan)
+static void make_usf(MPMPlan &plan)
 {
   begin_with_stress(plan, 1.0, 1.0);
   solve_and_move(plan);
@@ -221,7 +220,7 @@ void LAMMPS_NS::make_usf(MPMPlan &plan)
 }
 
 /** Modified update stress last, with the new velocities of the points mapped back. */
-void LAMMPS_NS::make_musl(MPMPlan &plan)
+static void make_musl(MPMPlan &plan)
 {
   begin_with_forces(plan);
   solve_and_move(plan);
@@ -233,7 +232,7 @@ void LAMMPS_NS::make_musl(MPMPlan &plan)
 }
 
 /** Average of the first and the modified last: half of the strain with each. */
-void LAMMPS_NS::make_usavg(MPMPlan &plan)
+static void make_usavg(MPMPlan &plan)
 {
   begin_with_stress(plan, 0.5, 0.75);
   solve_and_move(plan);
@@ -241,4 +240,10 @@ void LAMMPS_NS::make_usavg(MPMPlan &plan)
   gradients_with_material(plan, 0.5, -0.25);
   plan.each("motion of points", move_points);
   end(plan);
+}
+
+void MPMStages::make_scheme(MPMPlan &plan)
+{
+  static void (*const make_list[])(MPMPlan &) = {make_usl, make_usf, make_musl, make_usavg};
+  make_list[plan.fields[0]->options.scheme](plan);    // in the order of MPMFieldOptions::Scheme
 }

@@ -61,6 +61,7 @@
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
 #include "force.h"
 #include "math_extra.h"
@@ -1372,7 +1373,7 @@ double FixMPMBoundary::slide_share(Contact &contact, double push, double of_wate
 void FixMPMBoundary::find_water(const FieldNodes &list, double dt)
 {
   water.clear();
-  if (!pressure_of_physics(*list.field)) return;
+  if (!pore_pressure(*list.field)) return;
   std::vector<char> near(list.field->grid.blocks.size(), 0);
   const auto mark = [&](int64_t node) {
     if (node >= 0) near[node / NODES_PER_BLOCK] = 1;
@@ -1381,7 +1382,7 @@ void FixMPMBoundary::find_water(const FieldNodes &list, double dt)
     for (int k = 0, n = list.faces[line.face].length(); k < n; k++) mark(line.node[k]);
   for (const auto &crossing : list.crossings) crossing.mark_blocks(near);
   for (const auto &single : list.singles) mark(single.node);
-  if (surface_force_of_physics(*list.field, near, water))
+  if (pore_surface_force(*list.field, near, water))
     for (double &w : water) w *= dt;
 }
 

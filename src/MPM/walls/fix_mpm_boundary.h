@@ -17,12 +17,12 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 
 #include "base/mpm_first_note.h"
 #include "declare/option.h"
+#include "field/mpm_friction_heat.h"
 #include "field/mpm_line_ties.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_trial_contact.h"
 #include "field/node_line.h"
 #include "fix.h"
-#include "heat/mpm_friction_heat.h"
 #include "walls/mpm_region_surface.h"
 #include "walls/mpm_wall_gap.h"
 
@@ -104,8 +104,7 @@ class FixMPMBoundary :
   bool moves() const;
   /** Signed distance of x from the surface of the region, negative inside; far if it is larger. Only during a run. */
   double distance(const double *x, double far) const { return surface->distance(x, far); }
-  /** Does this wall keep nodes of the field at the face xlo, an axis of symmetry, from moving along x? */
-  bool holds_axis(const MPMField &) const;
+  bool holds_axis(const MPMField &) const override;
 
   /** Velocities that walls will give to nodes. */
   struct Foreseen {

@@ -10,11 +10,11 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "elements/fix_mpm_elements.h"
 #include "error.h"
 #include "field/mpm_every.h"
 #include "field/mpm_field.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "force.h"

@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_ENERGY_WATCH_H
 #define LMP_MPM_ENERGY_WATCH_H
 
+#include "field/mpm_watch.h"
 #include "pointers.h"
 
 #include <string>
@@ -30,7 +31,7 @@ class MPMField;
  *  later. It is compared with the energy in play: the largest sum so far of kinetic energy, stored energy, and energy spent
  *  in this run.
  */
-class MPMEnergyWatch : protected Pointers {
+class MPMEnergyWatch : public MPMWatch, protected Pointers {
  public:
   MPMEnergyWatch(class LAMMPS *lmp, const std::vector<MPMField *> &fields) :
       Pointers(lmp), fields(fields)
@@ -38,16 +39,16 @@ class MPMEnergyWatch : protected Pointers {
   }
 
   /** Start of a run. */
-  void start() { run = {}; }
+  void start() override { run = {}; }
   /** Start of a step of the cycle, where positions, velocities, and forces belong to one time. */
-  void step();
+  void step() override;
   /** Later in the same step: points have moved and have their new velocities, and still have the forces and the places in
    *  memory of its start. */
-  void moved();
+  void moved() override;
   /** End of a run. */
-  void finish();
+  void finish() override;
   /** A line about the energy of the run for its summary; empty if too little is known. */
-  std::string report() const;
+  std::string report() const override;
 
  private:
   /** Sums over all ranks. */

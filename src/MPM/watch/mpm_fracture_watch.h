@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_FRACTURE_WATCH_H
 #define LMP_MPM_FRACTURE_WATCH_H
 
+#include "field/mpm_watch.h"
 #include "pointers.h"
 
 namespace LAMMPS_NS {
@@ -16,20 +17,20 @@ class MPMField;
 
 /** Warns if a body comes apart numerically (keyword apart of fix mpm): a material that resists tension is
  *  stretched so far that neighboring points no longer share enough nodes. */
-class MPMFractureWatch : protected Pointers {
+class MPMFractureWatch : public MPMWatch, protected Pointers {
  public:
   MPMFractureWatch(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
   /** Start of a run. */
-  void start()
+  void start() override
   {
     steps = 0;
     told = false;
   }
   /** End of a step of the cycle; checks the points every few hundred steps. */
-  void step();
+  void step() override;
   /** End of a run: checks the points a last time. */
-  void finish() { look(); }
+  void finish() override { look(); }
 
  private:
   MPMField &field;

@@ -9,9 +9,9 @@
 #include "watch/mpm_point_energies.h"
 
 #include "atom.h"
-#include "elements/fix_mpm_elements.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_internal_force.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_batches.h"
 #include "force.h"
@@ -37,8 +37,8 @@ MPMPointEnergies LAMMPS_NS::point_energies(LAMMPS *lmp)
   }
 
   int nodes = 0;    // groups of nodes of elements, which store the energy
-  for (auto *elements : find_fixes<FixMPMElements>(lmp)) {
-    nodes |= elements->groupbit;
+  for (auto *elements : find_fixes<MPMInternalForce>(lmp)) {
+    nodes |= elements->group_of_points();
     if (elements->on_lattice()) mine.stored += elements->stored_energy();
   }
   visit_point_batches(lmp, 1,

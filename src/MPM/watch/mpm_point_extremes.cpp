@@ -8,7 +8,7 @@
 
 #include "watch/mpm_point_extremes.h"
 
-#include "elements/fix_mpm_elements.h"
+#include "field/mpm_internal_force.h"
 
 #include "atom.h"
 #include "base/mpm_points.h"
@@ -55,7 +55,7 @@ std::string LAMMPS_NS::point_extremes(LAMMPS *lmp, const MPMField &field)
   tagint tag;
   double speed, limit, mine = field.time_limit->stable_dt(tag, speed);
   for (const auto *elements : field.elements)
-    mine = std::min(mine, elements->stable_dt_local(tag, speed));
+    mine = std::min(mine, elements->stable_dt(tag, speed));
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, lmp->world);
 
   std::string text;

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "grains/mpm_grains.h"
+#include "step/mpm_grains.h"
 
 #include "atom.h"
 #include "base/mpm_pair_styles.h"

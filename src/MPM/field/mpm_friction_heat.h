@@ -16,9 +16,8 @@
 
 namespace LAMMPS_NS {
 class Fix;
-class FixMPMHeat;
-class MPMConduction;
 class MPMField;
+class MPMHeatSink;
 
 /** Use of the energy that friction dissipates: keyword heat of contact, walls, and rigid bodies. */
 struct MPMFrictionHeatOptions {
@@ -80,15 +79,15 @@ class MPMFrictionHeat : protected Pointers {
  private:
   struct Body {
     MPMField *field;
-    MPMConduction *conduction;    // null: none of its materials conducts
-    bool mixed;                   // effusivities differ from point to point
-    bool orthotropic;             // and with the direction
-    double effusivity;            // unless mixed
+    bool conducts;        // does any of its materials conduct?
+    bool mixed;           // effusivities differ from point to point
+    bool orthotropic;     // and with the direction
+    double effusivity;    // unless mixed
     // one number, or the components of a symmetric tensor, see map_tensor()
     std::vector<double> at_node;
   };
   const MPMFrictionHeatOptions &options;
-  FixMPMHeat *heat = nullptr;
+  MPMHeatSink *sink = nullptr;
   std::vector<Body> bodies;
   std::vector<double> values, weights;    // of points
 

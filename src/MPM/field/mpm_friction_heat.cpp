@@ -15,20 +15,22 @@
    is no heat: what is lost there is numerical, and of the order of the step.
 ------------------------------------------------------------------------- */
 
-#include "heat/mpm_friction_heat.h"
+#include "field/mpm_friction_heat.h"
 
 #include "atom.h"
 #include "base/mpm_clear.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "domain.h"
 #include "error.h"
+#include "field/fix_mpm_material.h"
+#include "field/mpm_conductivity.h"
 #include "field/mpm_field.h"
+#include "field/mpm_heat_sink.h"
 #include "field/mpm_passes.h"
 #include "fix.h"
 #include "force.h"
-#include "heat/fix_mpm_heat.h"
-#include "heat/mpm_conduction.h"
-#include "modify.h"
+#include "material/material.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,18 +75,18 @@ static bool leaves_plane(const Conduction &c)
 
 void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &fields)
 {
-  const auto heats = modify->get_fix_by_style("^mpm/heat$");
-  if (heats.empty())
+  const auto sinks = find_fixes<MPMHeatSink>(lmp);
+  if (sinks.empty())
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix {} {} heat: nothing conducts the heat of friction: define a fix mpm/heat, or drop "
         "the keyword",
         user.style, user.id);
-  heat = dynamic_cast<FixMPMHeat *>(heats[0]);
+  sink = sinks[0];
   bodies.clear();
   bool any = false, points = false;
   for (auto *field : fields) {
-    Body body = {field, nullptr, false, false, 0.0, {}};
+    Body body = {field, false, false, false, 0.0, {}};
     std::vector<int> mine(field->materials.size(), 0), here(mine.size());    // of its points
     for (int i = 0; i < atom->nlocal; i++)
       for (std::size_t k = 0; k < mine.size(); k++)
@@ -125,8 +127,7 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
 void MPMFrictionHeat::begin_step()
 {
   for (auto &body : bodies) {
-    auto &conduction = heat->of(*body.field);
-    body.conduction = conduction.conducts() ? &conduction : nullptr;
+    body.conducts = sink->conducts(*body.field);
     if (body.orthotropic)
       map_tensor(body);
     else if (body.mixed)
@@ -230,12 +231,8 @@ double MPMFrictionHeat::made(const double *J, const double *old, const double *n
 void MPMFrictionHeat::give(Body &body, const double *record, double energy, bool owned)
 {
   // among points of several materials a node may have none that conducts
-  if (!body.conduction || energy == 0.0 || effusivity(body, record, nullptr) == 0.0) return;
-  auto &given = body.conduction->given;
-  Grid &grid = body.field->grid;
-  if (given.empty()) given.resize(grid.nnodes(), 0.0);
-  given[node_of(body, record)] += energy;
-  if (owned) heat->book(FixMPMHeat::FRICTION, energy);
+  if (!body.conducts || energy == 0.0 || effusivity(body, record, nullptr) == 0.0) return;
+  sink->give(*body.field, node_of(body, record), energy, owned);
 }
 
 void MPMFrictionHeat::between(int a, const double *ra, int b, const double *rb,

@@ -1,0 +1,118 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Strain and stress of the points.
+
+#include "field/mpm_strain.h"
+
+#include "atom.h"
+#include "base/mpm_points.h"
+#include "field/fix_mpm_material.h"
+#include "field/mpm_field.h"
+#include "field/mpm_forces.h"
+#include "field/mpm_frame.h"
+#include "field/mpm_guard.h"
+#include "field/mpm_point_batches.h"
+#include "field/mpm_time_limit.h"
+#include "field/mpm_transfer_heat.h"
+#include "material/batch.h"
+#include "update.h"
+
+#include <algorithm>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+/* ---------------------------------------------------------------------- */
+
+void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPointMap::Run &run,
+                              int first, int n, const double *L, double dt)
+{
+  // not through row pointers: one of them per batch is always a cache miss
+  Batch &b = *field.batch;
+  FixMPMMaterial *material = run.material;
+  if (!material) return;    // nodes of elements
+  double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
+  double stretched[9 * BATCH];
+  for (auto *physics : field.stretching) {
+    if (!physics->stretches(first, n)) continue;
+    if (L != stretched) std::copy_n(L, field.lattice.dim * field.lattice.dim * n, stretched);
+    L = stretched;
+    physics->stretch_gradients(field, first, n, dt, stretched);
+  }
+  field.frame->load(b, first, n, dt, L, F, tau, r.vol0 + first);
+  b.history = reinterpret_cast<double(*)[BATCH]>(field.work.history.data());
+  b.time = elapsed_time(*field.lmp->update);
+
+  const int nhistory = material->nhistory;
+  double *const h = nhistory ? &material->history[0][0] + nhistory * (bigint) first : nullptr;
+  if (nhistory) {
+    field.batch_kernels->load_history(b, nhistory, h);
+    for (int k = 0; k < nhistory * BATCH; k += 8)    // of the next batch, a transfer ahead
+      __builtin_prefetch(h + nhistory * n + k, 1);
+  }
+
+  double heat[BATCH];
+  if (field.heating) field.heating->give(first, n, heat);
+  material->update_batch(b, *field.batch_kernels, field.heating ? heat : nullptr);
+  if (material->watching) material->watch_ranges(b, first);
+  if (field.time_limit->watch_volume) field.time_limit->note_volume_rate(b, first);
+  if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);
+
+  const int bad = field.batch_kernels->store(b, F, tau);
+  field.jacobians.note(*field.batch_kernels, b, first, field.atom->nmax);
+  if (nhistory && !bad) field.batch_kernels->store_history(b, nhistory, h);
+  for (int p = 0; p < n && nhistory && bad; p++)
+    if (b.J[p] > 0.0)
+      for (int k = 0; k < nhistory; k++) h[nhistory * p + k] = b.history[k][p];
+  if (field.options.delete_failed && material->damage >= 0)
+    for (int p = 0; p < n; p++)
+      if (b.history[material->damage][p] >= 1.0) field.guard->point_has_failed(first + p);
+
+  if (bad)
+    for (int p = 0; p < n; p++)
+      if (!(b.J[p] > 0.0))
+        field.guard->point_is_bad(
+            first + p, fmt::format("has a deformation gradient of determinant {}", b.J[p]));
+}
+
+/* ----------------------------------------------------------------------
+   points without any stress get the pressure of their equation of state, so that the first step
+   begins with that of a gas; for points that have come to zero stress this changes nothing;
+   points that have failed keep it
+------------------------------------------------------------------------- */
+
+void LAMMPS_NS::give_initial_stress(MPMField &field, int first)
+{
+  Batch &batch = *field.batch;
+  const MPMRows tau = field.points->tau;
+  std::vector<int> list;
+  const FixMPMMaterial *material = nullptr;
+  const auto flush = [&]() {
+    if (list.empty()) return;
+    load_state(field, batch, list.data(), (int) list.size(), material);
+    batch.time = elapsed_time(*field.lmp->update);
+    material->material->initial_stress(batch);
+    for (std::size_t k = 0; k < list.size(); k++)
+      for (int c = 0; c < 6; c++) tau[list[k]][c] = batch.J[k] * batch.stress[c][k];
+    list.clear();
+  };
+
+  for (int i = first; i < field.atom->nlocal; i++) {
+    if (!field.is_point(i) || std::any_of(tau[i], tau[i] + 6, [](double s) {
+          return s != 0.0;
+        }))
+      continue;
+    const auto *mine = field.material_of(i);
+    if (mine != material || list.size() == BATCH) flush();
+    material = mine;
+    const bool failed = mine && mine->damage >= 0 && mine->history[i][mine->damage] >= 1.0;
+    if (mine && !failed) list.push_back(i);
+  }
+  flush();
+}
