@@ -43,7 +43,8 @@ SETS = ["avx512", "avx2", "baseline"]    # best one first
 COARSER = {"taylor-bar": 2.0, "spall": 2.0, "cook-membrane": 2.0, "hypervelocity": 2.0, "ring-collision": 2.0,
            "spinning-disk": 2.0, "taylor-bar-total": 2.0, "taylor-bar-axisymmetric": 2.0, "ball-in-sand": 2.0}
 STEPS = 100
-LEFT_OUT = ["own-material", "point"]    # needs a plugin of its own; has no atoms
+LEFT_OUT = ["own-material", "own-physics", "point"]    # need a plugin of their own; has no atoms
+DATA = (".stl", ".msh", ".obj", ".nrrd", ".pgm")
 
 # options of fix mpm on in.block and in.block2d, those of a group in one input
 BLOCKS = {
@@ -118,7 +119,7 @@ def write_scenes(folder, test):
         scenes["block-3d-" + name] = block_scene(read(HERE, "in.block"), options, 5)
         scenes["block-2d-" + name] = block_scene(read(HERE, "in.block2d"), options, 12)
     laws = ["".join(re.findall(r'"([^"]*)"', text)) for text in
-            re.findall(r'^    \{"\w+",((?:\s*"[^"]*")+)\},', read(HERE, "bench_materials.cpp"), re.M)]
+            re.findall(r'^    \{"(?!woven)\w+",((?:\s*"[^"]*")+)\},', read(HERE, "bench_materials.cpp"), re.M)]    # woven: for sheets
     for k in range(0, len(laws), 8):
         scenes["laws-%d" % (k // 8 + 1)] = law_scene(laws[k:k + 8])
     for name, (file, steps, variables) in COUPLING.items():
@@ -129,8 +130,9 @@ def write_scenes(folder, test):
         if name in LEFT_OUT:
             continue
         scenes["example-" + os.path.basename(path)[3:]] = example_scene(name, read(path))
-        for data in glob.glob(os.path.join(os.path.dirname(path), "*.[sm][ts][lh]")):    # stl, msh
-            shutil.copy(data, folder)
+        for data in glob.glob(os.path.join(os.path.dirname(path), "*")):
+            if data.endswith(DATA):
+                shutil.copy(data, folder)
     for name, text in scenes.items():
         with open(os.path.join(folder, name + ".in"), "w") as file:
             file.write(text)

@@ -12,10 +12,10 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "lammpsplugin.h"
 #include "field/mpm_field.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
+#include "lammpsplugin.h"
 #include "version.h"
 
 #include <cmath>
@@ -79,12 +79,16 @@ void FixOwnDiffusion::init_physics(MPMPlan &plan)
 
 void FixOwnDiffusion::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
+  using Data = MPMStageData;    // what the stages read and write
+  const Data own = {Data::OWN}, points = {Data::POSITION, Data::MASS, Data::BLOCKS, Data::OWN};
+  const Data nodes_and_points = points + Data{Data::NODES};
+
   if (place == MPMPlan::BEFORE_SOLVE)
-    plan.each("scalar to nodes", [this](MPMField &field) {
+    plan.each("scalar to nodes", points, own, [this](MPMField &field) {
       scalar_to_nodes(field);
     });
   if (place == MPMPlan::AFTER_SOLVE)
-    plan.each("scalar to points", [this](MPMField &field) {
+    plan.each("scalar to points", nodes_and_points, own, [this](MPMField &field) {
       scalar_to_points(field);
     });
 }

@@ -24,7 +24,7 @@
 #include "elements/fix_mpm_elements.h"
 #include "elements/pair_mpm_sheet.h"
 #include "field/mpm_field_options.h"
-#include "flow/fix_mpm_incompressible.h"
+#include "flow/mpm_flow_options.h"
 #include "grains/fix_mpm_handshake.h"
 #include "grains/fix_mpm_immersed.h"
 #include "grains/fix_mpm_surface.h"

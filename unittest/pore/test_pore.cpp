@@ -10,6 +10,7 @@
 #include "pore/pore_testing.h"
 
 #include "field/mpm_physics.h"
+#include "pore/fix_mpm_pore.h"
 
 using namespace MPM_TEST;
 
@@ -660,7 +661,7 @@ SERIAL_TEST(DryField, PaysNothing)
       "fix floor all mpm/boundary ylo slip\n"
       "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 0.01 free pressure 0 stages 1\n"
       "timestep 1e-5\nrun 1\n");
-  const auto *const water = dynamic_cast<MPMPhysics *>(run.fix("water"));
+  const auto *const water = dynamic_cast<FixMPMPore *>(run.fix("water"));
   const auto all = MPMField::all(run.lmp);
   EXPECT_NE(water->pressure_in_forces(*all[0]), nullptr);
   EXPECT_EQ(water->pressure_in_forces(*all[1]), nullptr);

@@ -88,8 +88,9 @@ void AtomVecMPM::process_args(int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   The first set-up after read_restart is when LAMMPS drops what no fix has taken from the file. Fixes of this package come
-   later than this in the set-up. It may be that of another command, before the input has come to its fixes
+   The first set-up after read_restart is when LAMMPS drops what no fix has taken from the file.
+   Fixes of this package come later than this in the set-up. It may be that of another command,
+   before the input has come to its fixes
 ------------------------------------------------------------------------- */
 
 namespace {

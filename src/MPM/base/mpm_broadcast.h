@@ -18,8 +18,8 @@
 
 namespace LAMMPS_NS {
 
-/** Sends a vector or string of plain data of rank 0 to all ranks, in pieces, as its length may be more than an int.
- *  Collective. */
+/** Sends a vector or string of plain data of rank 0 to all ranks, in pieces, as its length may be
+ *  more than an int. Collective. */
 template <class Data> void broadcast(Data &data, MPI_Comm world)
 {
   constexpr std::size_t SIZE = sizeof(typename Data::value_type);

@@ -16,8 +16,9 @@
 
 namespace LAMMPS_NS {
 
-/** Gives a list room for all points, with zeros for those of this rank and its ghosts. LAMMPS has room for 16384 points or more:
- *  to clear all of it would take a fifth of the step of a small body. */
+/** Gives a list room for all points, with zeros for those of this rank and its ghosts. LAMMPS has
+ *  room for 16384 points or more: to clear all of it would take a fifth of the step of a small
+ *  body. */
 inline void clear_points(std::vector<double> &list, const Atom *atom, int width = 1)
 {
   const std::size_t w = width;

@@ -16,9 +16,10 @@
 
 namespace LAMMPS_NS {
 
-/** The first of the events that ranks have seen, for a warning that is printed once, with the same text for any number of
- *  ranks. A note of an event consists of N numbers, by which notes are ordered: first the step, then numbers that
- *  distinguish events of the same step, such as the place. */
+/** The first of the events that ranks have seen, for a warning that is printed once, with the same
+ *  text for any number of ranks. A note of an event consists of N numbers, by which notes are
+ *  ordered: first the step, then numbers that distinguish events of the same step, such as the
+ *  place. */
 template <std::size_t N> class MPMFirstNote {
  public:
   using Numbers = std::array<double, N>;
@@ -29,13 +30,15 @@ template <std::size_t N> class MPMFirstNote {
   /** Has a note been reported? The same on all ranks. */
   bool told() const { return is_told; }
 
-  /** Has a note been reported, or has this rank a note of an earlier step? Then there is no need to look for events. */
+  /** Has a note been reported, or has this rank a note of an earlier step? Then there is no need to
+   *  look for events. */
   bool knows(double step) const { return is_told || mine[0] < step; }
 
   /** Takes a note of this rank; the least one is kept. */
   void take(const Numbers &numbers) { mine = std::min(mine, numbers); }
 
-  /** Returns true once, when a rank has a note. Then first is the least note of all ranks. Collective. */
+  /** Returns true once, when a rank has a note. Then first is the least note of all ranks.
+   *  Collective. */
   bool tell(MPI_Comm world, Numbers &first)
   {
     if (is_told) return false;

@@ -15,8 +15,8 @@
 
 namespace LAMMPS_NS {
 
-/** Replaces a difference of positions by its shortest periodic image. Domain::minimum_image() has other
- *  arguments in older versions of LAMMPS, and handles differences of at most two boxes. */
+/** Replaces a difference of positions by its shortest periodic image. Domain::minimum_image() has
+ *  other arguments in older versions of LAMMPS, and handles differences of at most two boxes. */
 inline void nearest_image(const Domain &domain, double *d)
 {
   for (int a = 0; a < 3; a++)

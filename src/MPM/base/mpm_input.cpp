@@ -35,8 +35,9 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Folders of the package's material files: share/lammps-mpm/potentials in a folder above the plugin, library, or
- *  executable that has this code in it. A build tree has this folder as an installation has. */
+/** Folders of the package's material files: share/lammps-mpm/potentials in a folder above the
+ *  plugin, library, or executable that has this code in it. A build tree has this folder as an
+ *  installation has. */
 static std::vector<std::filesystem::path> own_potentials()
 {
   std::vector<std::filesystem::path> folders;
@@ -58,7 +59,8 @@ static std::vector<std::filesystem::path> own_potentials()
   return folders;
 }
 
-/** LAMMPS's search, and then in the folders of this package, for a name without a folder; empty: nowhere */
+/** LAMMPS's search, and then in the folders of this package, for a name without a folder; empty:
+ *  nowhere */
 static std::string find_file(const std::string &name)
 {
   const std::string path = utils::get_potential_file_path(name);

@@ -18,8 +18,8 @@ namespace LAMMPS_NS {
 class Fix;
 class LAMMPS;
 
-/** Reads the arguments from iarg on as declared, up to the end or to the word last. Returns the index of this
- *  word, or of the end. */
+/** Reads the arguments from iarg on as declared, up to the end or to the word last. Returns the
+ *  index of this word, or of the end. */
 int read_options(LAMMPS *, MPM_NS::Options &, int narg, char **arg, int iarg,
                  const std::string &last = "");
 
@@ -28,18 +28,19 @@ int read_precision(LAMMPS *, int narg, char **arg, bool &single);
 
 /** Called in init(): stops with an error if there is no fix mpm that a fix can act on. */
 void require_field(LAMMPS *, const Fix &user);
-/** Stops with an error if there is another fix of this style. remedy: what one of them does, or what to do. */
+/** Stops with an error if there is another fix of this style. remedy: what one of them does, or
+ *  what to do. */
 void refuse_second(LAMMPS *, const Fix &user, const std::string &remedy = "remove one");
 
-/** Finds the variable, if the value is one, and stops with an error if it does not exist or is not equal-style.
- *  user: who needs it, for example fix mpm/rigid force. */
+/** Finds the variable, if the value is one, and stops with an error if it does not exist or is not
+ *  equal-style. user: who needs it, for example fix mpm/rigid force. */
 void find_variable(LAMMPS *, MPM_NS::NumberOrVariable &, const std::string &user);
 
 /** Returns the number, or the present value of the variable. */
 double evaluate(LAMMPS *, const MPM_NS::NumberOrVariable &);
 
-/** Calls f(), which evaluates variables. any: are there variables? If so, their computes are requested for the
- *  next step of the cycle, or of the run if there is no field. */
+/** Calls f(), which evaluates variables. any: are there variables? If so, their computes are
+ *  requested for the next step of the cycle, or of the run if there is no field. */
 void evaluate_in_step(LAMMPS *, bool any, const std::function<void()> &f);
 
 }    // namespace LAMMPS_NS

@@ -18,10 +18,10 @@ class Memory;
 
 /** Per-point state owned by atom style mpm, one instance for each Atom object.
  *
- *  The arrays live in a block that no AtomVec owns, so that each Atom object finds its own through an entry
- *  of Atom::add_peratom(). AtomVec would add a table of rows to each of them; atom style mpm grows them
- *  instead. The initial volume is atom->vfrac (0: the atom is not a material point), the mass is
- *  atom->rmass. */
+ *  The arrays live in a block that no AtomVec owns, so that each Atom object finds its own through
+ *  an entry of Atom::add_peratom(). AtomVec would add a table of rows to each of them; atom style
+ *  mpm grows them instead. The initial volume is atom->vfrac (0: the atom is not a material point),
+ *  the mass is atom->rmass. */
 struct MPMPoints {
   static constexpr int size = 9 + 6;    ///< reals of a point
   MPMRows F;                            ///< [n][9] deformation gradient, row-major
@@ -50,8 +50,8 @@ struct MPMPoints {
   /** Determinant of a row of F. */
   static double det(const double *F) { return MPM_NS::determinant(F); }
 
-  /** State of the points of this Atom object, or null if there is none; create = true creates it if it is
-   *  absent. */
+  /** State of the points of this Atom object, or null if there is none; create = true creates it if
+   *  it is absent. */
   static MPMPoints *get(Atom *atom, bool create = false);
 };
 }    // namespace LAMMPS_NS

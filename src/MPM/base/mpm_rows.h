@@ -13,8 +13,8 @@
 
 namespace LAMMPS_NS {
 
-/** Rows of reals for all atoms, one after the other in memory that another object owns. Unlike arrays of
- *  LAMMPS, they need no pointer to each row, which saves 8 bytes per atom. */
+/** Rows of reals for all atoms, one after the other in memory that another object owns. Unlike
+ *  arrays of LAMMPS, they need no pointer to each row, which saves 8 bytes per atom. */
 class MPMRows {
  public:
   MPMRows() = default;

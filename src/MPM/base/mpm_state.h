@@ -18,8 +18,8 @@
 
 namespace LAMMPS_NS {
 
-/** The per-point arrays of a fix. The owners of the arrays declare them here. This class grows them, moves
- *  them with their atoms, and writes them to restart files. */
+/** The per-point arrays of a fix. The owners of the arrays declare them here. This class grows
+ *  them, moves them with their atoms, and writes them to restart files. */
 class MPMPointState {
  public:
   using Fresh = std::function<void(int i, double *row)>;
@@ -29,9 +29,9 @@ class MPMPointState {
   MPMPointState &operator=(const MPMPointState &) = delete;
   ~MPMPointState();
 
-  /** Keep rows of width reals for all atoms; rows[i] is valid from the next grow() on. fresh: function that
-   *  fills the row of a new atom; without it the row is zero. The reference to rows must stay valid as long
-   *  as this object exists. */
+  /** Keep rows of width reals for all atoms; rows[i] is valid from the next grow() on. fresh:
+   *  function that fills the row of a new atom; without it the row is zero. The reference to rows
+   *  must stay valid as long as this object exists. */
   void declare(MPMRows &rows, const char *name, int width, Fresh fresh = nullptr);
   /** The same with a pointer to each row, as LAMMPS needs for output (array_atom). */
   void declare(double **&table, const char *name, int width, Fresh fresh = nullptr);
@@ -54,7 +54,8 @@ class MPMPointState {
 
  private:
   struct Array {
-    // pointer into the owner, who may be gone when the arrays are destroyed; one of the three is set
+    // pointer into the owner, who may be gone when the arrays are destroyed; one of the three is
+    // set
     MPMRows *rows;
     double ***table;
     double **values;
@@ -91,21 +92,23 @@ class FixMPMState : public Fix {
  protected:
   MPMPointState state;
 
-  /** Call at the end of the constructor, when all arrays are declared. restarts: the arrays go to restart
-   *  files. */
+  /** Call at the end of the constructor, when all arrays are declared. restarts: the arrays go to
+   *  restart files. */
   void keep_arrays(bool restarts = true);
-  /** The values of this fix for atom i from a restart file, n of them. The values of nth other fixes come
-   *  first, each preceded by their number. */
+  /** The values of this fix for atom i from a restart file, n of them. The values of nth other
+   *  fixes come first, each preceded by their number. */
   const double *from_restart(int i, int nth, int &n) const;
 
  private:
   bool restarts = false, callbacks = false;
 };
 
-/** Sums n values over processes: process 0 gets the sums, the others get zero. Restart files contain these
- *  sums, and the run that writes such a file continues with them, so that both have the same digits. */
+/** Sums n values over processes: process 0 gets the sums, the others get zero. Restart files
+ *  contain these sums, and the run that writes such a file continues with them, so that both have
+ *  the same digits. */
 void keep_totals(MPI_Comm, double *values, int n);
-/** Writes these sums as Fix::restart() reads them, followed by values that are the same on all processes. */
+/** Writes these sums as Fix::restart() reads them, followed by values that are the same on all
+ *  processes. */
 void write_totals(FILE *, MPI_Comm, std::vector<double> &totals,
                   const std::vector<double> &same = {});
 

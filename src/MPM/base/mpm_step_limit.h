@@ -13,11 +13,12 @@
 
 namespace LAMMPS_NS {
 
-/** A fix other than fix mpm that moves something and limits the time step; fix mpm/dt asks it for the largest one. */
+/** A fix other than fix mpm that moves something and limits the time step; fix mpm/dt asks it for
+ *  the largest one. */
 class MPMStepLimit {
  public:
-  /** The largest stable time step for the points of this rank, or the largest double if there is no limit.
-   *  tag: ID of the point that limits it, 0 if none does. */
+  /** The largest stable time step for the points of this rank, or the largest double if there is no
+   *  limit. tag: ID of the point that limits it, 0 if none does. */
   virtual double stable_dt(tagint &tag) const = 0;
   /** Does it make the steps of material points itself, without a fix mpm? */
   virtual bool makes_steps() const { return true; }

@@ -9,8 +9,8 @@
 #ifndef LMP_MPM_VERSION_H
 #define LMP_MPM_VERSION_H
 
-// Version of the package. It is defined only here; CMake and the manual read it. CONTRIBUTING.md describes
-// how to make a new one.
+// Version of the package. It is defined only here; CMake and the manual read it. CONTRIBUTING.md
+// describes how to make a new one.
 
 #define MPM_VERSION "0.1.0"
 

@@ -57,7 +57,7 @@ class MPMDiffusionSolver::OnePart : public LinearSystem {
   {
     std::vector<double> mine(n, 0.0);
     add_products(part.field.grid, 1, n, a, b, 0, mine.data());
-    sum_in_order(all.lmp, n, mine.data(), all.of_ranks, value);
+    sum_in_order(all.lmp, n, mine.data(), all.rank_sums, value);
   }
 
  private:
@@ -124,17 +124,17 @@ void MPMDiffusionSolver::precondition(const double *r, double *z)
   int k = 0;
   for (auto &part : parts) {
     const std::size_t n = part.capacity.size();
-    room.resize(n);
+    preconditioned.resize(n);
     if (by_levels)
-      part.levels->precondition(r + part.first, room.data());
+      part.levels->precondition(r + part.first, preconditioned.data());
     else
       for (std::size_t i = 0; i < n; i++)
-        room[i] = part.diagonal[i] > 0.0 ? r[part.first + i] / part.diagonal[i] : 0.0;
+        preconditioned[i] = part.diagonal[i] > 0.0 ? r[part.first + i] / part.diagonal[i] : 0.0;
     for (std::size_t i = 0; i < n; i++)
-      if (!(part.capacity[i] > 0.0)) room[i] = 0.0;
-    equations.project(k++, room);
-    part.field.nodes.complete(room.data(), 1, 1);
-    std::copy(room.begin(), room.end(), z + part.first);
+      if (!(part.capacity[i] > 0.0)) preconditioned[i] = 0.0;
+    equations.project(k++, preconditioned);
+    part.field.nodes.complete(preconditioned.data(), 1, 1);
+    std::copy(preconditioned.begin(), preconditioned.end(), z + part.first);
   }
 }
 
@@ -143,7 +143,7 @@ void MPMDiffusionSolver::products(int n, const double *const *a, const double *c
 {
   std::vector<double> mine(n, 0.0);
   for (const auto &part : parts) add_products(part.field.grid, 1, n, a, b, part.first, mine.data());
-  sum_in_order(lmp, n, mine.data(), of_ranks, value);
+  sum_in_order(lmp, n, mine.data(), rank_sums, value);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -303,7 +303,7 @@ const MPMDiffusionSolver::Report &MPMDiffusionSolver::advance(double dt, double 
 double MPMDiffusionSolver::memory_usage() const
 {
   double bytes = conjugate.memory_usage() + general.memory_usage() +
-      (residual.capacity() + correction.capacity() + room.capacity()) * sizeof(double);
+      (residual.capacity() + correction.capacity() + preconditioned.capacity()) * sizeof(double);
   for (const auto &part : parts) {
     for (const auto *list : {&part.capacity, &part.base, &part.at, &part.diagonal})
       bytes += list->capacity() * sizeof(double);

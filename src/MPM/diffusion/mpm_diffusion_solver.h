@@ -123,7 +123,7 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
   double implicit_dt = 0.0;    // time step of the implicit equations: dt, or g dt
   // of the preconditioner in this step: is it ready, and is it multigrid?
   bool prepared = false, by_levels = false;
-  std::vector<double> residual, correction, room, of_ranks;
+  std::vector<double> residual, correction, preconditioned, rank_sums;
 
   int64_t size() const override;
   void apply(const double *x, double *y) override;

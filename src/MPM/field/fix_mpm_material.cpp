@@ -98,8 +98,8 @@ void FixMPMMaterial::init()
 }
 
 /* ----------------------------------------------------------------------
-   a law that bears nothing across a plane would let points, and elements that are no surfaces, fall apart; the latter are refused by
-   fix mpm/elements
+   a law that bears nothing across a plane would let points, and elements that are no surfaces, fall
+   apart; the latter are refused by fix mpm/elements
 ------------------------------------------------------------------------- */
 
 void FixMPMMaterial::check_surfaces() const
@@ -211,8 +211,8 @@ std::string FixMPMMaterial::names() const
 }
 
 /* ----------------------------------------------------------------------
-   The ledger wants to know the work of the stress. Laws have their own account of the energy; the two
-   agree to third order in the strain of a step
+   The ledger wants to know the work of the stress. Laws have their own account of the energy; the
+   two agree to third order in the strain of a step
 ------------------------------------------------------------------------- */
 
 void FixMPMMaterial::update_batch(Batch &b, const BatchKernels &kernels, const double *heat)

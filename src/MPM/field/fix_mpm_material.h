@@ -46,8 +46,8 @@ class FixMPMMaterial : public FixMPMState {
   double work[8] = {};         ///< energy of each MPM_NS::Work kind so far, this rank's share
   double stress_work = 0.0;    ///< work of the stress so far, with a compute mpm/energy only
 
-  /** Updates stress and history of a batch to the end of the step and adds to work. heat: [n] heat from other
-   *  sources per reference volume, or null. */
+  /** Updates stress and history of a batch to the end of the step and adds to work. heat: [n] heat
+   *  from other sources per reference volume, or null. */
   void update_batch(MPM_NS::Batch &, const MPM_NS::BatchKernels &, const double *heat = nullptr);
 
   /** Sets mass = density * initial volume for the points of the group that have no mass yet. */
@@ -55,6 +55,10 @@ class FixMPMMaterial : public FixMPMState {
 
   /** Index of a history variable; -1 if the law has none of this name. */
   int find_history(const std::string &) const;
+  /** Index of the temperature among the history variables, and of the molten share; -1: there is
+   *  none. */
+  int temperature() const { return find_history("temperature"); }
+  int molten() const { return find_history("molten"); }
 
   bool mass_varies = false;    ///< the mass of points changes with the water in their pores
   bool watching;               ///< is there a range of validity whose exit was not reported yet?
@@ -66,7 +70,8 @@ class FixMPMMaterial : public FixMPMState {
   double density(int) const;    ///< reference density of a point
 
  private:
-  /** The first point that left a range; of several points in the same step, that with the smallest ID. */
+  /** The first point that left a range; of several points in the same step, that with the smallest
+   *  ID. */
   struct Exit {
     bool reported;
     bigint step;    ///< MAXBIGINT: not yet

@@ -6,12 +6,12 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// First values of affine matrices come from the velocities of the points.
-// A point that has not moved yet has no affine matrix, and those of points whose velocities were
-// changed by a command between runs belong to the motion before. With zero in their place, the first
-// step would take a part of the energy of a rotation (2 % for a disk of 10 cells). The matrix of a
-// point is the slope of the velocities around it, by least squares weighted with mass and shape
-// functions: with the mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
+// First values of affine matrices come from the velocities of the points. A point that has not
+// moved yet has no affine matrix, and those of points whose velocities were changed by a command
+// between runs belong to the motion before. With zero in their place, the first step would take a
+// part of the energy of a rotation (2 % for a disk of 10 cells). The matrix of a point is the slope
+// of the velocities around it, by least squares weighted with mass and shape functions: with the
+// mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
 //   C = [sum_i N_i m_i <(v - <v>_i) (x - <x>_i)>_i] [sum_i N_i m_i <(x - <x>_i) (x - <x>_i)>_i]^+.
 // It is exact for fields that vary linearly, also at the surface of a body. Directions in which the
 // points around have no extent get no slope (pseudo-inverse).
@@ -22,6 +22,7 @@
 #include "base/mpm_state.h"
 #include "field/mpm_every.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
@@ -48,7 +49,7 @@ MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
     Pointers(lmp), field(field)
 {
   state.declare(C, "mpm:C", size(), [this](int, double *row) {
-    if (!this->field.running) row[0] = NAN;    // not known, for fit()
+    if (!this->field.is_running()) row[0] = NAN;    // not known, for fit()
   });
   if (field.options.polypic) state.declare(Q, "mpm:Q", poly_size(field.lattice.dim));
 }
@@ -118,20 +119,20 @@ void MPMAffine::fit()
   enum { M = 0, X = 1, V = 4, VX = 7, XX = 16, NREAL = 22 };    // sums of mass times ...
   std::vector<double> sums(field.grid.nnodes() * NREAL, 0.0);
 
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++)
-      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        double *const s = &sums[node.number * NREAL];
-        const double *const r = node.r;
-        const double m = node.weight * atom->rmass[i], *v = atom->v[i];
-        s[M] += m;
-        for (int a = 0, k = 0; a < dim; a++) {
-          s[X + a] += m * r[a];
-          s[V + a] += m * v[a];
-          for (int b = 0; b < dim; b++) s[VX + 3 * a + b] += m * v[a] * r[b];
-          for (int b = 0; b <= a; b++) s[XX + k++] += m * r[a] * r[b];
-        }
-      });
+  each_point(field, [&](const MPMPointMap::Run &run, int i) {
+    stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+      double *const s = &sums[node.number * NREAL];
+      const double *const r = node.r;
+      const double m = node.weight * atom->rmass[i], *v = atom->v[i];
+      s[M] += m;
+      for (int a = 0, k = 0; a < dim; a++) {
+        s[X + a] += m * r[a];
+        s[V + a] += m * v[a];
+        for (int b = 0; b < dim; b++) s[VX + 3 * a + b] += m * v[a] * r[b];
+        for (int b = 0; b <= a; b++) s[XX + k++] += m * r[a] * r[b];
+      }
+    });
+  });
   field.nodes.sum(sums.data(), NREAL, 0, NREAL);
   field.nodes.complete(sums.data(), NREAL, NREAL);
 
@@ -221,11 +222,11 @@ void MPMAffine::add_torques()
 }
 
 /* ----------------------------------------------------------------------
-   What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where < >
-   are means with the shape functions N_ip over the places r of nodes from the point, and F is that of the
-   total frame, else 1. <r r> is D in the moving least squares form; with other functions it depends on
-   where the point is in its cell. Bilinear modes (PolyPIC) have none, as products of coordinates are
-   orthogonal to linear functions.
+   What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where
+   < > are means with the shape functions N_ip over the places r of nodes from the point, and F is
+   that of the total frame, else 1. <r r> is D in the moving least squares form; with other
+   functions it depends on where the point is in its cell. Bilinear modes (PolyPIC) have none, as
+   products of coordinates are orthogonal to linear functions.
 ------------------------------------------------------------------------- */
 
 void MPMAffine::angular_momentum(int i, double L[3]) const

@@ -36,7 +36,8 @@ class MPMAffine : protected Pointers {
   /** Number of reals of a matrix. */
   int size() const { return field.lattice.dim * field.lattice.dim; }
 
-  /** Note the velocities that the matrices belong to: at the end of a run, and for restart files. */
+  /** Note the velocities that the matrices belong to: at the end of a run, and for restart
+   *  files. */
   void remember_velocities() { velocities = {velocity_hash(), 1}; }
   /** Start of a run: forget the matrices if velocities have changed since. */
   void check_velocities();

@@ -17,7 +17,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160). */
+/** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7
+ *  (1986) 1160). */
 static void rotation(const double *F, double R[3][3])
 {
   static constexpr int MOST = 30;

@@ -13,8 +13,9 @@
 
 namespace LAMMPS_NS {
 
-/** Principal conductivities k of a material at a point with the deformation gradient F [9, row-major]. The rows of n are
- *  their axes, unit vectors in space. All k are the same if the material is isotropic. */
+/** Principal conductivities k of a material at a point with the deformation gradient F [9,
+ *  row-major]. The rows of n are their axes, unit vectors in space. All k are the same if the
+ *  material is isotropic. */
 void principal_conductivities(const MPM_NS::Conduction &, const double *F, double k[3],
                               double n[3][3]);
 

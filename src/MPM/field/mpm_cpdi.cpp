@@ -9,10 +9,10 @@
 // Points of fix mpm that have a size: boxes along the axes (gimp and cpgimp), and domains (cpdi and
 // cpdi2), see transfer/cpdi.h.
 //
-// Domains of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that move
-// with the nodes' velocities. Domains stay the same throughout a step. A tile has the neighbors of
-// its block on all sides, but only those blocks are active that corners can reach soon: whether
-// they still do is checked at the start of each step.
+// Domains of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that
+// move with the nodes' velocities. Domains stay the same throughout a step. A tile has the
+// neighbors of its block on all sides, but only those blocks are active that corners can reach
+// soon: whether they still do is checked at the start of each step.
 
 #include "field/mpm_cpdi.h"
 
@@ -24,6 +24,7 @@
 #include "field/mpm_every.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_point_map.h"
 #include "transfer/cpdi.h"
 #include "utils.h"
@@ -51,17 +52,18 @@ double LAMMPS_NS::half_size(const MPMField &field, int i)
 }
 
 /* ----------------------------------------------------------------------
-   Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous one
-   follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along axis d
-   those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and rotation this is
-   F_dd l_d, and a cube that just turns keeps its size.
+   Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous
+   one follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along
+   axis d those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and
+   rotation this is F_dd l_d, and a cube that just turns keeps its size.
 ------------------------------------------------------------------------- */
 
 void MPMBoxes::update()
 {
   sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) size_of(i, &sizes[3 * (std::size_t) i]);
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    size_of(i, &sizes[3 * (std::size_t) i]);
+  });
 }
 
 void MPMBoxes::size_of(int i, double *size) const
@@ -82,8 +84,9 @@ void MPMBoxes::size_of(int i, double *size) const
 }
 
 /* ----------------------------------------------------------------------
-   a ring has its initial size at x/F_zz, which is its initial radius until it moves only: with stress
-   apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any more
+   a ring has its initial size at x/F_zz, which is its initial radius until it moves only: with
+   stress apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any
+   more
 ------------------------------------------------------------------------- */
 
 bool MPMBoxes::is_too_large(int i) const
@@ -259,15 +262,14 @@ void MPMCpdi::limit(int i)
 void MPMCpdi::check_corners()
 {
   const int n = 1 << field.lattice.dim;
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) {
-      double x[24], w[8];
-      const double size = corners_of(i, x, w);
-      if (size > 0.0 && *std::min_element(w, w + n) >= 0.0) continue;
-      field.guard->point_is_bad(i, "has a domain that is turned inside out",
-                                "it becomes the parallelogram of F");
-      if (field.options.bad == MPMFieldOptions::WARN) corners_of_box(i, corners[i]);
-    }
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    double x[24], w[8];
+    const double size = corners_of(i, x, w);
+    if (size > 0.0 && *std::min_element(w, w + n) >= 0.0) return;
+    field.guard->point_is_bad(i, "has a domain that is turned inside out",
+                              "it becomes the parallelogram of F");
+    if (field.options.bad == MPMFieldOptions::WARN) corners_of_box(i, corners[i]);
+  });
 }
 
 /* ---------------------------------------------------------------------- */

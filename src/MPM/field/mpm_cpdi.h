@@ -17,7 +17,8 @@ namespace LAMMPS_NS {
 /** Half of the edge of a cube (2d: square) with the initial volume of point i, in node spacings. */
 double half_size(const MPMField &, int i);
 
-/** Sizes of points that are boxes along the axes: GIMP, with fixed sizes or those of deformed points. */
+/** Sizes of points that are boxes along the axes: GIMP, with fixed sizes or those of deformed
+ *  points. */
 class MPMBoxes : protected Pointers {
  public:
   std::vector<double> sizes;    ///< half sizes in node spacings, [n][3]
@@ -41,8 +42,8 @@ class MPMBoxes : protected Pointers {
 /** Domains of the points (shapes cpdi and cpdi2), see transfer/cpdi.h. */
 class MPMCpdi : protected Pointers {
  public:
-  /** cpdi2: [n][2^dim][dim] corners relative to the point, in the order of transfer/cpdi.h, NAN before
-   *  the first step; null: cpdi. */
+  /** cpdi2: [n][2^dim][dim] corners relative to the point, in the order of transfer/cpdi.h, NAN
+   *  before the first step; null: cpdi. */
   MPMRows corners;
   std::vector<double> corners_late;    ///< the same at the end of the step, if points move late
 
@@ -56,18 +57,20 @@ class MPMCpdi : protected Pointers {
   }
   /** Domains of all points, as kernels read them. */
   const double *rows() const { return corners ? &corners[0][0] : edges.data(); }
-  /** The array where G2P puts corners that have moved; null: domains have no corners of their own. */
+  /** The array where G2P puts corners that have moved; null: domains have no corners of their
+   *  own. */
   double *moved(bool late);
   /** Points [first,last) have moved late: they take the corners of the end of the step. */
   void take_late(int first, int last);
 
   /** Find the domains for this step. Asks for new blocks if corners are beyond those in reach. */
   void update();
-  /** cpdi2: treat points with an inverted domain as bad; with policy warn they get the domain of F. */
+  /** cpdi2: treat points with an inverted domain as bad; with policy warn they get the domain of
+   *  F. */
   void check_corners();
 
-  /** Corners x of the domain relative to the point, their weights w and, if g is not null, the gradients
-   *  of the weights; returns the size. */
+  /** Corners x of the domain relative to the point, their weights w and, if g is not null, the
+   *  gradients of the weights; returns the size. */
   double corners_of(int i, double *x, double *w, double *g = nullptr) const;
   /** How far a domain reaches from its point along each axis, in node spacings. */
   void reach(int i, double low[3], double high[3]) const;

@@ -32,11 +32,12 @@ class MPMEdges : protected Pointers {
   /** Makes the lists. without_outside: also with nodes whose neighbor outside does not exist. */
   void find(bool without_outside);
 
-  /** For functions that are modified at the faces: moves the sums of this rank at nodes outside to the
-   *  nodes at the face and inside, before the sums of other ranks are added. nodes: [node][nreal], of which
-   *  the nlane reals from lane on. */
+  /** For functions that are modified at the faces: moves the sums of this rank at nodes outside to
+   *  the nodes at the face and inside, before the sums of other ranks are added. nodes:
+   *  [node][nreal], of which the nlane reals from lane on. */
   void fold(double *nodes, int nreal, int lane, int nlane) const;
-  /** Sets the values of nodes outside, for interpolation. Where faces meet, the last axis overrides others. */
+  /** Sets the values of nodes outside, for interpolation. Where faces meet, the last axis overrides
+   *  others. */
   void extend(double *nodes, int nreal, int lane, int nlane) const;
   double memory_usage() const;
 

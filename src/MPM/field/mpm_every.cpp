@@ -9,8 +9,8 @@
 // Grains and atoms that need a smaller time step take several under one of the material points.
 //
 // Between two steps of the cycle, points move with their constant velocity, so that what they touch
-// sees them move smoothly, and their forces add up. The cycle then starts from where they were in the
-// middle of these steps, with the mean of the forces: it gives them the impulse that they have
+// sees them move smoothly, and their forces add up. The cycle then starts from where they were in
+// the middle of these steps, with the mean of the forces: it gives them the impulse that they have
 // received, to round-off. On a linear spring this mean is the force at the middle, and K steps are
 // one of leapfrog, which keeps the energy; with the place at their start they would be damped, by a
 // part (K - 1)/(2 K) (omega dt)^2 of the energy in each step dt of the cycle.
@@ -31,8 +31,8 @@ MPMEvery::MPMEvery(LAMMPS *lmp, MPMField &field, MPMPointState &state) : Pointer
 }
 
 /* ----------------------------------------------------------------------
-   add forces, and move the points on, or to their place on the lattice when it is time for the cycle.
-   Points that have not waited before are where they are at the start of these steps
+   add forces, and move the points on, or to their place on the lattice when it is time for the
+   cycle. Points that have not waited before are where they are at the start of these steps
 ------------------------------------------------------------------------- */
 
 bool MPMEvery::wait()

@@ -37,7 +37,8 @@ class MPMEvery : protected Pointers {
   /** Start of a run: drops a step of the cycle that an error has interrupted. */
   void forget_broken_step();
 
-  /** Duration of the present step of the cycle; steps of LAMMPS still to come count with the present dt. */
+  /** Duration of the present step of the cycle; steps of LAMMPS still to come count with the
+   *  present dt. */
   double step_dt() const
   {
     return progress.elapsed + (field.options.every - progress.waited) * update->dt;
@@ -53,8 +54,8 @@ class MPMEvery : protected Pointers {
 
  private:
   MPMField &field;
-  // [n][6 or 9] impulse since the last step of the cycle [3], displacement from the place on the lattice
-  // [3], and, if atoms have torques, angular impulse [3]
+  // [n][6 or 9] impulse since the last step of the cycle [3], displacement from the place on the
+  // lattice [3], and, if atoms have torques, angular impulse [3]
   MPMRows waiting;
   int width() const { return atom->torque_flag ? 9 : 6; }
 };

@@ -136,7 +136,7 @@ void MPMField::check_box()
 void MPMField::init(MPMPlan *plan_of_all)
 {
   plan = plan_of_all;
-  running = has_moved = time_limit->watch_volume = keep_old = keep_old_now = false;
+  running = motion_is_done = time_limit->watch_volume = keep_old = keep_old_now = false;
   time_limit->bound = true;
   check_box();
   frame->check();
@@ -179,9 +179,10 @@ void MPMField::find_materials()
 }
 
 /* ----------------------------------------------------------------------
-   Velocities of nodes that were mapped back have contact decided by those of the step, and no impulse of their
-   own. When points moved with them, a tool without friction that was drawn through a body felt nearly twice its
-   force, and a cone that is a separating wall 5 % too little at 1.2 cells of depth
+   Velocities of nodes that were mapped back have contact decided by those of the step, and no
+   impulse of their own. When points moved with them, a tool without friction that was drawn through
+   a body felt nearly twice its force, and a cone that is a separating wall 5 % too little at 1.2
+   cells of depth
 ------------------------------------------------------------------------- */
 
 static bool is_in_contact(const MPMField &field)
@@ -194,8 +195,8 @@ static bool is_in_contact(const MPMField &field)
 
 /* ----------------------------------------------------------------------
    Long records of nodes keep forces and old velocities apart: the ledger and some node actions need
-   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves domains with
-   velocities that were mapped back, knows long records only
+   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves
+   domains with velocities that were mapped back, knows long records only
 ------------------------------------------------------------------------- */
 
 void MPMField::choose_kernels()
@@ -223,6 +224,25 @@ void MPMField::choose_kernels()
         : pic;
   }
   batch->h = lattice.h;
+}
+
+void MPMField::keep_old_velocities_now(bool yes)
+{
+  if (keep_old_now == yes) return;
+  keep_old_now = yes;
+  choose_kernels();
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMField::count_step()
+{
+  auto &counts = counts_of_run;
+  last_dt = step_dt();
+  counts.dt_min = std::min(counts.dt_min, last_dt);
+  counts.dt_max = std::max(counts.dt_max, last_dt);
+  counts.steps++;
+  counts.point_steps += map->npoints();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -280,14 +300,14 @@ PointRows MPMField::rows() const
   r.guarded = atom->nmax - 1;
   r.size = boxes ? boxes->sizes.data() : nullptr;
   if (domains) r.domain = domains->rows();
-  r.xnew = options.moves_late() ? const_cast<double *>(work.xnew.data()) : &atom->x[0][0];
+  r.xnew = options.moves_late() ? const_cast<double *>(late_positions.data()) : &atom->x[0][0];
   return r;
 }
 
 PointRows MPMField::rows_at_rest(double *values, const double *weights)
 {
-  // a value of a node that is not finite moves points even in no time, and the next transfer would look for
-  // their nodes; they stay where they are until the guard has seen the velocity
+  // a value of a node that is not finite moves points even in no time, and the next transfer would
+  // look for their nodes; they stay where they are until the guard has seen the velocity
 
   work.places.resize(3 * (std::size_t) atom->nmax);
   PointRows r = rows();
@@ -323,8 +343,9 @@ double MPMField::memory_usage() const
   if (boxes) bytes += boxes->sizes.capacity() * sizeof(double);
   if (every)
     bytes += (every->mean_force.capacity() + every->mean_torque.capacity()) * sizeof(double);
-  for (const auto *list : {&work.nodes, &work.node_velocities, &work.vectors, &work.weights,
-                           &work.places, &work.stress, &work.no_volume, &work.xnew, &work.history})
+  for (const auto *list :
+       {&work.nodes, &work.node_velocities, &work.vectors, &work.weights, &work.places,
+        &work.stress, &work.no_volume, &late_positions, &work.history})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

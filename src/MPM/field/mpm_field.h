@@ -49,10 +49,26 @@ class MPMWatch;
 class MPMRows;
 struct MPMPoints;
 
-/** One velocity field on one lattice: options, points, nodes, and an object for each feature that only
- *  some options need. */
+/** One velocity field on one lattice: options, points, nodes, and an object for each feature that
+ *  only some options need. */
 class MPMField : protected Pointers {
   MPMFieldOptions chosen;
+
+  bool running = false;
+  bool keep_old = false, keep_old_now = false;
+  bool motion_is_done = false;
+  std::vector<double> late_positions;
+  double last_dt = 0.0;
+
+ public:
+  /** Counts and time steps of the present run. */
+  struct Counts {
+    bigint steps = 0;
+    double point_steps = 0.0, dt_min = 0.0, dt_max = 0.0;
+  };
+
+ private:
+  Counts counts_of_run;
 
   bool has_contact() const;
 
@@ -81,16 +97,8 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPM_NS::Batch> batch;
 
   MPMLedger ledger;
-  /** A node action reads what nodes had before the momentum equation; set by its init_action(). */
-  bool keep_old = false;
-  /** The same until the blocks are renewed: set by its blocks_found(), followed by choose_kernels(). */
-  bool keep_old_now = false;
-  bool running = false;    ///< between the set-up and the end of a run
-  /** Positions of the end of the step wait in work.xnew, see MPMStages::nodes_to_points(). */
-  bool has_moved = false;
-  double last_dt = 0.0;    ///< duration of the last step of the cycle; 0: none so far
-
-  /** [n][dim] gradients on the lattice that other physics keep for points; set by their init_physics(). */
+  /** [n][dim] gradients on the lattice that other physics keep for points; set by their
+   *  init_physics(). */
   std::vector<const MPMRows *> slopes;
   /** Physics that change how points strain; set by their init_physics(). */
   std::vector<MPMStretch *> stretching;
@@ -121,8 +129,7 @@ class MPMField : protected Pointers {
     std::vector<double> places;       ///< [n][3] unused positions from transfers at rest
     std::vector<double> stress;       ///< [n][6]
     std::vector<double> no_volume;    ///< [n] zero
-    std::vector<double> xnew;    ///< [n][3] positions of the end of the step, when points move late
-    std::vector<double> history;    ///< [variable][BATCH]
+    std::vector<double> history;      ///< [variable][BATCH]
   } work;
 
   /** The per-point arrays that the options ask for are declared in state. */
@@ -134,7 +141,8 @@ class MPMField : protected Pointers {
   /** The field of a fix mpm; null: the fix does not exist or has another style. */
   static MPMField *find(class LAMMPS *, const std::string &id);
 
-  /** Start of a run, before anything reads the options: choose the form of the stress if the input leaves it open. */
+  /** Start of a run, before anything reads the options: choose the form of the stress if the input
+   *  leaves it open. */
   void choose_stress(const std::vector<MPMPhysics *> &);
   /** Start of a run. */
   void init(MPMPlan *);
@@ -156,23 +164,51 @@ class MPMField : protected Pointers {
 
   /** Duration of a step of the cycle. */
   double step_dt() const;
-  /** Duration of the step before, which has moved the points to where they are; of this step, if there was none. */
+  /** Duration of the step before, which has moved the points to where they are; of this step, if
+   *  there was none. */
   double step_dt_before() const { return last_dt > 0.0 ? last_dt : step_dt(); }
   /** Steps of LAMMPS until the next step of the cycle ends, seen from the end of this step. */
   int steps_to_next() const;
   /** The arrays of points as transfers read them. */
   MPM_NS::PointRows rows() const;
-  /** Rows for transfers of other values and weights, in which points do not move (the time step is zero). */
+  /** Rows for transfers of other values and weights, in which points do not move (the time step is
+   *  zero). */
   MPM_NS::PointRows rows_at_rest(double *values, const double *weights);
   /** Data for transfers, with the duration of a step of the cycle or another one. */
   MPM_NS::TransferStep step_data() const { return step_data(step_dt()); }
   MPM_NS::TransferStep step_data(double dt) const;
 
-  /** Counts and time steps of the present run. */
-  struct {
-    bigint steps = 0;
-    double point_steps = 0.0, dt_min = 0.0, dt_max = 0.0;
-  } counts;
+  // course of a run
+
+  /** Called by fix mpm when the set-up of a run is complete, and at its end. */
+  void begin_run() { running = true; }
+  void end_run() { running = false; }
+  bool is_running() const { return running; }
+  void start_counting() { counts_of_run = {0, 0.0, step_dt(), step_dt()}; }
+  /** End of a step of the cycle. */
+  void count_step();
+  const Counts &counts() const { return counts_of_run; }
+  /** Duration of the last step of the cycle; 0: none so far. */
+  double dt_of_last_step() const { return last_dt; }
+  /** The run continues after a step of this duration. */
+  void continue_after(double dt) { last_dt = dt; }
+
+  /** From now on in this run, nodes keep the velocities that they had before the momentum equation:
+   *  for a node action or physics that reads them. To be called by init_action() or
+   *  init_physics(). */
+  void keep_old_velocities() { keep_old = true; }
+  bool keeps_old_velocities() const { return keep_old; }
+  /** The same, or no longer, until the blocks are renewed. To be called by blocks_found(). */
+  void keep_old_velocities_now(bool yes);
+  bool keeps_old_velocities_now() const { return keep_old_now; }
+
+  /** [n][3] positions of the end of the step, where points move late: valid from the stage that
+   *  finds them to the one that moves the points. */
+  std::vector<double> &positions_to_come() { return late_positions; }
+  /** Has physics already called for the motion of this step, which then only waits for the
+   *  positions? */
+  bool has_moved() const { return motion_is_done; }
+  void set_moved(bool yes) { motion_is_done = yes; }
 
   double memory_usage() const;
 };

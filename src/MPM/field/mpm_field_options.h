@@ -19,7 +19,8 @@ struct MPMFieldOptions {
   enum Scheme { USL, USF, MUSL, USAVG };    ///< when stress is updated in a step
   enum Series { LUMPED, XPIC, FMPM };       ///< terms of the inverse of the mass matrix
   /** How forces follow from stress, and velocity gradients from nodal velocities. By default as the
-   *  shape and the transfer do it, or, if bodies come to rest in the updated frame, by gradients. */
+   *  shape and the transfer do it, or, if bodies come to rest in the updated frame, by
+   *  gradients. */
   enum Stress { DEFAULT_STRESS, MLS_STRESS, GRADIENT_STRESS };
   enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
   enum Policy { ERROR, WARN, DELETE };               ///< what to do with a bad point
@@ -54,13 +55,15 @@ struct MPMFieldOptions {
   bool plan = false;              ///< print the plan of the step with the cost of each stage
   int kernels = 0;                ///< requested instruction set, 0: the best
 
-  /** Does the scheme update stress at the start, at the end of the step, or (neither) in between? */
+  /** Does the scheme update stress at the start, at the end of the step, or (neither) in
+   *  between? */
   bool stress_before() const { return scheme == USF || scheme == USAVG; }
   bool stress_after() const { return scheme == MUSL || scheme == USAVG; }
   bool has_xpic() const { return series == XPIC; }
   bool has_fmpm() const { return series == FMPM; }
   bool has_light_nodes() const { return light > 0.0; }
-  /** What does the cure for volumetric locking average: changes of volume, the pressure in forces? */
+  /** What does the cure for volumetric locking average: changes of volume, the pressure in
+   *  forces? */
   bool averages_strain() const { return locking == FBAR || locking == BOTH; }
   bool averages_stress() const { return locking == PRESSURE || locking == BOTH; }
   bool smooths_volumes() const { return smooth > 0.0; }
@@ -69,7 +72,8 @@ struct MPMFieldOptions {
   bool averages_volume() const { return locking == FBAR && !total; }
   /** In 2d: does F_zz change? */
   bool changes_thickness() const { return axisymmetric || (averages_strain() && !total); }
-  /** With scheme usl: is stress updated while points move, or after that? Neither with light nodes. */
+  /** With scheme usl: is stress updated while points move, or after that? Neither with light
+   *  nodes. */
   bool strains_while_moving() const { return !has_light_nodes() && !averages_strain(); }
   bool strains_after_motion() const { return !has_light_nodes() && averages_strain(); }
   /** May points move with the velocities that were mapped back, as they strain? */
@@ -95,7 +99,8 @@ struct MPMFieldOptions {
 
   bool watches_gain() const { return gain != GAIN_IGNORE; }
 
-  /** Can a body fracture only because its points are too far apart? Not if domains cover the body. */
+  /** Can a body fracture only because its points are too far apart? Not if domains cover the
+   *  body. */
   bool watches_fracture() const { return apart && !total && !MPM_NS::has_domain(shape); }
 
   /** The declaration of the options; it refers to this object. */

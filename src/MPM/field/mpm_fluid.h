@@ -13,8 +13,8 @@
 
 namespace LAMMPS_NS {
 
-/** An incompressible fluid with a lattice of its own, for what moves in it or flows into it. Implemented by a
- *  fix. */
+/** An incompressible fluid with a lattice of its own, for what moves in it or flows into it.
+ *  Implemented by a fix. */
 class MPMFluid {
  public:
   /** Node spacing. */
@@ -23,8 +23,8 @@ class MPMFluid {
   virtual double spacing_around(const std::string &region) const = 0;
   /** Density of points in groups with these bits, that are no solids. */
   virtual double density_of_groups(int mask) const = 0;
-  /** Stops with an error if the density of the fluid given by another fix differs. who: the start of the
-   *  message. */
+  /** Stops with an error if the density of the fluid given by another fix differs. who: the start
+   *  of the message. */
   virtual void check_density(double of_fluid, const std::string &who) const = 0;
 
  protected:

@@ -9,8 +9,8 @@
 #ifndef LMP_MPM_FORCES_H
 #define LMP_MPM_FORCES_H
 
-// What physics adds to the forces and to the strain of points. A fix derives from those of these classes that it
-// needs, in addition to MPMPhysics; fix mpm finds it at the start of each run.
+// What physics adds to the forces and to the strain of points. A fix derives from those of these
+// classes that it needs, in addition to MPMPhysics; fix mpm finds it at the start of each run.
 
 #include <string>
 #include <vector>
@@ -36,46 +36,50 @@ class MPMAddedStress {
   ~MPMAddedStress() = default;    // owned and deleted as a Fix
 };
 
-/** Physics that only applies loads to points, by forces (atom->f), by MPMAddedStress, and, where loads depend on the
- *  deformation, by the functions below. It can be used with steps of any kind. */
+/** Physics that only applies loads to points, by forces (atom->f), by MPMAddedStress, and, where
+ *  loads depend on the deformation, by the functions below. It can be used with steps of any
+ *  kind. */
 class MPMLoad {
  public:
-  /** Loads that depend on the deformation of a point, for a solver that looks for the state at the end of a
-   *  step. follows(): has any of the points [first,last) such a load? follow(): for n points from first on
-   *  with the deformation gradients F [n][9], row-major, add the change of their forces relative to those in
-   *  atom->f, force: [n][3], and of the stress of add_stress(), tau: [n][6]. */
+  /** Loads that depend on the deformation of a point, for a solver that looks for the state at the
+   *  end of a step. follows(): has any of the points [first,last) such a load? follow(): for n
+   *  points from first on with the deformation gradients F [n][9], row-major, add the change of
+   *  their forces relative to those in atom->f, force: [n][3], and of the stress of add_stress(),
+   *  tau: [n][6]. */
   virtual bool follows(const MPMField &, int /*first*/, int /*last*/) const { return false; }
   virtual void follow(const MPMField &, int /*first*/, int /*n*/, const double * /*F*/,
                       double * /*force*/, double * /*tau*/) const
   {
   }
 
-  /** Loads that depend on the positions of all points of a surface, and are in atom->f, too; null where a
-   *  field has none. */
+  /** Loads that depend on the positions of all points of a surface, and are in atom->f, too; null
+   *  where a field has none. */
   virtual MPMTrialForces *trial_forces(const MPMField &) { return nullptr; }
 
  protected:
   ~MPMLoad() = default;    // owned and deleted as a Fix
 };
 
-/** Pressure of the water in pores. The stress that points keep is then the effective stress. An implicit step
- *  solves for this pressure together with the motion, which is all that this physics does in such steps. */
+/** Pressure of the water in pores. The stress that points keep is then the effective stress. An
+ *  implicit step solves for this pressure together with the motion, which is all that this physics
+ *  does in such steps. */
 class MPMPorePressure {
  public:
-  /** [n] J times the pressure, which acts in the internal forces in addition to the stress of the points; null:
-   *  the field has no water. */
+  /** [n] J times the pressure, which acts in the internal forces in addition to the stress of the
+   *  points; null: the field has no water. */
   virtual const double *pressure_in_forces(const MPMField &) const = 0;
   /** The pressure at nodes for an implicit step; null: the field has no water. */
   virtual MPMNodePressure *node_pressure(const MPMField &) = 0;
 
-  /** The part of the forces on walls that the contact of points does not bear: force[node][3] is the integral
-   *  of N p n over the surface of the body [mass acceleration], with n outward. It is found at the nodes of the
-   *  blocks marked in near (and may be found at others). Returns false, and leaves force unchanged, if the
-   *  field has no water. Collective; call after the momentum equation. */
+  /** The part of the forces on walls that the contact of points does not bear: force[node][3] is
+   *  the integral of N p n over the surface of the body [mass acceleration], with n outward. It is
+   *  found at the nodes of the blocks marked in near (and may be found at others). Returns false,
+   *  and leaves force unchanged, if the field has no water. Collective; call after the momentum
+   *  equation. */
   virtual bool surface_force(MPMField &, const std::vector<char> &near,
                              std::vector<double> &force) const = 0;
-  /** Forces on nodes [node][3] in the layer below a surface: those of the water, and all. near: as in
-   *  surface_force(). */
+  /** Forces on nodes [node][3] in the layer below a surface: those of the water, and all. near: as
+   *  in surface_force(). */
   virtual void find_forces_below_surface(const MPMField &, const std::vector<char> &near,
                                          std::vector<double> &of_water,
                                          std::vector<double> &of_all) const = 0;
@@ -84,13 +88,14 @@ class MPMPorePressure {
   ~MPMPorePressure() = default;    // owned and deleted as a Fix
 };
 
-/** Points whose strain rate differs from the motion of the nodes around them. Its init_physics() adds it to
- *  MPMField::stretching. */
+/** Points whose strain rate differs from the motion of the nodes around them. Its init_physics()
+ *  adds it to MPMField::stretching. */
 class MPMStretch {
  public:
   /** Has any of n points from first on a rate of its own? */
   virtual bool stretches(int first, int n) const = 0;
-  /** Changes the velocity gradients L of these points in a step of duration dt, [n][dim*dim], column-major. */
+  /** Changes the velocity gradients L of these points in a step of duration dt, [n][dim*dim],
+   *  column-major. */
   virtual void stretch_gradients(MPMField &, int first, int n, double dt, double *L) = 0;
 
  protected:
@@ -105,7 +110,8 @@ bool has_added_stress(const MPMField &, int first, int last);
 void add_stress(const MPMField &, int first, int n, double *tau);
 /** See MPMPorePressure::surface_force(); false: the field has no water. */
 bool pore_surface_force(MPMField &, const std::vector<char> &near, std::vector<double> &force);
-/** Subtracts a pressure from the stress of n <= BATCH rows from point first on; work: space of [6*n]. */
+/** Subtracts a pressure from the stress of n <= BATCH rows from point first on; work: space of
+ *  [6*n]. */
 void subtract_pressure(const double *pressure, MPM_NS::PointRows &, int first, int n, double *work);
 
 }    // namespace LAMMPS_NS

@@ -18,9 +18,9 @@
 
 namespace LAMMPS_NS {
 
-/** The configuration that the nodes belong to, and the strain of points in it. This class is the updated
- *  Lagrangian frame, in which nodes are places in space. Other frames derive from it; the frame of an axis of
- *  symmetry wraps another frame, see mpm_frame_axisymmetric.cpp.
+/** The configuration that the nodes belong to, and the strain of points in it. This class is the
+ *  updated Lagrangian frame, in which nodes are places in space. Other frames derive from it; the
+ *  frame of an axis of symmetry wraps another frame, see mpm_frame_axisymmetric.cpp.
  *
  *  Functions with a range of points are called once for each batch. */
 class MPMFrame : protected Pointers {
@@ -43,7 +43,8 @@ class MPMFrame : protected Pointers {
   virtual bool is_total() const { return false; }
   /** Positions of points on the lattice, [n][3]. */
   virtual MPMRows places() const { return {atom->x[0], 3}; }
-  /** Kernels of a transfer in this frame. split: keep force and old velocity apart (FLIP, energy ledger). */
+  /** Kernels of a transfer in this frame. split: keep force and old velocity apart (FLIP, energy
+   *  ledger). */
   MPM_NS::TransferKernels kernels(MPM_NS::Transfer, bool split) const;
 
   // Transfer from points to nodes: rows for the forces of a batch, used if changes_forces()
@@ -52,11 +53,12 @@ class MPMFrame : protected Pointers {
     double P[9 * MPM_NS::BATCH + 8], f[3 * MPM_NS::BATCH + 8];
   };
   virtual bool changes_forces() const { return false; }
-  /** Sets the forces of n points from first on. The row pointers are shifted to the first of these points. */
+  /** Sets the forces of n points from first on. The row pointers are shifted to the first of these
+   *  points. */
   virtual void forces(MPM_NS::PointRows &, int /*first*/, int /*n*/, ForceRows &) const {}
 
-  // strain in a step. L: velocity gradients of the points with respect to the places of the lattice,
-  // [n][dim*dim], column-major
+  // strain in a step. L: velocity gradients of the points with respect to the places of the
+  // lattice, [n][dim*dim], column-major
 
   /** Allocates room for all points, before the first of them is strained. */
   virtual void begin_strain();
@@ -68,10 +70,12 @@ class MPMFrame : protected Pointers {
                                const int * /*base*/, double /*dt*/, double /*shift*/)
   {
   }
-  /** Converts gradients of another time within the step to those at its start, see mpm_frame.cpp. */
+  /** Converts gradients of another time within the step to those at its start, see
+   *  mpm_frame.cpp. */
   virtual void shift_gradients(int n, double shift, double *L) const;
-  /** [9], row-major: rate of a deformation gradient that all points have in addition to what the nodes give;
-   *  null: none. Set in init_physics() of the fix that prescribes it (fix mpm/deform); only in a total frame. */
+  /** [9], row-major: rate of a deformation gradient that all points have in addition to what the
+   *  nodes give; null: none. Set in init_physics() of the fix that prescribes it (fix mpm/deform);
+   *  only in a total frame. */
   const double *mean_rate = nullptr;
   /** Is this mean rate nonzero in this step? */
   bool strains_on_average() const
@@ -83,11 +87,13 @@ class MPMFrame : protected Pointers {
   /** Must L go through refer_gradients() before material laws can use it? */
   virtual bool refers() const { return false; }
   virtual void refer_gradients(int /*first*/, int /*n*/, double * /*L*/) const {}
-  /** Loads the kinematics of n points from first on into a batch. F, tau: rows of the first of these points. */
+  /** Loads the kinematics of n points from first on into a batch. F, tau: rows of the first of
+   *  these points. */
   void load(MPM_NS::Batch &, int first, int n, double dt, const double *L, const double *F,
             const double *tau, const double *vol0) const;
 
-  /** det(I + dt L) - 1 for a gradient L [DIM*DIM]: the relative change of a volume that moves with it. */
+  /** det(I + dt L) - 1 for a gradient L [DIM*DIM]: the relative change of a volume that moves with
+   *  it. */
   template <int DIM> static double growth(const double *L, double dt)
   {
     double A[DIM * DIM];
@@ -102,7 +108,8 @@ class MPMFrame : protected Pointers {
   }
   /** Relative change of the volume of a point in a step. */
   virtual double volume_change(int i, const double *L, double dt) const;
-  /** Multiplies the stretch of a point in the step by the factor 1 + more, in all directions that are not held. */
+  /** Multiplies the stretch of a point in the step by the factor 1 + more, in all directions that
+   *  are not held. */
   virtual void stretch(int i, double more, double dt, double *L);
   /** Is the third direction held (plane strain)? */
   bool is_plane() const { return field.lattice.dim == 2 && !field.options.changes_thickness(); }
@@ -112,21 +119,24 @@ class MPMFrame : protected Pointers {
   /** Ratio of the volume at the places of the lattice to the initial volume. */
   virtual double lattice_jacobian(int i) const;
 
-  /** Speed that a point with the wave speed c has with respect to the stability limit (it must not cross a cell
-   *  in a step). c may be raised. If the speed does not exceed a known one, the result may be too high, but not
-   *  above the known one. */
+  /** Speed that a point with the wave speed c has with respect to the stability limit (it must not
+   *  cross a cell in a step). c may be raised. If the speed does not exceed a known one, the result
+   *  may be too high, but not above the known one. */
   virtual double speed(int i, double &c, double known) const;
 
-  /** Distance of a point from the axis of symmetry. x: its first coordinate at the start of the step. */
+  /** Distance of a point from the axis of symmetry. x: its first coordinate at the start of the
+   *  step. */
   virtual double radius(int /*i*/, double x) const { return x; }
   /** Length of the circle with radius r around the axis of symmetry; 1 without an axis. */
   virtual double circle(double /*r*/) const { return 1.0; }
-  /** The same for a node. At the axis and beyond it, the length at a quarter of a cell from the axis. */
+  /** The same for a node. At the axis and beyond it, the length at a quarter of a cell from the
+   *  axis. */
   virtual double node_circle(int /*slot*/, int /*node*/) const { return 1.0; }
   /** Initial volume of a point per unit of length around the axis. */
   virtual double section(int i) const { return atom->vfrac[i]; }
 
-  /** Counters start at the start of a run; report() returns lines for the log at its end, or nothing. */
+  /** Counters start at the start of a run; report() returns lines for the log at its end, or
+   *  nothing. */
   virtual void start_counting() {}
   virtual std::string report() const { return ""; }
   virtual double memory_usage() const { return across.capacity() * sizeof(double); }
@@ -135,8 +145,8 @@ class MPMFrame : protected Pointers {
  protected:
   MPMField &field;
 
-  /** Strain A_zz of this step in 2d, of the points from first on; null: none. It is the hoop strain around an
-   *  axis of symmetry, or else what stretch() makes of plane strain. */
+  /** Strain A_zz of this step in 2d, of the points from first on; null: none. It is the hoop strain
+   *  around an axis of symmetry, or else what stretch() makes of plane strain. */
   virtual const double *hoop_strain(int first) const
   {
     return across.empty() ? nullptr : &across[first];

@@ -122,8 +122,8 @@ template <class Plane> class MPMFrameAxisymmetric : public Plane {
     hoop[i] += more * (1.0 + hoop[i]);
   }
 
-  /** Hoop stress can raise the greatest frequency where no wall makes v_r odd: that of a ring alone is
-   *  c/r, that of the lattice in the plane 2c/h, and squares add up. */
+  /** Hoop stress can raise the greatest frequency where no wall makes v_r odd: that of a ring alone
+   *  is c/r, that of the lattice in the plane 2c/h, and squares add up. */
   double speed(int i, double &c, double known) const override
   {
     const double h = field.lattice.h;

@@ -9,16 +9,16 @@
 /* ----------------------------------------------------------------------
    The reference configuration of the total frame, and its updates.
 
-   With reference update S, the present configuration becomes the reference one when the ratio of the
-   principal stretches of some point since the last time is above S: X = x and R = F, the deformation
-   gradient then. What happens on the lattice knows the deformation since then only, F_R = F R^-1,
-   while laws see all of F. As V0 is that of the undeformed body,
+   With reference update S, the present configuration becomes the reference one when the ratio of
+   the principal stretches of some point since the last time is above S: X = x and R = F, the
+   deformation gradient then. What happens on the lattice knows the deformation since then only, F_R
+   = F R^-1, while laws see all of F. As V0 is that of the undeformed body,
 
      f_i = -sum V0 tau F_R^-T grad N,   F <- F + dt (grad v) R
 
-   are the equations of a body with the initial volume V0 det R and the deformation gradient F_R. The
-   affine matrix C, the gradient with respect to X, becomes C F_R^-1, and so do the gradients of other physics. Stress, velocities, and energies
-   of points do not change.
+   are the equations of a body with the initial volume V0 det R and the deformation gradient F_R.
+   The affine matrix C, the gradient with respect to X, becomes C F_R^-1, and so do the gradients of
+   other physics. Stress, velocities, and energies of points do not change.
 ------------------------------------------------------------------------- */
 
 #include "field/mpm_frame_total.h"
@@ -49,7 +49,7 @@ MPMFrameTotal::MPMFrameTotal(LAMMPS *lmp, MPMField &field, MPMPointState &state)
 {
   state.declare(X, "mpm:X", 3, [this](int i, double *row) {
     memcpy(row, atom->x[i], 3 * sizeof(double));
-    if (!this->field.running) row[0] = NAN;    // not known, for setup()
+    if (!this->field.is_running()) row[0] = NAN;    // not known, for setup()
   });
   if (field.options.most_distorted > 0.0)
     state.declare(R, "mpm:R", 9, [](int, double *row) {
@@ -84,8 +84,8 @@ void MPMFrameTotal::setup()
 }
 
 /* ----------------------------------------------------------------------
-   The first Piola-Kirchhoff stress is made here, a batch at a time: to read F and tau costs less than
-   to write and read another matrix
+   The first Piola-Kirchhoff stress is made here, a batch at a time: to read F and tau costs less
+   than to write and read another matrix
 ------------------------------------------------------------------------- */
 
 void MPMFrameTotal::forces(PointRows &rows, int first, int n, ForceRows &room) const
@@ -163,7 +163,8 @@ double MPMFrameTotal::volume_change(int i, const double *L, double dt) const
   return MPMFrame::volume_change(i, A, 1.0);
 }
 
-/** Takes the mean of its eigenvalues from a symmetric matrix. Returns p; the largest one is at most mean + 2 p. */
+/** Takes the mean of its eigenvalues from a symmetric matrix. Returns p; the largest one is at most
+ *  mean + 2 p. */
 static double to_deviator(double B[3][3], double &mean)
 {
   mean = (B[0][0] + B[1][1] + B[2][2]) / 3.0;
@@ -207,9 +208,9 @@ void MPMFrameTotal::stretches(int i, double &smallest, double &largest) const
   smallest = 1.0 / sqrt(largest_eigenvalue(inverse));
 }
 
-/** Points stay where they are on the lattice, but waves cross it faster where it is compressed: a plane
- *  wave with wave vector K there has k = F^-T K in space, |k| <= |K|/s with the smallest singular
- *  value s of F. */
+/** Points stay where they are on the lattice, but waves cross it faster where it is compressed: a
+ *  plane wave with wave vector K there has k = F^-T K in space, |k| <= |K|/s with the smallest
+ *  singular value s of F. */
 double MPMFrameTotal::speed(int i, double &c, double known) const
 {
   double least, most;

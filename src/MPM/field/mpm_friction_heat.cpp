@@ -7,12 +7,13 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The kinetic energy of a node changes in a step by all impulses on it times the mean of its old and its new
-   velocity. The part of a tangential impulse J_t between bodies of relative velocity u is J_t . (u_old + u_new)/2,
-   and what slides loses that as heat, exactly. With the velocities just before and after the impulse
-   it would be more: before it, the shear stress has accelerated the node, by tau dt/(rho h), which is not small against
-   the sliding velocity in stiff bodies, and which friction takes back in each step. Where bodies stick there
-   is no heat: what is lost there is numerical, and of the order of the step.
+   The kinetic energy of a node changes in a step by all impulses on it times the mean of its old
+   and its new velocity. The part of a tangential impulse J_t between bodies of relative velocity u
+   is J_t . (u_old + u_new)/2, and what slides loses that as heat, exactly. With the velocities just
+   before and after the impulse it would be more: before it, the shear stress has accelerated the
+   node, by tau dt/(rho h), which is not small against the sliding velocity in stiff bodies, and
+   which friction takes back in each step. Where bodies stick there is no heat: what is lost there
+   is numerical, and of the order of the step.
 ------------------------------------------------------------------------- */
 
 #include "field/mpm_friction_heat.h"
@@ -113,7 +114,7 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
     }
     body.mixed = nconducting > 0 && (body.mixed || body.orthotropic || nhere > 1);
     any = any || nconducting > 0;
-    field->keep_old = true;
+    field->keep_old_velocities();
     bodies.push_back(body);
   }
   if (points && !any)
@@ -135,8 +136,9 @@ void MPMFrictionHeat::begin_step()
   }
 }
 
-/** Means over points, weighted with their volumes, of numbers that value(i, c, values) gives for a point and what it conducts;
- *  points that do not conduct count as 0. To at_node, of so many reals, from one of them on. */
+/** Means over points, weighted with their volumes, of numbers that value(i, c, values) gives for a
+ *  point and what it conducts; points that do not conduct count as 0. To at_node, of so many reals,
+ *  from one of them on. */
 template <class F>
 void MPMFrictionHeat::map_means(Body &body, int first, int nvalue, int width, const F &value)
 {
@@ -176,8 +178,9 @@ void MPMFrictionHeat::map_effusivity(Body &body)
 static constexpr int ROW[2][6] = {{0, 1, 0}, {0, 1, 2, 0, 0, 1}};
 static constexpr int COLUMN[2][6] = {{0, 1, 1}, {0, 1, 2, 1, 2, 2}};
 
-/** The square roots of the tensors K rho c: with their mean E the effusivity along a normal is |E n|, which is sqrt(n.K.n rho c) for a
- *  single material, and the mean of sqrt(K rho c) for several isotropic ones. */
+/** The square roots of the tensors K rho c: with their mean E the effusivity along a normal is |E
+ *  n|, which is sqrt(n.K.n rho c) for a single material, and the mean of sqrt(K rho c) for several
+ *  isotropic ones. */
 void MPMFrictionHeat::map_tensor(Body &body)
 {
   const int dim = domain->dimension, width = dim == 3 ? 6 : 3;

@@ -36,7 +36,8 @@ struct MPMFrictionHeatOptions {
 /** Interface of a fix with friction, for fix mpm/heat. */
 class MPMRubbing {
  public:
-  /** Does it dissipate energy by friction although its input does not say what happens with the energy? */
+  /** Does it dissipate energy by friction although its input does not say what happens with the
+   *  energy? */
   virtual bool loses_heat() const = 0;
   /** Does it give this energy to nodes as heat? */
   virtual bool gives_heat() const = 0;
@@ -47,31 +48,33 @@ class MPMRubbing {
 
 /** Heat of friction at nodes, which fix mpm/heat conducts into the material.
  *
- *  Fields are identified by their index in the list of begin_run(). Energies are totals over all bodies at a
- *  node. Every rank that has a node adds the same heat to it; only owned nodes are counted. */
+ *  Fields are identified by their index in the list of begin_run(). Energies are totals over all
+ *  bodies at a node. Every rank that has a node adds the same heat to it; only owned nodes are
+ *  counted. */
 class MPMFrictionHeat : protected Pointers {
  public:
   MPMFrictionHeat(class LAMMPS *, const MPMFrictionHeatOptions &);
 
-  /** Start of a run, in init_action(). Stops with an error if nothing can take up the heat. From now on, fields
-   *  keep the old velocities of their nodes. */
+  /** Start of a run, in init_action(). Stops with an error if nothing can take up the heat. From
+   *  now on, fields keep the old velocities of their nodes. */
   void begin_run(const Fix &user, const std::vector<MPMField *> &);
   /** Collective, in each step before heat is given, with the nodes of this step. */
   void begin_step();
 
-  /** Adds heat [energy] at a node of two bodies. ra, rb: records of the node in both fields; normal: unit
-   *  normal of their surface. By default, the bodies share the heat as if their surfaces had the same
-   *  temperature, q_a : q_b = e_a : e_b with the effusivities e = sqrt(k rho c) (H.S. Carslaw, J.C. Jaeger,
-   *  Conduction of Heat in Solids (1959), 2.15), where k is the conductivity along the normal. */
+  /** Adds heat [energy] at a node of two bodies. ra, rb: records of the node in both fields;
+   *  normal: unit normal of their surface. By default, the bodies share the heat as if their
+   *  surfaces had the same temperature, q_a : q_b = e_a : e_b with the effusivities e = sqrt(k rho
+   *  c) (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids (1959), 2.15), where k is the
+   *  conductivity along the normal. */
   void between(int a, const double *ra, int b, const double *rb, const double *normal, double heat,
                bool owned);
-  /** Adds heat [energy] at a node of a wall. The wall takes what the share leaves. Heat that goes to material
-   *  without conduction is lost. */
+  /** Adds heat [energy] at a node of a wall. The wall takes what the share leaves. Heat that goes
+   *  to material without conduction is lost. */
   void at_wall(int field, const double *record, double heat, bool owned);
 
-  /** Heat [energy] of a sliding impulse J [mass velocity] on a body whose velocity relative to the other is old
-   *  before the step and now after it. This is the kinetic energy that the nodes lose by J in this step.
-   *  Negative in a step in which sliding reverses. */
+  /** Heat [energy] of a sliding impulse J [mass velocity] on a body whose velocity relative to the
+   *  other is old before the step and now after it. This is the kinetic energy that the nodes lose
+   *  by J in this step. Negative in a step in which sliding reverses. */
   double made(const double *J, const double *old, const double *now, int dim) const;
 
   double memory_usage() const;

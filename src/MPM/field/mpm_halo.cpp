@@ -21,7 +21,8 @@ static constexpr int RVOUS = 1;    // 0 for irregular, 1 for all2all
 static constexpr int HALO_TAG = 4711;
 
 namespace {
-/** To the rendezvous: this rank has these nodes of this block. Back: this other rank has them, too. */
+/** To the rendezvous: this rank has these nodes of this block. Back: this other rank has them,
+ *  too. */
 struct Sharer {
   uint64_t key;
   uint64_t nodes, reached;    // bits of those that it has, and that its points can reach
@@ -122,7 +123,8 @@ void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
     auto &block = grid.blocks[s];
     if (of_slot[s].empty()) continue;
 
-    // a node is counted by the lowest rank that reaches it, one that nobody reaches by the lowest sharer
+    // a node is counted by the lowest rank that reaches it, one that nobody reaches by the lowest
+    // sharer
 
     uint64_t by_lower = 0, by_others = 0;
     bool lowest = true;

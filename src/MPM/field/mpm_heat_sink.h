@@ -19,8 +19,8 @@ class MPMHeatSink {
  public:
   /** Does any material of this field conduct heat? */
   virtual bool conducts(const MPMField &) const = 0;
-  /** Adds heat of friction [energy] at a node of a field that conducts. counts: it counts on this rank; all ranks
-   *  that have the node add the same heat. */
+  /** Adds heat of friction [energy] at a node of a field that conducts. counts: it counts on this
+   *  rank; all ranks that have the node add the same heat. */
   virtual void give(const MPMField &, std::size_t node, double heat, bool counts) = 0;
 
  protected:

@@ -14,8 +14,8 @@
 
 namespace LAMMPS_NS {
 
-/** Internal forces of a body that are not the stress of its points, but are added to atom->f, such as those of
- *  finite elements whose nodes are points. Implemented by a fix. */
+/** Internal forces of a body that are not the stress of its points, but are added to atom->f, such
+ *  as those of finite elements whose nodes are points. Implemented by a fix. */
 class MPMInternalForce : public MPMTrialForces {
  public:
   /** Bit of the group of its points. They have no stress of their own. */
@@ -24,8 +24,8 @@ class MPMInternalForce : public MPMTrialForces {
   virtual bool on_lattice() const = 0;
   /** Energy that the body stores, this rank's share [pressure * volume]. */
   virtual double stored_energy() const = 0;
-  /** Smallest stable time step of this rank's part of the body. tag: ID of the point that limits it; speed: wave
-   *  speed there, or 0 if it is not a wave that limits it. Collective. */
+  /** Smallest stable time step of this rank's part of the body. tag: ID of the point that limits
+   *  it; speed: wave speed there, or 0 if it is not a wave that limits it. Collective. */
   virtual double stable_dt(tagint &tag, double &speed) const = 0;
   /** Stops with an error if the time step exceeds the stable one. */
   virtual void check_dt() const = 0;

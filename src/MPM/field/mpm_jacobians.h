@@ -20,12 +20,12 @@ struct BatchKernels;
 namespace LAMMPS_NS {
 class MPMField;
 
-/** J = det F of the points of a field, for physics that needs nothing else of F in a step. Reading all of F
- *  again, which is no longer in the cache, takes as long as a transfer; so J is stored when stress is updated
- *  and F is in the cache.
+/** J = det F of the points of a field, for physics that needs nothing else of F in a step. Reading
+ *  all of F again, which is no longer in the cache, takes as long as a transfer; so J is stored
+ *  when stress is updated and F is in the cache.
  *
- *  If J is not known, it is computed from F by the same function. So it need not migrate with points, nor be in
- *  restart files. */
+ *  If J is not known, it is computed from F by the same function. So it need not migrate with
+ *  points, nor be in restart files. */
 class MPMJacobians {
  public:
   /** Start of a run: J is not requested yet, and not known. */
@@ -33,8 +33,8 @@ class MPMJacobians {
   /** Requests J in this run; called by physics with points in this field. */
   void ask() { wanted = true; }
 
-  /** Stores J of the points from first on, whose F is in the batch; the other points of the field follow. nmax:
-   *  room for atoms. */
+  /** Stores J of the points from first on, whose F is in the batch; the other points of the field
+   *  follow. nmax: room for atoms. */
   void note(const MPM_NS::BatchKernels &kernels, const MPM_NS::Batch &batch, int first, int nmax)
   {
     if (wanted) keep(kernels, batch, first, nmax);

@@ -15,7 +15,8 @@
 namespace LAMMPS_NS {
 class MPMHalo;
 
-/** Ranks of LAMMPS for solves on a lattice. Sums at nodes use a halo that is set up for the grid. */
+/** Ranks of LAMMPS for solves on a lattice. Sums at nodes use a halo that is set up for the
+ *  grid. */
 class MPMLatticeRanks : public MPM_NS::LatticeRanks {
  public:
   MPMLatticeRanks(class LAMMPS *lmp, const MPM_NS::Grid &grid, MPMHalo &halo) :

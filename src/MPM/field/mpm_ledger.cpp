@@ -70,8 +70,8 @@ void MPMLedger::account_for_points()
 }
 
 /* ----------------------------------------------------------------------
-   what n points from first on lose to the nodes by their stress, rows.tau: sum of V tau : grad v, with velocities
-   and their gradients L from the nodes
+   what n points from first on lose to the nodes by their stress, rows.tau: sum of V tau : grad v,
+   with velocities and their gradients L from the nodes
 ------------------------------------------------------------------------- */
 
 double MPMLedger::stress_power(PointRows &rows, int first, int n, const double *L) const
@@ -181,8 +181,8 @@ void MPMLedger::drag_node(double *record, bool owned, const double *impulse)
 }
 
 /* ----------------------------------------------------------------------
-   The work of the impulse takes the new velocity: that is what moves points. With the mean of the old
-   and the new one it would be the change of kinetic energy; the rest is lost in the collision
+   The work of the impulse takes the new velocity: that is what moves points. With the mean of the
+   old and the new one it would be the change of kinetic energy; the rest is lost in the collision
 ------------------------------------------------------------------------- */
 
 void MPMLedger::count_push(const double *record, const double *change)
@@ -198,8 +198,8 @@ void MPMLedger::count_push(const double *record, const double *change)
 
 /* ----------------------------------------------------------------------
    Where several actions meet at a node, each was counted with the velocity that it left, which the
-   next one changes. The kinetic energy of the node has the mean of its old and its final velocity in
-   all of them: what the change adds to earlier impulses is part of the collision
+   next one changes. The kinetic energy of the node has the mean of its old and its final velocity
+   in all of them: what the change adds to earlier impulses is part of the collision
 ------------------------------------------------------------------------- */
 
 double *MPMLedger::impulse(const double *record)

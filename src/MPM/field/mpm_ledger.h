@@ -20,9 +20,11 @@ struct PointRows;
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Energies spent or gained by a field since the first step with a ledger, share of this rank [energy]. */
+/** Energies spent or gained by a field since the first step with a ledger, share of this rank
+ *  [energy]. */
 struct MPMEnergies {
-  /** Work of atom->f (gravity, contact by pair styles, walls, ...) and of loads given as a stress. */
+  /** Work of atom->f (gravity, contact by pair styles, walls, ...) and of loads given as a
+   *  stress. */
   double external;
   double boundary;    ///< work of node actions of kind boundary
   double contact;     ///< work of node actions between fields
@@ -31,14 +33,15 @@ struct MPMEnergies {
   double deleted_kinetic, deleted_stored;    ///< energy of points that were deleted
 };
 
-/** Energy accounts of a field. Each account is a sum of its own: works are forces or impulses times velocities,
- *  and transfers are differences of kinetic energies before and after. No account is found as the remainder of
- *  the others, so their balance is a check; see "The ledger" in the developer guide. */
+/** Energy accounts of a field. Each account is a sum of its own: works are forces or impulses times
+ *  velocities, and transfers are differences of kinetic energies before and after. No account is
+ *  found as the remainder of the others, so their balance is a check; see "The ledger" in the
+ *  developer guide. */
 class MPMLedger : protected Pointers, public MPMEnergies {
  public:
   bool on = false;    ///< a compute mpm/energy exists; set in init()
-  /** Work that moving walls, rigid bodies, grains, and atoms have done on the nodes, share of this rank
-   *  [energy]. Counted in any run, without losses by friction at walls and between bodies. */
+  /** Work that moving walls, rigid bodies, grains, and atoms have done on the nodes, share of this
+   *  rank [energy]. Counted in any run, without losses by friction at walls and between bodies. */
   double driven = 0.0;
   /** Initial values of compute mpm/energy, until the end of the next run. */
   std::vector<double> start;
@@ -52,7 +55,8 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   }
   /** Called after the momentum equation, before node actions. */
   void nodes_solved() { impulses.clear(); }
-  /** Accounts for the work of forces and kinetic energies, before points receive the changes at the nodes. */
+  /** Accounts for the work of forces and kinetic energies, before points receive the changes at the
+   *  nodes. */
   void account_for_nodes();
   /** End of a step: accounts for the change by the transfer from nodes to points. */
   void account_for_points();
@@ -67,23 +71,25 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   /** Accounts for kinetic energy that points lost to the account of other physics. */
   void take(double kinetic) { kinetic_points -= kinetic; }
 
-  /** Changes the velocity of a node by an impulse; the work counts as contact if the node is owned. */
+  /** Changes the velocity of a node by an impulse; the work counts as contact if the node is
+   *  owned. */
   void push_node(double *record, bool owned, const double *impulse);
-  /** The same for an impulse that acts over the whole step: its work is that at the mean of old and new
-   *  velocity, without the loss of a collision. */
+  /** The same for an impulse that acts over the whole step: its work is that at the mean of old and
+   *  new velocity, without the loss of a collision. */
   void drag_node(double *record, bool owned, const double *impulse);
-  /** Counts a change of the velocity of an owned node by contact. record: already with the new velocity. */
+  /** Counts a change of the velocity of an owned node by contact. record: already with the new
+   *  velocity. */
   void count_push(const double *record, const double *change);
-  /** Notes a change of the velocity of an owned node by any action, after which others may follow. The impulse
-   *  is the mass of the node times the difference of change and change_old. change_old: of the old velocity;
-   *  null: none. */
+  /** Notes a change of the velocity of an owned node by any action, after which others may follow.
+   *  The impulse is the mass of the node times the difference of change and change_old. change_old:
+   *  of the old velocity; null: none. */
   void note_push(const double *record, const double *change, const double *change_old = nullptr);
-  /** Counts the change of all nodes from these velocities [node][3] to those of the records, which are due to
-   *  further terms of a series. */
+  /** Counts the change of all nodes from these velocities [node][3] to those of the records, which
+   *  are due to further terms of a series. */
   void count_series(const std::vector<double> &velocities);
 
-  /** Kinetic energies of the nodes that this rank owns, with the velocities before the momentum equation and
-   *  with the present ones. */
+  /** Kinetic energies of the nodes that this rank owns, with the velocities before the momentum
+   *  equation and with the present ones. */
   void nodal_kinetic_energies(double &old, double &now) const;
   /** Kinetic energy of this rank's points [energy]. */
   double point_kinetic_energy() const;

@@ -14,8 +14,8 @@ namespace LAMMPS_NS {
 /** Knows the points that can touch other atoms. Implemented by a fix. */
 class MPMListedPoints {
  public:
-  /** Are all points that can touch something in this group (index), so that neighbor lists may be of this group
-   *  only? */
+  /** Are all points that can touch something in this group (index), so that neighbor lists may be
+   *  of this group only? */
   virtual bool keeps_group(int group) const = 0;
 
  protected:

@@ -29,10 +29,10 @@ using namespace MPM_NS;
 
      S q_p = sum_i N_ip  [sum_q N_iq V_q q_q] / [sum_q N_iq V_q]
 
-   keeps constants and the integral sum V q, and V S is symmetric. F-bar gives laws another change of
-   volume than that of the point, in the manner of E.A. de Souza Neto et al., Int. J. Solids Struct. 33
-   (1996) 3277, and, for points, W.M. Coombs et al., Comput. Methods Appl. Mech. Eng. 333 (2018) 466;
-   "pressure" puts S p for the pressure in the internal force B^T V sigma.
+   keeps constants and the integral sum V q, and V S is symmetric. F-bar gives laws another change
+   of volume than that of the point, in the manner of E.A. de Souza Neto et al., Int. J. Solids
+   Struct. 33 (1996) 3277, and, for points, W.M. Coombs et al., Comput. Methods Appl. Mech. Eng. 333
+   (2018) 466; "pressure" puts S p for the pressure in the internal force B^T V sigma.
 
    With either, the stiffness of the volume is B^T V K S B: symmetric and not negative where the
    bulk modulus K is uniform, with the energy (B u)^T V K S (B u)/2. What laws account for is
@@ -42,20 +42,21 @@ using namespace MPM_NS;
    stiffness is B^T V S K S B then.
 
    In the total frame S is constant, and F-bar averages the relative change of volume in a step,
-   dJ/J <- S(dJ/J). Where points move over the lattice, S changes, and pressures that come from sums of
-   such steps have a part that the S of the present does not see, S n = 0. It pushes the nodes,
-   B^T V n, but what moves because of that, S B v = 0, does not take it away: only the strength of the
-   material resists. Metal that flows does not: the pressure of the points of a bar in tension
+   dJ/J <- S(dJ/J). Where points move over the lattice, S changes, and pressures that come from sums
+   of such steps have a part that the S of the present does not see, S n = 0. It pushes the nodes,
+   B^T V n, but what moves because of that, S B v = 0, does not take it away: only the strength of
+   the material resists. Metal that flows does not: the pressure of the points of a bar in tension
    scattered by ten times its yield stress, and the bar had a neck that was none, the sooner, the
-   smaller its cells were against its elongation. Therefore points keep the ratio J of their own motion there,
-   and laws see J <- S J with initial volumes for V, the volume of the material around the point over
-   its initial volume. This depends on the present state only. With both, n makes no force, S n = 0, and
-   averages are those of dJ/J in both frames, so that the powers stay the same.
+   smaller its cells were against its elongation. Therefore points keep the ratio J of their own
+   motion there, and laws see J <- S J with initial volumes for V, the volume of the material around
+   the point over its initial volume. This depends on the present state only. With both, n makes no
+   force, S n = 0, and averages are those of dJ/J in both frames, so that the powers stay the same.
 
-   What is put right is (dJ/J) I/3 in all three directions, also in plane strain, where it makes F_zz
-   differ from one. Were it put into two directions, then it would have a part that changes the shape,
-   of which the force knows nothing: a stiffness that is not symmetric, which feeds scatter in the pressures,
-   too. In the total frame, with the same S for ever, two directions have shown no harm.
+   What is put right is (dJ/J) I/3 in all three directions, also in plane strain, where it makes
+   F_zz differ from one. Were it put into two directions, then it would have a part that changes the
+   shape, of which the force knows nothing: a stiffness that is not symmetric, which feeds scatter
+   in the pressures, too. In the total frame, with the same S for ever, two directions have shown no
+   harm.
 
    Averages are taken over the points of one material only, as others have another pressure or
    another change of volume next to them for good reasons.
@@ -76,8 +77,8 @@ double *MPMLocking::room_for_gradients()
 }
 
 /* ----------------------------------------------------------------------
-   q <- S q with q = vectors[3*i] and V = weights[i], which value(i, q, V) sets, for all points of this
-   field, at the positions in rows(): the transfers of PIC with volumes for masses
+   q <- S q with q = vectors[3*i] and V = weights[i], which value(i, q, V) sets, for all points of
+   this field, at the positions in rows(): the transfers of PIC with volumes for masses
 ------------------------------------------------------------------------- */
 
 template <class Value> void MPMLocking::average_around_points(const Value &value)
@@ -85,11 +86,10 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
   auto &work = field.work;
   work.vectors.resize(3 * (std::size_t) atom->nmax);
   work.weights.resize(std::max(work.weights.size(), (std::size_t) atom->nmax));
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      value(i, work.vectors[3 * i], work.weights[i]);
-      work.vectors[3 * i + 1] = work.vectors[3 * i + 2] = 0.0;
-    }
+  each_point(field, [&](const MPMPointMap::Run &, bigint i) {
+    value(i, work.vectors[3 * i], work.weights[i]);
+    work.vectors[3 * i + 1] = work.vectors[3 * i + 2] = 0.0;
+  });
 
   const auto &pic = field.pic;
   const PointRows r = field.rows_at_rest(work.vectors.data(), work.weights.data());
@@ -111,9 +111,9 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
 }
 
 /* ----------------------------------------------------------------------
-   I + dt L (total frame: F + dt L) is multiplied by a number, so that laws see a motion like any other.
-   What points keep is this F. The sum of V0 J is that of the true volumes; with averages of dJ/J, it
-   follows the sum of the true changes of volume.
+   I + dt L (total frame: F + dt L) is multiplied by a number, so that laws see a motion like any
+   other. What points keep is this F. The sum of V0 J is that of the true volumes; with averages of
+   dJ/J, it follows the sum of the true changes of volume.
 ------------------------------------------------------------------------- */
 
 void MPMLocking::strain(const double *L, double dt)
@@ -137,24 +137,22 @@ void MPMLocking::strain(const double *L, double dt)
 
   const PointRows r = field.rows();
   double averaged[9 * BATCH];
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i += BATCH) {
-      const int n = std::min(BATCH, run.last - i);
-      std::copy_n(L + nL * (bigint) i, nL * n, averaged);
-      for (int p = 0; p < n; p++) {
-        const double mine = frame.volume_change(i + p, averaged + nL * p, dt);
-        double more = 0.0;    // scale - 1
-        if (volume[i + p] > 0.0) {
-          const double mean = average[3 * (bigint) (i + p)];
-          const double change = J ? mean / field.points->jacobian(i + p) - 1.0 : mean;
-          const double q = (change - mine) / (1.0 + mine);
-          const double root = plane ? std::sqrt(1.0 + q) : std::cbrt(1.0 + q);
-          more = q / (plane ? root + 1.0 : root * (root + 1.0) + 1.0);
-        }
-        frame.stretch(i + p, more, dt, averaged + nL * p);
+  each_point_batch(field, [&](const MPMPointMap::Run &run, int i, int n) {
+    std::copy_n(L + nL * (bigint) i, nL * n, averaged);
+    for (int p = 0; p < n; p++) {
+      const double mine = frame.volume_change(i + p, averaged + nL * p, dt);
+      double more = 0.0;    // scale - 1
+      if (volume[i + p] > 0.0) {
+        const double mean = average[3 * (bigint) (i + p)];
+        const double change = J ? mean / field.points->jacobian(i + p) - 1.0 : mean;
+        const double q = (change - mine) / (1.0 + mine);
+        const double root = plane ? std::sqrt(1.0 + q) : std::cbrt(1.0 + q);
+        more = q / (plane ? root + 1.0 : root * (root + 1.0) + 1.0);
       }
-      update_stress(field, r, run, i, n, averaged, dt);
+      frame.stretch(i + p, more, dt, averaged + nL * p);
     }
+    update_stress(field, r, run, i, n, averaged, dt);
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -177,9 +175,8 @@ void MPMLocking::average_pressure()
     V = atom->vfrac[i] * J;
   });
 
-  for (const auto &run : field.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      const double more = volume[i] / atom->vfrac[i] * pressure[3 * i] - mean(own[i]);
-      for (int c = 0; c < 6; c++) tau[6 * i + c] = own[i][c] + (c < 3 ? more : 0.0);
-    }
+  each_point(field, [&](const MPMPointMap::Run &, bigint i) {
+    const double more = volume[i] / atom->vfrac[i] * pressure[3 * i] - mean(own[i]);
+    for (int c = 0; c < 6; c++) tau[6 * i + c] = own[i][c] + (c < 3 ? more : 0.0);
+  });
 }

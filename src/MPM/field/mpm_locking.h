@@ -20,8 +20,8 @@ class MPMLocking : protected Pointers {
 
   /** Room [n][dim*dim] for velocity gradients of all points. */
   double *room_for_gradients();
-  /** F-bar method: updates strain and stress of all points from velocity gradients L in which the change of
-   *  volume is replaced by its average. */
+  /** F-bar method: updates strain and stress of all points from velocity gradients L in which the
+   *  change of volume is replaced by its average. */
   void strain(const double *L, double dt);
 
   /** Finds the stress for internal forces, with averaged pressure. */

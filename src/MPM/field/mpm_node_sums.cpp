@@ -95,7 +95,8 @@ void LAMMPS_NS::map_surface(MPMField &field, const std::vector<char> &near,
 
 /* ---------------------------------------------------------------------- */
 
-/** The B-spline of an order around 0 at x (power: its order), or its integral up to x (power: one more), as a sum of truncated powers. */
+/** The B-spline of an order around 0 at x (power: its order), or its integral up to x (power: one
+ *  more), as a sum of truncated powers. */
 static double spline_sum(int order, int power, double x)
 {
   double sum = 0.0, binomial = 1.0, factorial = 1.0;
@@ -292,6 +293,7 @@ void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
   });
 
   share.resize(nmax);
-  for (const auto &run : map.runs)
-    for (int i = run.first; i < run.last; i++) share[i] = values[3 * (std::size_t) i];
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    share[i] = values[3 * (std::size_t) i];
+  });
 }

@@ -16,19 +16,19 @@
 
 namespace LAMMPS_NS {
 
-/** Adds this rank's part of a[k] . b[k] to sum[k], for n pairs of vectors with width reals for each node of a
- *  grid, from index offset on. Each node counts once, on the rank that owns it. */
+/** Adds this rank's part of a[k] . b[k] to sum[k], for n pairs of vectors with width reals for each
+ *  node of a grid, from index offset on. Each node counts once, on the rank that owns it. */
 void add_products(const MPM_NS::Grid &, int width, int n, const double *const *a,
                   const double *const *b, int64_t offset, double *sum);
-/** Sets value[k] to the sum of mine [n] over all ranks, added in the order of ranks. room: for the values of
- *  all ranks. Collective. */
+/** Sets value[k] to the sum of mine [n] over all ranks, added in the order of ranks. room: for the
+ *  values of all ranks. Collective. */
 void sum_in_order(class LAMMPS *, int n, const double *mine, std::vector<double> &room,
                   double *value);
 
-/** System of equations for values at the nodes of a lattice: width reals for each node of a Grid, in the order
- *  of its blocks. Each node counts once in products, on the rank that owns it. Derived classes provide the
- *  operator, whose result must be the same on all ranks that share a node, and at periodic images
- *  (MPMNodes::sum(), complete()). */
+/** System of equations for values at the nodes of a lattice: width reals for each node of a Grid,
+ *  in the order of its blocks. Each node counts once in products, on the rank that owns it. Derived
+ *  classes provide the operator, whose result must be the same on all ranks that share a node, and
+ *  at periodic images (MPMNodes::sum(), complete()). */
 class MPMNodeSystem : public MPM_NS::LinearSystem {
  public:
   MPMNodeSystem(class LAMMPS *lmp, const MPM_NS::Grid &grid, int width) :

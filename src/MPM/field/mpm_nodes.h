@@ -20,8 +20,8 @@
 
 namespace MPM_NS {
 
-/** Values of the nodes other than mass and momentum: width reals for each node of a Grid, in the order of its
- *  blocks: node slot*64 + n. */
+/** Values of the nodes other than mass and momentum: width reals for each node of a Grid, in the
+ *  order of its blocks: node slot*64 + n. */
 struct NodeField {
   const std::string name;
   const int width;
@@ -39,8 +39,8 @@ class MPMEdges;
 class MPMField;
 class MPMHalo;
 
-/** Values at the nodes of a field. Sums over this rank's points become sums over all ranks here, with periodic
- *  images and edges. Other physics stores its values here. */
+/** Values at the nodes of a field. Sums over this rank's points become sums over all ranks here,
+ *  with periodic images and edges. Other physics stores its values here. */
 class MPMNodes : protected Pointers {
  public:
   const std::unique_ptr<MPMHalo> halo;
@@ -55,10 +55,12 @@ class MPMNodes : protected Pointers {
   /** Allocates room for all nodes; called when the blocks are new. */
   void allocate(int nreal);
 
-  /** Adds the parts of reals [lane, lane+nlane) that edges, periodic images, and other ranks hold. */
+  /** Adds the parts of reals [lane, lane+nlane) that edges, periodic images, and other ranks
+   *  hold. */
   void sum(double *values, int nreal, int lane, int nlane) const;
   void sum(MPM_NS::NodeField &of) const { sum(of.values.data(), of.width, 0, of.width); }
-  /** Sets the values of periodic images, and the first nlane reals of edges, before values go to points. */
+  /** Sets the values of periodic images, and the first nlane reals of edges, before values go to
+   *  points. */
   void complete(double *values, int nreal, int nlane) const;
   void complete(MPM_NS::NodeField &of) const { complete(of.values.data(), of.width, of.width); }
   /** Completes the velocities of the step, also the old ones. */

@@ -9,8 +9,9 @@
 #ifndef LMP_MPM_PASSES_H
 #define LMP_MPM_PASSES_H
 
-// Passes over the points of a field, block by block: sums over the points at the nodes, and what points
-// get of values at the nodes. Stages of the step and other sums over points are made of these.
+// Passes over the points of a field, block by block: sums over the points at the nodes, and what
+// points get of values at the nodes. Stages of the step and other sums over points are made of
+// these.
 
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
@@ -21,15 +22,31 @@
 
 namespace LAMMPS_NS {
 
-/** Makes a range of base nodes in a tile empty: lower bounds in box[0..2], upper bounds in box[3..5]. */
+/** Calls use(run, i) for each point i of the field. */
+template <class Use> void each_point(const MPMField &field, const Use &use)
+{
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++) use(run, i);
+}
+
+/** Calls use(run, first, n) for n <= BATCH points of a run at a time. */
+template <class Use> void each_point_batch(const MPMField &field, const Use &use)
+{
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i += MPM_NS::BATCH)
+      use(run, i, std::min(MPM_NS::BATCH, run.last - i));
+}
+
+/** Makes a range of base nodes in a tile empty: lower bounds in box[0..2], upper bounds in
+ *  box[3..5]. */
 inline void reset_box(int box[6])
 {
   std::fill_n(box, 3, 127);
   std::fill_n(box + 3, 3, -127);
 }
 
-/** Sets nodes to what map(run, base, box) adds to the tile of each block with its kernel P2G, before copies are
- *  summed: for sums other than that of momentum. map may leave out runs. */
+/** Sets nodes to what map(run, base, box) adds to the tile of each block with its kernel P2G,
+ *  before copies are summed: for sums other than that of momentum. map may leave out runs. */
 template <class Map>
 void points_to(std::vector<double> &nodes, MPMField &field, const MPM_NS::TransferKernels &with,
                const Map &map)
@@ -46,8 +63,8 @@ void points_to(std::vector<double> &nodes, MPMField &field, const MPM_NS::Transf
   }
 }
 
-/** Calls gather(run, base) for all runs in blocks where points_to() has added something, with these nodes in
- *  tile_load. */
+/** Calls gather(run, base) for all runs in blocks where points_to() has added something, with these
+ *  nodes in tile_load. */
 template <class Gather>
 void points_from(std::vector<double> &nodes, MPMField &field, const MPM_NS::TransferKernels &with,
                  const Gather &gather)
@@ -63,8 +80,8 @@ void points_from(std::vector<double> &nodes, MPMField &field, const MPM_NS::Tran
   }
 }
 
-/** Calls gather(run, first, n, base) for up to BATCH points of a run at a time, with the nodes of the step in
- *  tile_load. mean: long records, with the mean of old and new velocities. */
+/** Calls gather(run, first, n, base) for up to BATCH points of a run at a time, with the nodes of
+ *  the step in tile_load. mean: long records, with the mean of old and new velocities. */
 template <class Gather>
 void points_from_step(MPMField &field, const Gather &gather, bool mean = false)
 {

@@ -50,16 +50,18 @@ void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMPlan::each(const std::string &name, Each run, Wanted wanted)
+void MPMPlan::each(const std::string &name, const Data &reads, const Data &writes, Each run,
+                   Wanted wanted)
 {
   std::vector<MPMField *> list;
   for (auto *field : fields)
     if (!wanted || wanted(*field)) list.push_back(field);
   const std::vector<double> seconds(list.size(), 0.0);
-  if (!list.empty()) stages.push_back({name, std::move(run), list, false, seconds});
+  if (!list.empty()) stages.push_back({name, std::move(run), reads, writes, list, false, seconds});
 }
 
-void MPMPlan::together(const std::string &name, const std::function<void()> &run, Wanted wanted)
+void MPMPlan::together(const std::string &name, const Data &reads, const Data &writes,
+                       const std::function<void()> &run, Wanted wanted)
 {
   const auto once = [run](MPMField &) {
     run();
@@ -68,7 +70,7 @@ void MPMPlan::together(const std::string &name, const std::function<void()> &run
     return !wanted || wanted(*field);
   };
   if (std::any_of(fields.begin(), fields.end(), wants))
-    stages.push_back({name, once, {fields[0]}, true, {0.0}});
+    stages.push_back({name, once, reads, writes, {fields[0]}, true, {0.0}});
 }
 
 void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
@@ -77,7 +79,10 @@ void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
   const auto act = [this, stage]() {
     act_on_nodes(stage);
   };
-  together("node actions", act, std::move(wanted));
+  together("node actions",
+           {Data::POSITION, Data::VELOCITY, Data::DEFORMATION, Data::STRESS, Data::MASS,
+            Data::FORCE, Data::NODES, Data::BLOCKS, Data::OWN},
+           {Data::FORCE, Data::NODES, Data::OWN}, act, std::move(wanted));
 }
 
 void MPMPlan::place(Place at)
@@ -107,7 +112,9 @@ void MPMPlan::step()
   double time = platform::walltime();
   for (auto &stage : stages) {
     for (std::size_t k = 0; k < stage.seconds.size(); k++) {
+      if (observer) observer(stage, *stage.fields[k], false);
       stage.run(*stage.fields[k]);
+      if (observer) observer(stage, *stage.fields[k], true);
       const double now = platform::walltime();
       stage.seconds[k] += now - time;
       time = now;
@@ -186,7 +193,7 @@ void MPMPlan::start()
   wall_start = platform::walltime();
   cpu_start = platform::cputime();
   for (auto *field : fields) {
-    field->counts = {0, 0.0, field->step_dt(), field->step_dt()};
+    field->start_counting();
     field->nodes.halo->bytes_sent = field->nodes.halo->messages_sent = 0;
     field->map->nbuild = field->map->nsort = 0;
     field->map->sort_time = 0.0;
@@ -200,17 +207,17 @@ void MPMPlan::start()
     return;
   std::string text = "MPM plan of a step:\n";
   for (const auto &stage : stages) {
-    text += "  " + stage.name;
+    std::string name = stage.name;
     for (auto *field : stage.fields)
-      if (fields.size() > 1 && !stage.once) text += std::string(" ") + field->id();
-    text += "\n";
+      if (fields.size() > 1 && !stage.once) name += std::string(" ") + field->id();
+    text += fmt::format("  {:<40} {} -> {}\n", name, stage.reads.text(), stage.writes.text());
   }
   utils::logmesg(lmp, text);
 }
 
 /* ----------------------------------------------------------------------
-   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts come
-   before the step. Without keyword plan, stages of the same name are one entry
+   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts
+   come before the step. Without keyword plan, stages of the same name are one entry
 ------------------------------------------------------------------------- */
 
 std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) const
@@ -245,7 +252,7 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::s
 {
   constexpr double IDLE = 0.9;      // of the time is the processor's, or else others have taken it
   constexpr double SMALL = 0.05;    // share of a stage that is not worth a word
-  const auto &counts = field.counts;
+  const auto &counts = field.counts();
   const double wall = platform::walltime() - wall_start;
   double use = wall > 0.0 ? (platform::cputime() - cpu_start) / wall : 1.0, least_use;
   MPI_Allreduce(&use, &least_use, 1, MPI_DOUBLE, MPI_MIN, world);

@@ -10,6 +10,7 @@
 #define LMP_MPM_PLAN_H
 
 #include "field/mpm_node_action.h"
+#include "field/mpm_stage_data.h"
 #include "field/mpm_watch.h"
 #include "pointers.h"
 
@@ -25,23 +26,34 @@ class MPMLoad;
 class MPMPhysics;
 class MPMPorePressure;
 
-/** The step of all fields as a list of named stages, which is made once at the start of a run. Each of the
- *  four schemes is one such list, see mpm_step.cpp. The cost of each stage is measured. */
+/** The step of all fields as a list of named stages, which is made once at the start of a run. Each
+ *  of the four schemes is one such list, see mpm_step.cpp. The cost of each stage is measured. */
 class MPMPlan : protected Pointers {
  public:
   using Each = std::function<void(MPMField &)>;
+  using Data = MPMStageData;
   using Wanted = std::function<bool(const MPMField &)>;
 
-  /** Places in each list where other physics can add stages. Physics adds them in the order of definition. */
+  struct Stage {
+    std::string name;
+    Each run;
+    Data reads, writes;
+    std::vector<MPMField *> fields;    ///< the first one only, if it is run once
+    bool once;
+    std::vector<double> seconds;    ///< [field], spent in this stage
+  };
+
+  /** Places in each list where other physics can add stages. Physics adds them in the order of
+   *  definition. */
   enum Place {
     BEFORE_POINTS_TO_NODES,    ///< positions and forces are those of the start of the step
-    AFTER_POINTS_TO_NODES,    ///< nodes have the sums over the points of this rank, not yet over ranks and images
-    BEFORE_SOLVE,    ///< nodes have mass and momentum, summed over ranks
-    AFTER_MOMENTUM,    ///< nodes have the velocities of the momentum equation; node actions have not acted on them
-    AFTER_ACTIONS,    ///< node actions have acted; the ledger has not recorded it
-    AFTER_SOLVE,      ///< nodes have their new velocities, points are at their old positions
-    BEFORE_STRAIN,    ///< usl and musl: as AFTER_SOLVE, with the velocities that strain the points
-    AFTER_MOTION      ///< the step is complete except for its checks
+    AFTER_POINTS_TO_NODES,     ///< nodes have the sums over the points of this rank only
+    BEFORE_SOLVE,              ///< nodes have mass and momentum, summed over ranks
+    AFTER_MOMENTUM,    ///< nodes have the velocities of the momentum equation, before actions
+    AFTER_ACTIONS,     ///< node actions have acted; the ledger has not recorded it
+    AFTER_SOLVE,       ///< nodes have their new velocities, points are at their old positions
+    BEFORE_STRAIN,     ///< usl and musl: as AFTER_SOLVE, with the velocities that strain the points
+    AFTER_MOTION       ///< the step is complete except for its checks
   };
 
   std::vector<MPMField *> fields;
@@ -59,24 +71,34 @@ class MPMPlan : protected Pointers {
   /** Find all fields, node actions, and physics, and make the list of stages with the scheme. */
   void make(const std::function<void(MPMPlan &)> &scheme);
 
-  /** Append a stage that runs for each field for which wanted is true (null: for all). There is no such stage
-   *  if no field wants it. */
-  void each(const std::string &name, Each run, Wanted wanted = nullptr);
+  /** Append a stage that runs for each field for which wanted is true (null: for all). There is no
+   *  such stage if no field wants it. */
+  void each(const std::string &name, const Data &reads, const Data &writes, Each run,
+            Wanted wanted = nullptr);
   /** Append a stage that runs once for all fields, if any field wants it. */
-  void together(const std::string &name, const std::function<void()> &run, Wanted wanted = nullptr);
+  void together(const std::string &name, const Data &reads, const Data &writes,
+                const std::function<void()> &run, Wanted wanted = nullptr);
   /** Append the node actions of one stage, if there are any. */
   void node_actions(MPMNodeAction::Stage, Wanted wanted = nullptr);
   /** Append the stages that other physics has at this place. */
   void place(Place);
 
+  /** The list of this run. */
+  const std::vector<Stage> &list() const { return stages; }
+  /** From now on, calls a function before (done is false) and after each stage. */
+  using Observer = std::function<void(const Stage &, const MPMField &, bool done)>;
+  void observe(Observer use) { observer = std::move(use); }
+
   /** Start of a run. */
   void start();
   /** Called in each step of LAMMPS; runs the stages if a step of the cycle is due. */
   void step();
-  /** Writes the summary of a run for one field to screen and log file: state (a text), energy, and cost. */
+  /** Writes the summary of a run for one field to screen and log file: state (a text), energy, and
+   *  cost. */
   void report(const MPMField &, double bytes_per_point, const std::string &state) const;
 
-  /** Find the blocks in reach of points, for all fields whose points have moved in memory or out of reach. */
+  /** Find the blocks in reach of points, for all fields whose points have moved in memory or out of
+   *  reach. */
   void find_blocks();
   /** The same, for calls outside of the step. */
   void find_blocks_now();
@@ -88,18 +110,12 @@ class MPMPlan : protected Pointers {
   void act_on_nodes(MPMNodeAction::Stage);
 
  private:
-  struct Stage {
-    std::string name;
-    Each run;
-    std::vector<MPMField *> fields;    // the first one only, if it is run once
-    bool once;
-    std::vector<double> seconds;    // [field], spent in this stage
-  };
   struct Cost {
     std::string stage;
     double time;    // [ns] per step and point of one process
   };
   std::vector<Stage> stages;
+  Observer observer;
   bool physics_looks_beyond() const;
   std::vector<Cost> costs(const MPMField &, double scale) const;
   double wall_start = 0.0, cpu_start = 0.0;    // at the start of the run [s]

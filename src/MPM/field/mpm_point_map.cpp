@@ -33,11 +33,13 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// what a step takes longer for a point whose neighbor in memory is in another block, relative to one in another cell
+// what a step takes longer for a point whose neighbor in memory is in another block, relative to
+// one in another cell
 static constexpr int SWITCH_OF_BLOCK = 20;
 // with fewer changes of cell than that times those of sorted points, nothing is to be gained
 static constexpr double DECAYED = 1.6;
-// what a sort takes for each point, in the same unit: from 5 to 60 scenes take the same time within 3 %
+// what a sort takes for each point, in the same unit: from 5 to 60 scenes take the same time within
+// 3 %
 static constexpr double COST_OF_SORT = 40.0;
 
 /* ---------------------------------------------------------------------- */
@@ -85,8 +87,8 @@ void MPMPointMap::check_drift()
 }
 
 /* ----------------------------------------------------------------------
-   a sort is worth it when the disorder since the last one is more than what little there always is, and has cost as
-   much: whatever comes next, this takes at most twice the time of the best choice
+   a sort is worth it when the disorder since the last one is more than what little there always is,
+   and has cost as much: whatever comes next, this takes at most twice the time of the best choice
 ------------------------------------------------------------------------- */
 
 bool MPMPointMap::wants_sort() const
@@ -232,8 +234,8 @@ void MPMPointMap::find_blocks()
     reset_box(active.back().box);
   }
 
-  // blocks that the points can reach before the next update, which comes when a point leaves its tile
-  // at the latest: all around the block, if nothing else bounds the drift
+  // blocks that the points can reach before the next update, which comes when a point leaves its
+  // tile at the latest: all around the block, if nothing else bounds the drift
 
   const double least = field.domains ? 1.0e-6 : 0.0;    // see MPMCpdi::update()
   constexpr double ROUNDING =

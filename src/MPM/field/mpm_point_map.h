@@ -46,8 +46,8 @@ class MPMPointMap : protected Pointers {
   void setup();
   /** Find the runs of points, and the blocks in their reach. Does nothing while these are valid. */
   void find_blocks();
-  /** Find the neighbors of blocks, allocate their nodes, and find the ranks that share them. The blocks are
-   *  valid then. */
+  /** Find the neighbors of blocks, allocate their nodes, and find the ranks that share them. The
+   *  blocks are valid then. */
   void finish_blocks();
   /** If a point has left its tile on any rank, mark the blocks to be found again. */
   void check_drift();
@@ -57,8 +57,8 @@ class MPMPointMap : protected Pointers {
   /** Has the order decayed since the last sort so that another one pays? */
   bool wants_sort() const;
 
-  /** Base node of a position, and the coordinates of the position relative to it in cells. Returns false if
-   *  the position is not usable. */
+  /** Base node of a position, and the coordinates of the position relative to it in cells. Returns
+   *  false if the position is not usable. */
   bool base_node(const double *x, int base[3], double t[3]) const;
   /** Node index of the first entry of the tile of a block. */
   void tile_base(const ActiveBlock &, int base[3]) const;

@@ -43,8 +43,8 @@ void LAMMPS_NS::put_in_order(LAMMPS *lmp, std::vector<int> &key, int nkeys)
                   return tag[i] < tag[j];
                 });
 
-  // ghosts refer to the old order, and the first of them is in the free place that is used below: the
-  // map must forget them before
+  // ghosts refer to the old order, and the first of them is in the free place that is used below:
+  // the map must forget them before
 
   const bool mapped = atom->map_style != Atom::MAP_NONE;
   const bool moves = !std::is_sorted(permute.begin(), permute.end());

@@ -14,12 +14,12 @@
 namespace LAMMPS_NS {
 class LAMMPS;
 
-/** Moves the atoms of this rank into the order of their keys; atoms with equal keys are sorted by tag.
- *  Collective.
+/** Moves the atoms of this rank into the order of their keys; atoms with equal keys are sorted by
+ *  tag. Collective.
  *
- *  key: [nlocal] from 0 to nkeys - 1. Atoms with a negative key come last, in their previous order. If LAMMPS
- *  wants the atoms of a group to be first (atom_modify first), they stay first and are sorted in the same way
- *  among themselves. The vector is overwritten. */
+ *  key: [nlocal] from 0 to nkeys - 1. Atoms with a negative key come last, in their previous order.
+ *  If LAMMPS wants the atoms of a group to be first (atom_modify first), they stay first and are
+ *  sorted in the same way among themselves. The vector is overwritten. */
 void put_in_order(LAMMPS *, std::vector<int> &key, int nkeys);
 
 }    // namespace LAMMPS_NS

@@ -15,16 +15,16 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** One body whose points are in several fields, each with half the node spacing of the previous one. Implemented
- *  by a fix. Fields are named by the IDs of their fixes mpm. */
+/** One body whose points are in several fields, each with half the node spacing of the previous
+ *  one. Implemented by a fix. Fields are named by the IDs of their fixes mpm. */
 class MPMRefinedBody {
  public:
   /** Is the field part of the body? */
   virtual bool has(const std::string &name) const = 0;
   /** Fields of this body that are finer than this one; empty if that is not part of the body. */
   virtual std::vector<MPMField *> finer_than(const std::string &name) const = 0;
-  /** Activates the blocks of this field that the finer fields of the body need; also called before others use
-   *  its blocks. */
+  /** Activates the blocks of this field that the finer fields of the body need; also called before
+   *  others use its blocks. */
   virtual void extend_for_finer(const MPMField &) const = 0;
 
  protected:

@@ -17,16 +17,16 @@
 
 namespace LAMMPS_NS {
 
-/** Removes from the volumes of points of fluids, and so from their pressures, the part that the nodes do not
- *  see. */
+/** Removes from the volumes of points of fluids, and so from their pressures, the part that the
+ *  nodes do not see. */
 class MPMSmoothing : protected Pointers {
  public:
   MPMSmoothing(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
 
   /** Start of a run. Stops with an error if there is no fluid. */
   void init();
-  /** Start of a step, when the map of points is valid. Smooths each fluid once in the time in which sound
-   *  crosses one or two cells. */
+  /** Start of a step, when the map of points is valid. Smooths each fluid once in the time in which
+   *  sound crosses one or two cells. */
   void smooth();
 
   double memory_usage() const { return (sums.capacity() + 2 * q.capacity()) * sizeof(double); }

@@ -9,8 +9,8 @@
 #ifndef LMP_MPM_STENCIL_H
 #define LMP_MPM_STENCIL_H
 
-// The nodes that a point reaches, one by one, for sums that the fast transfers do not make. These are the
-// only loops over the nodes of a point outside of transfer/.
+// The nodes that a point reaches, one by one, for sums that the fast transfers do not make. These
+// are the only loops over the nodes of a point outside of transfer/.
 
 #include "field/mpm_cpdi.h"
 #include "field/mpm_frame.h"
@@ -33,9 +33,9 @@ class MPMStencil {
 
   explicit MPMStencil(const MPMField &field) : field(field) {}
 
-  /** Nodes along one axis that a position t reaches (in node spacings from the origin). Returns their number,
-   *  the first node, the weights, and, if asked for, their slopes per node spacing. For points of finite size
-   *  these are the values of the spline with the same stencil. */
+  /** Nodes along one axis that a position t reaches (in node spacings from the origin). Returns
+   *  their number, the first node, the weights, and, if asked for, their slopes per node spacing.
+   *  For points of finite size these are the values of the spline with the same stencil. */
   int weights(double t, int &first, double w[4], double *slopes = nullptr) const
   {
     const MPM_NS::Shape shape = field.options.shape;
@@ -59,8 +59,8 @@ class MPMStencil {
     const int dim = lattice.dim;
     const double *const place = field.frame->places()[i];
 
-    // corners of the domain of the point relative to it, their shares, and the gradients of the shares; a
-    // point without domain is its only corner
+    // corners of the domain of the point relative to it, their shares, and the gradients of the
+    // shares; a point without domain is its only corner
 
     const int ncorner = field.domains ? 1 << dim : 1;
     double corner[24] = {0.0}, share[8] = {1.0}, slope[24];
@@ -102,8 +102,9 @@ class MPMStencil {
     }
   }
 
-  /** Values along the axes for a point without domain. The node with the indices k along the axes has the
-   *  number number(k), its weight is the product of w[d][k[d]], and its r consists of r[d][k[d]]. */
+  /** Values along the axes for a point without domain. The node with the indices k along the axes
+   *  has the number number(k), its weight is the product of w[d][k[d]], and its r consists of
+   *  r[d][k[d]]. */
   struct Axes {
     int count[3];
     double w[3][4], r[3][4];
@@ -138,7 +139,8 @@ class MPMStencil {
     }
   }
 
-  /** The same for a position, such as that of an atom that is not a point. Requires reaches_blocks(). */
+  /** The same for a position, such as that of an atom that is not a point. Requires
+   *  reaches_blocks(). */
   void find_axes(const double *x, Axes &axes)
   {
     const auto &grid = field.grid;
@@ -154,8 +156,8 @@ class MPMStencil {
     for (int d = 0; d < 3; d++) number_axis(block, d, t[d], base[d], axes);
   }
 
-  /** Are all nodes that a position reaches active? The blocks must not change while this object is used,
-   *  because it remembers the last one. */
+  /** Are all nodes that a position reaches active? The blocks must not change while this object is
+   *  used, because it remembers the last one. */
   bool reaches_blocks(const double *x)
   {
     const auto &grid = field.grid;
@@ -174,9 +176,10 @@ class MPMStencil {
     return true;
   }
 
-  /** Calls f(number, weight, r) for the nodes that a position reaches, such as that of an atom that is not a
-   *  point; r: from the node to the position, in node spacings. Returns false if not all nodes are active.
-   *  The blocks must not change while this object is used, because it remembers the last one. */
+  /** Calls f(number, weight, r) for the nodes that a position reaches, such as that of an atom that
+   *  is not a point; r: from the node to the position, in node spacings. Returns false if not all
+   *  nodes are active. The blocks must not change while this object is used, because it remembers
+   *  the last one. */
   template <class F> bool visit_around(const double *x, const F &f)
   {
     const auto &grid = field.grid;

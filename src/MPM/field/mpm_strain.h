@@ -15,7 +15,8 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Updates strain and stress of n <= BATCH consecutive points of a run. L: their velocity gradients. */
+/** Updates strain and stress of n <= BATCH consecutive points of a run. L: their velocity
+ *  gradients. */
 void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run &, int first,
                    int n, const double *L, double dt);
 /** Gives points without any stress, from first on, the pressure of their equation of state. */

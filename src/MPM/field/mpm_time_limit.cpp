@@ -18,6 +18,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_internal_force.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
@@ -106,7 +107,8 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   return smallest;
 }
 
-/** Notes the largest change of volume of the points of a batch in this step; inverted ones are errors anyway. */
+/** Notes the largest change of volume of the points of a batch in this step; inverted ones are
+ *  errors anyway. */
 void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
 {
   double most = 0.0;
@@ -149,12 +151,12 @@ void MPMTimeLimit::check()
 
 /* ----------------------------------------------------------------------
    largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
-   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from velocities that
-   the same stress has just changed (USL without affine matrix) reduces it most. With points of finite size it
-   is proportional to the square root of their half size s in node spacings, as
-   the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s). Domains (CPDI)
-   do not depend on size. Linear functions without any limit have warnings of their own, see
-   mpm_stage_light.cpp and share_of_thin_nodes().
+   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from
+   velocities that the same stress has just changed (USL without affine matrix) reduces it most.
+   With points of finite size it is proportional to the square root of their half size s in node
+   spacings, as the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s).
+   Domains (CPDI) do not depend on size. Linear functions without any limit have warnings of their
+   own, see mpm_stage_light.cpp and share_of_thin_nodes().
 ------------------------------------------------------------------------- */
 
 double MPMTimeLimit::stable_share(double size) const
@@ -186,10 +188,11 @@ double MPMTimeLimit::stable_share(double size) const
 }
 
 /* ----------------------------------------------------------------------
-   The total frame has no remedy for light nodes, but its lattice does not change: the largest stable time step
-   in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and the mass m = sum_p m_p N_ip is
-   stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and give 1.6 times as much with affine
-   matrices. Bernstein functions of the middle of a cell begin like linear ones.
+   The total frame has no remedy for light nodes, but its lattice does not change: the largest
+   stable time step in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and the
+   mass m = sum_p m_p N_ip is stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and give
+   1.6 times as much with affine matrices. Bernstein functions of the middle of a cell begin like
+   linear ones.
 ------------------------------------------------------------------------- */
 
 double MPMTimeLimit::share_of_thin_nodes() const
@@ -205,26 +208,26 @@ double MPMTimeLimit::share_of_thin_nodes() const
   const MPMStencil stencil(field);
   constexpr int NREAL = 2;
   std::vector<double> sums(grid.nnodes() * NREAL, 0.0);
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++)
-      stencil.visit(grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        const double weight = node.weight, *const r = node.r;
-        if (weight <= 0.0) return;
-        double slope = 0.0;    // square of (grad N)/N
-        int index[3];
-        grid.node_index(node.number, index);
-        for (int d = 0; d < field.lattice.dim; d++) {
-          const double a = fabs(r[d]);
-          if (!bernstein)
-            slope += 1.0 / ((1.0 - a) * (1.0 - a));
-          else if (index[d] % 2)
-            slope += 4.0 * a * a / ((1.0 - a * a) * (1.0 - a * a));
-          else
-            slope += 1.0 / ((1.0 - 0.5 * a) * (1.0 - 0.5 * a));
-        }
-        sums[node.number * NREAL] += atom->vfrac[i] * weight;
-        sums[node.number * NREAL + 1] += atom->vfrac[i] * weight * weight * slope;
-      });
+  each_point(field, [&](const MPMPointMap::Run &run, int i) {
+    stencil.visit(grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+      const double weight = node.weight, *const r = node.r;
+      if (weight <= 0.0) return;
+      double slope = 0.0;    // square of (grad N)/N
+      int index[3];
+      grid.node_index(node.number, index);
+      for (int d = 0; d < field.lattice.dim; d++) {
+        const double a = fabs(r[d]);
+        if (!bernstein)
+          slope += 1.0 / ((1.0 - a) * (1.0 - a));
+        else if (index[d] % 2)
+          slope += 4.0 * a * a / ((1.0 - a * a) * (1.0 - a * a));
+        else
+          slope += 1.0 / ((1.0 - 0.5 * a) * (1.0 - 0.5 * a));
+      }
+      sums[node.number * NREAL] += atom->vfrac[i] * weight;
+      sums[node.number * NREAL + 1] += atom->vfrac[i] * weight * weight * slope;
+    });
+  });
   field.nodes.sum(sums.data(), NREAL, 0, NREAL);
   double mine = 0.0, all;
   for (std::size_t k = 0; k < sums.size(); k += NREAL)
@@ -253,10 +256,10 @@ void MPMTimeLimit::warn() const
 }
 
 /* ----------------------------------------------------------------------
-   Warns if nobody has set the time step, and the default of the units is that of atoms: for most bodies so small
-   that nothing moves. If a pair style indicates atoms or grains, it may be right, unless it is tiny.
-   A time step that was set for other reasons than these points (grains, finite elements), or by fix mpm/dt, may
-   have to be small
+   Warns if nobody has set the time step, and the default of the units is that of atoms: for most
+   bodies so small that nothing moves. If a pair style indicates atoms or grains, it may be right,
+   unless it is tiny. A time step that was set for other reasons than these points (grains, finite
+   elements), or by fix mpm/dt, may have to be small
 ------------------------------------------------------------------------- */
 
 void MPMTimeLimit::warn_of_small() const

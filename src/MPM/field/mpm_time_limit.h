@@ -21,13 +21,14 @@ class MPMField;
 /** The largest stable time step of a field, and the check of the time step against it. */
 class MPMTimeLimit : protected Pointers {
  public:
-  /** Largest |J/J_old - 1|/dt of this rank's points in all steps since it was set to zero, and the tag of
-   *  that point. */
+  /** Largest |J/J_old - 1|/dt of this rank's points in all steps since it was set to zero, and the
+   *  tag of that point. */
   struct VolumeRate {
     double most;
     tagint tag;
   } volume_rate = {0.0, 0};
-  /** With a smaller time step, forces that are impulses over the time step may exceed the largest number. */
+  /** With a smaller time step, forces that are impulses over the time step may exceed the largest
+   *  number. */
   static constexpr double SMALLEST = 1.0e-150;
   bool bound = true;            ///< explicit step; init_physics() of implicit ones sets it to false
   bool watch_volume = false;    ///< keep volume_rate; set at the start of a run by fix mpm/dt
@@ -36,7 +37,8 @@ class MPMTimeLimit : protected Pointers {
 
   /** Start of a run: checks the time step, and warns where it may be unstable. */
   void setup();
-  /** Smallest h/(c + |v|) of this rank's points. id: tag of the point that limits it; wave_speed: its c. */
+  /** Smallest h/(c + |v|) of this rank's points. id: tag of the point that limits it; wave_speed:
+   *  its c. */
   double stable_dt(tagint &id, double &wave_speed) const;
   /** Stops with an error if the time step is above the limit. It is checked every few steps. */
   void check();

@@ -22,8 +22,8 @@ class MPMTransferHeat : protected Pointers {
   void init() const;
   /** Finds the terms that depend on the old velocities. Call before points get their new ones. */
   void before_motion();
-  /** The heat of n points from first on in this step, per reference volume. The points must have their new
-   *  velocities. The ledger counts this heat as given back. */
+  /** The heat of n points from first on in this step, per reference volume. The points must have
+   *  their new velocities. The ledger counts this heat as given back. */
   void give(int first, int n, double *heat);
 
   double memory_usage() const { return (energy.capacity() + C.capacity()) * sizeof(double); }
@@ -31,7 +31,7 @@ class MPMTransferHeat : protected Pointers {
  private:
   MPMField &field;
   std::vector<double>
-      energy;    // [n] twice the energy over the mass of the point, without the part of its new velocity
+      energy;               // [n] twice the energy over the mass, without that of the new velocity
   std::vector<double> C;    // [n][dim*dim] fit of the old velocities of the nodes
 
   double second_moment() const;

@@ -16,8 +16,8 @@
 
 namespace LAMMPS_NS {
 
-/** Nodes of a field in a row along an axis, through a surface, and their weights in values at the surface. Only
- *  the first n entries are valid. */
+/** Nodes of a field in a row along an axis, through a surface, and their weights in values at the
+ *  surface. Only the first n entries are valid. */
 struct NodeLine {
   static constexpr int MOST = 4;    ///< nodes that a shape function of any order needs
 

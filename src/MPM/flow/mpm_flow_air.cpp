@@ -15,7 +15,7 @@ using namespace LAMMPS_NS;
    still unknown, which are few, once all of it is found.
 ------------------------------------------------------------------------- */
 
-void MPMFlowAir::extend(int layers, std::vector<double> &velocity, std::vector<double> &known)
+void MPMFlowAir::extend(std::vector<double> &velocity, std::vector<double> &known)
 {
   const int dim = cells.lattice.dim, width = 2 * dim;
   unknown.clear();
@@ -29,7 +29,7 @@ void MPMFlowAir::extend(int layers, std::vector<double> &velocity, std::vector<d
       all[k * width + dim + c] = known[k * dim + c];
     }
   cells.publish(all.data(), width);
-  for (int layer = 0; layer < layers; layer++) {
+  for (int layer = 0; layer < LAYERS; layer++) {
     found.clear();
     std::size_t left = 0;
     for (const auto &face : unknown) {

@@ -19,10 +19,13 @@ namespace LAMMPS_NS {
  *  the known velocities around. */
 class MPMFlowAir {
  public:
+  /** Layers of faces that a point just below the surface reaches, also from its place after half a step. */
+  static constexpr int LAYERS = 3;
+
   explicit MPMFlowAir(const MPMFlowLattice &cells) : cells(cells) {}
 
   /** velocity, known (1 or 0): [cell][dim], of owned cells before and of all cells afterwards. Collective. */
-  void extend(int layers, std::vector<double> &velocity, std::vector<double> &known);
+  void extend(std::vector<double> &velocity, std::vector<double> &known);
   double memory_usage() const
   {
     return all.capacity() * sizeof(double) + unknown.capacity() * sizeof(Face) +

@@ -82,11 +82,11 @@ MPMFlowBodies::Six MPMFlowBodies::sum(const Body &body, const Value &value) cons
     const double psi = value(row);
     for (int k = 0; k < 6; k++) mine[k] += row.w[k] * psi;
   }
-  of_ranks.resize(6 * (std::size_t) nprocs);
-  MPI_Allgather(mine.data(), 6, MPI_DOUBLE, of_ranks.data(), 6, MPI_DOUBLE, lmp->world);
+  rank_sums.resize(6 * (std::size_t) nprocs);
+  MPI_Allgather(mine.data(), 6, MPI_DOUBLE, rank_sums.data(), 6, MPI_DOUBLE, lmp->world);
   const double area = std::pow(cells.lattice.h, cells.lattice.dim - 1);
   for (int k = 0; k < 6; k++)
-    for (int rank = 0; rank < nprocs; rank++) all[k] += area * of_ranks[6 * rank + k];
+    for (int rank = 0; rank < nprocs; rank++) all[k] += area * rank_sums[6 * rank + k];
   return all;
 }
 

@@ -76,7 +76,7 @@ class MPMFlowBodies {
   MPMFlowRegions &regions;
   const double density;
   std::vector<Body> bodies;
-  mutable std::vector<double> of_ranks;
+  mutable std::vector<double> rank_sums;
 
   template <class Value> Six sum(const Body &, const Value &) const;
   void push(Body &, const Six &impulse) const;

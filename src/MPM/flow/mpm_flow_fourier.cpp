@@ -84,16 +84,16 @@ void MPMFlowFourier::find_plans()
 {
   const int last = cells.lattice.dim - 1, me = lmp->comm->me;
   int n[2];
-  fftw_r2r_kind of_layers[2][2], of_lines[2][2];
+  fftw_r2r_kind layer_kinds[2][2], line_kinds[2][2];
   for (int way = 0; way < 2; way++) {
     for (int d = 0; d < last; d++) {
       n[last - 1 - d] = axis[d].n;
-      of_layers[way][last - 1 - d] = Transforms::kind(axis[d], way);
+      layer_kinds[way][last - 1 - d] = Transforms::kind(axis[d], way);
     }
-    of_lines[way][0] = Transforms::kind(axis[last], way);
+    line_kinds[way][0] = Transforms::kind(axis[last], way);
   }
-  on->layers.prepare(last, n, layers.of(me), of_layers);
-  on->lines.prepare(1, &axis[last].n, columns.of(me), of_lines);
+  on->layers.prepare(last, n, layers.count(me), layer_kinds);
+  on->lines.prepare(1, &axis[last].n, columns.count(me), line_kinds);
 }
 
 #else
@@ -244,7 +244,7 @@ void MPMFlowFourier::Exchange::find_places()
 void MPMFlowFourier::find_exchange()
 {
   const int last = cells.lattice.dim - 1, nranks = lmp->comm->nprocs, me = lmp->comm->me;
-  auto &e = of_cells;
+  auto &e = cell_exchange;
   e.begin(nranks);
   std::vector<int> rank_of, places;
   for (const int k : wanted) {
@@ -269,11 +269,11 @@ void MPMFlowFourier::find_exchange()
   MPI_Alltoallv(sent.data(), e.send.data(), e.send_at.data(), MPI_INT, place.data(),
                 e.receive.data(), e.receive_at.data(), MPI_INT, lmp->world);
 
-  auto &c = of_columns;
+  auto &c = column_exchange;
   c.begin(nranks);
   for (int rank = 0; rank < nranks; rank++) {
-    c.send[rank] = layers.of(me) * columns.of(rank);
-    c.receive[rank] = layers.of(rank) * columns.of(me);
+    c.send[rank] = layers.count(me) * columns.count(rank);
+    c.receive[rank] = layers.count(rank) * columns.count(me);
   }
   c.find_places();
 }
@@ -304,7 +304,7 @@ void MPMFlowFourier::arrange(double weight)
     longest = std::max(longest, axis[d].n);
     inverse /= axis[d].end[0] == PERIODIC ? axis[d].n : 2.0 * axis[d].n;
   }
-  of_mean = MY_PI / longest * MY_PI / longest;
+  mean_eigenvalue = MY_PI / longest * MY_PI / longest;
 }
 
 /** Sends the values outgoing to their ranks, or back: then the values incoming are sent. */
@@ -322,7 +322,7 @@ void MPMFlowFourier::swap(const Exchange &e, bool back)
 void MPMFlowFourier::to_lines(bool back)
 {
   const int nranks = lmp->comm->nprocs, me = lmp->comm->me;
-  const int length = layers.first[nranks], nlayers = layers.of(me), mine = columns.of(me);
+  const int length = layers.first[nranks], nlayers = layers.count(me), mine = columns.count(me);
   outgoing.resize(on->layers.size);
   incoming.resize(on->lines.size);
   const auto copy = [back](double &a, double &b) {
@@ -344,7 +344,7 @@ void MPMFlowFourier::to_lines(bool back)
         copy(*message++, on->lines.values[(std::size_t) c * length + k]);
   };
   back ? unpack() : pack();
-  swap(of_columns, back);
+  swap(column_exchange, back);
   back ? pack() : unpack();
 }
 
@@ -358,17 +358,17 @@ void MPMFlowFourier::divide_modes()
     if (last == 2) across += axis[1].eigenvalue[c / axis[0].n];
     for (const double one : along) {
       const double sum = across + one;
-      *value++ *= inverse / (sum > 0.0 ? sum : of_mean);
+      *value++ *= inverse / (sum > 0.0 ? sum : mean_eigenvalue);
     }
   }
 }
 
 void MPMFlowFourier::solve(std::vector<double> &values)
 {
-  outgoing.resize(of_cells.all_sent());
-  incoming.resize(of_cells.all_received());
+  outgoing.resize(cell_exchange.all_sent());
+  incoming.resize(cell_exchange.all_received());
   for (std::size_t i = 0; i < sorted.size(); i++) outgoing[i] = values[sorted[i]];
-  swap(of_cells, false);
+  swap(cell_exchange, false);
   std::fill_n(on->layers.values, on->layers.size, 0.0);
   for (std::size_t i = 0; i < place.size(); i++) on->layers.values[place[i]] = incoming[i];
   on->layers.execute(false);
@@ -378,10 +378,10 @@ void MPMFlowFourier::solve(std::vector<double> &values)
   on->lines.execute(true);
   to_lines(true);
   on->layers.execute(true);
-  outgoing.resize(of_cells.all_sent());
-  incoming.resize(of_cells.all_received());
+  outgoing.resize(cell_exchange.all_sent());
+  incoming.resize(cell_exchange.all_received());
   for (std::size_t i = 0; i < place.size(); i++) incoming[i] = on->layers.values[place[i]];
-  swap(of_cells, true);
+  swap(cell_exchange, true);
   for (std::size_t i = 0; i < sorted.size(); i++) values[sorted[i]] = outgoing[i];
 }
 

@@ -58,7 +58,7 @@ class MPMFlowFourier {
   struct Shares {
     std::vector<int> first;    // [rank], and the end
     void divide(int n, int nranks);
-    int of(int rank) const { return first[rank + 1] - first[rank]; }
+    int count(int rank) const { return first[rank + 1] - first[rank]; }
     int has(int k) const;    // rank
   };
   struct Transforms;    // arrays and plans
@@ -80,12 +80,12 @@ class MPMFlowFourier {
   std::vector<Cell> wet;
   std::vector<int> wanted;    // of the cells
   Axis axis[3];
-  double inverse = 0.0;    // 1/(weight, normalization)
-  double of_mean = 0.0;    // eigenvalue that the mean gets where it has none
-  int ncolumns = 0;        // cells in a layer
+  double inverse = 0.0;            // 1/(weight, normalization)
+  double mean_eigenvalue = 0.0;    // eigenvalue that the mean gets where it has none
+  int ncolumns = 0;                // cells in a layer
   Shares layers, columns;
   std::unique_ptr<Transforms> on;
-  Exchange of_cells, of_columns;
+  Exchange cell_exchange, column_exchange;
   std::vector<int> sorted, place;            // [value that is sent], [value that is received]
   std::vector<double> outgoing, incoming;    // values of messages
 

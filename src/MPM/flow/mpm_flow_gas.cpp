@@ -51,29 +51,29 @@ void MPMFlowGas::find_left(const std::vector<double> &share)
   left.resize(n);
   for (std::size_t k = 0; k < cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
-    const double room = water.regions ? water.regions->room(cell.number) : 1.0;
+    const double fraction = water.regions ? water.regions->volume_fraction(cell.number) : 1.0;
     if (!water.is_wet(cell.number)) {
-      const int pocket = pockets.of(cell.number);
-      if (pocket >= 0) mine[pocket] -= share[cell.number] * room;
+      const int pocket = pockets.pocket(cell.number);
+      if (pocket >= 0) mine[pocket] -= share[cell.number] * fraction;
       continue;
     }
     const int *const around = cells.around.data() + k * naround;
     int many = 0;
     const auto each_next = [&](const auto &f) {
       for (int i = 0; i < naround; i++)
-        if (around[i] >= 0 && !water.is_wet(around[i]) && pockets.of(around[i]) >= 0)
-          f(pockets.of(around[i]));
+        if (around[i] >= 0 && !water.is_wet(around[i]) && pockets.pocket(around[i]) >= 0)
+          f(pockets.pocket(around[i]));
     };
     each_next([&](int) {
       many++;
     });
     each_next([&](int pocket) {
-      mine[pocket] += (1.0 - share[cell.number]) * room / many;
+      mine[pocket] += (1.0 - share[cell.number]) * fraction / many;
     });
   }
-  sum_in_order(lmp, n, mine.data(), of_ranks, left.data());
+  sum_in_order(lmp, n, mine.data(), rank_sums, left.data());
   for (int k = 0; k < n; k++)
-    left[k] = cells.lattice.cell_volume() * std::max(LEAST_VOLUME, left[k] + pockets.room_of(k));
+    left[k] = cells.lattice.cell_volume() * std::max(LEAST_VOLUME, left[k] + pockets.volume_of(k));
 }
 
 /** Rates at which volumes grow with velocities of faces. */
@@ -84,11 +84,11 @@ std::vector<double> MPMFlowGas::growth(const double *velocity)
   std::vector<double> all(n);
   mine.assign(n, 0.0);
   water.visit_surface([&](const MPMFlowLattice::Cell &cell, int side, double) {
-    const int pocket = pockets.of(cell.near[side]);
+    const int pocket = pockets.pocket(cell.near[side]);
     const double flux = water.flux_of_side(velocity, cell, side);
     if (pocket >= 0) mine[pocket] += area * (side % 2 ? -flux : flux);
   });
-  sum_in_order(lmp, n, mine.data(), of_ranks, all.data());
+  sum_in_order(lmp, n, mine.data(), rank_sums, all.data());
   return all;
 }
 
@@ -132,7 +132,7 @@ void MPMFlowGas::hand_on(const std::vector<double> &rates)
   std::vector<State> before(pockets.n());
   before.swap(states);
   std::vector<double> given(before.size(), 0.0), got(n(), 0.0);
-  for (const auto &share : pockets.shares()) {
+  for (const auto &share : pockets.overlaps()) {
     given[share.from] += (double) share.cells;
     got[share.to] += (double) share.cells;
   }
@@ -146,7 +146,7 @@ void MPMFlowGas::hand_on(const std::vector<double> &rates)
     states[k].volume = left[k];
     is_new[k] = 1;
   }
-  for (const auto &share : pockets.shares()) {
+  for (const auto &share : pockets.overlaps()) {
     const auto &from = before[share.from];
     auto &to = states[share.to];
     if (to.open) continue;
@@ -253,5 +253,5 @@ bool MPMFlowGas::restart(const double *from, std::size_t n)
 double MPMFlowGas::memory_usage() const
 {
   return pockets.memory_usage() + states.capacity() * sizeof(State) +
-      (left.capacity() + mine.capacity() + of_ranks.capacity()) * sizeof(double);
+      (left.capacity() + mine.capacity() + rank_sums.capacity()) * sizeof(double);
 }

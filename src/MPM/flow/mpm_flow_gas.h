@@ -73,7 +73,7 @@ class MPMFlowGas : protected Pointers {
   const MPMFlowPressure &water;
   const MPMFlowGasLaw law;
   std::vector<State> states;
-  std::vector<double> left, mine, of_ranks;
+  std::vector<double> left, mine, rank_sums;
   bool is_known = false;
 
   double pressure(const State &) const;

@@ -18,18 +18,18 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-void MPMFlowGasRows::begin(double of_step, double pressure_to_psi,
-                           const std::vector<double> *of_tension)
+void MPMFlowGasRows::begin(double step, double pressure_to_psi,
+                           const std::vector<double> *surface_tension)
 {
   const int n = gas.n();
-  duration = of_step;
-  tension = of_tension;
+  duration = step;
+  tension = surface_tension;
   psi.resize(n);
   stiffness.resize(n);
   for (int k = 0; k < n; k++) {
-    const double of_gas = pressure_to_psi * gas.stiffness(k);
-    psi[k] = pressure_to_psi * gas.over(k) + BEFORE * of_gas * duration * gas.rate(k);
-    stiffness[k] = NOW * of_gas;
+    const double softness = pressure_to_psi * gas.stiffness(k);
+    psi[k] = pressure_to_psi * gas.over(k) + BEFORE * softness * duration * gas.rate(k);
+    stiffness[k] = NOW * softness;
   }
   fill();
 }
@@ -43,7 +43,7 @@ void MPMFlowGasRows::fill()
     for (int d = 0; d < dim; d++) {
       const int here = cell.number, lower = cell.near[2 * d];
       if (cell.walls >> 2 * d & 1 || water.is_wet(here) == water.is_wet(lower)) continue;
-      const int pocket = gas.pockets.of(water.is_wet(here) ? lower : here);
+      const int pocket = gas.pockets.pocket(water.is_wet(here) ? lower : here);
       const int64_t face = (int64_t) here * dim + d;
       surface[face] = (pocket >= 0 ? psi[pocket] : 0.0) + (tension ? (*tension)[face] : 0.0);
     }
@@ -58,7 +58,7 @@ void MPMFlowGasRows::load(const double *velocity, const std::vector<double> &lif
   entries.clear();
   mine.assign(3 * n, 0.0);
   water.visit_surface([&](const MPMFlowLattice::Cell &cell, int side, double weight) {
-    const int pocket = gas.pockets.of(cell.near[side]);
+    const int pocket = gas.pockets.pocket(cell.near[side]);
     if (pocket < 0 || !gas.has_gas(pocket)) return;
     const int64_t face = (int64_t) (side % 2 ? cell.near[side] : cell.number) * dim + side / 2;
     const double flux = water.flux_of_side(velocity, cell, side);
@@ -68,7 +68,7 @@ void MPMFlowGasRows::load(const double *velocity, const std::vector<double> &lif
     entries.push_back({cell.number, pocket, weight});
   });
   all.resize(3 * n);
-  sum_in_order(lmp, 3 * n, mine.data(), of_ranks, all.data());
+  sum_in_order(lmp, 3 * n, mine.data(), rank_sums, all.data());
   for (int k = 0; k < n; k++) {
     double *const of = &all[3 * k];
     const double per_velocity = stiffness[k] * duration * area, change = per_velocity * h,
@@ -95,21 +95,21 @@ const double *MPMFlowGasRows::sum(const double *x)
   mine.assign(n, 0.0);
   sums.resize(n);
   for (const auto &at : places) mine[at.pocket] += at.weight * x[at.place];
-  sum_in_order(lmp, n, mine.data(), of_ranks, sums.data());
+  sum_in_order(lmp, n, mine.data(), rank_sums, sums.data());
   return sums.data();
 }
 
 void MPMFlowGasRows::add(const double *x, double *y)
 {
-  const double *const of_pockets = sum(x);
+  const double *const pocket_sums = sum(x);
   for (const auto &at : places)
-    y[at.place] -= at.weight * all[3 * at.pocket + 1] * of_pockets[at.pocket];
+    y[at.place] -= at.weight * all[3 * at.pocket + 1] * pocket_sums[at.pocket];
 }
 
 void MPMFlowGasRows::end(const double *x)
 {
-  const double *const of_pockets = sum(x);
-  for (int k = 0; k < gas.n(); k++) psi[k] += all[3 * k] + all[3 * k + 1] * of_pockets[k];
+  const double *const pocket_sums = sum(x);
+  for (int k = 0; k < gas.n(); k++) psi[k] += all[3 * k] + all[3 * k + 1] * pocket_sums[k];
   fill();
 }
 
@@ -126,10 +126,10 @@ void MPMFlowGasRows::add_to_region(double *force) const
   const int dim = cells.lattice.dim;
   const double area = std::pow(cells.lattice.h, dim - 1);
   water.visit_surface([&](const MPMFlowLattice::Cell &cell, int side, double) {
-    const int pocket = gas.pockets.of(cell.near[side]);
+    const int pocket = gas.pockets.pocket(cell.near[side]);
     const int64_t of = side % 2 ? cell.near[side] : cell.number;
     if (pocket >= 0)
-      force[side / 2] += (side % 2 ? area : -area) * water.open(of, side / 2) * psi[pocket];
+      force[side / 2] += (side % 2 ? area : -area) * water.aperture(of, side / 2) * psi[pocket];
   });
   if (lmp->comm->me == 0)
     for (int d = 0; d < dim; d++) force[d] += at_wall(d, 0) - at_wall(d, 1);
@@ -138,7 +138,7 @@ void MPMFlowGasRows::add_to_region(double *force) const
 double MPMFlowGasRows::memory_usage() const
 {
   double reals = 0.0;
-  for (const auto *list : {&surface, &psi, &stiffness, &all, &mine, &sums, &of_ranks})
+  for (const auto *list : {&surface, &psi, &stiffness, &all, &mine, &sums, &rank_sums})
     reals += list->capacity();
   return reals * sizeof(double) + entries.capacity() * sizeof(Entry) +
       places.capacity() * sizeof(Place);

@@ -48,7 +48,7 @@ class MPMFlowGasRows {
   /** psi of the pocket that contains a cell; zero if the cell is in no pocket, or in air without gas. */
   double in_cell(int64_t number) const
   {
-    const int pocket = gas.pockets.of(number);
+    const int pocket = gas.pockets.pocket(number);
     return pocket >= 0 ? psi[pocket] : 0.0;
   }
 
@@ -91,7 +91,7 @@ class MPMFlowGasRows {
   std::vector<double> stiffness, all;
   std::vector<Entry> entries;
   std::vector<Place> places;
-  std::vector<double> mine, sums, of_ranks;
+  std::vector<double> mine, sums, rank_sums;
 
   void fill();
   const double *sum(const double *x);

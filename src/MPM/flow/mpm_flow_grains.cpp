@@ -60,14 +60,14 @@ void MPMFlowGrains::list()
 }
 
 /** Factors of the weights of faces. Images beyond walls have those of the faces inside. */
-void MPMFlowGrains::find_filled(const std::vector<double> &of_points)
+void MPMFlowGrains::find_filled(const std::vector<double> &point_sums)
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
   const double full = density * cells.lattice.cell_volume();
   filled.resize(cells.size() * dim);
   for (int64_t k = 0; k < cells.size(); k++)
     for (int c = 0; c < dim; c++)
-      filled[k * dim + c] = std::min(1.0, of_points[k * width + dim + c] / (HALF * full));
+      filled[k * dim + c] = std::min(1.0, point_sums[k * width + dim + c] / (HALF * full));
   std::vector<double> images = filled;
   cells.reflect_velocities(images.data(), false);
   for (std::size_t k = 0; k < filled.size(); k++)
@@ -86,13 +86,14 @@ template <int dim> bool MPMFlowGrains::find(Grain &g, const std::vector<double> 
   if (g.slot < 0) return false;
   const MPMFlowStencil<dim> reach(cells.grid, cells.grid.blocks[g.slot], g.w.base);
   double around = 0.0;
-  std::fill_n(g.of_weights, 3, 0.0);
+  std::fill_n(g.weight_sums, 3, 0.0);
   visit<dim>(reach, [&](int64_t number, const int k[3]) {
     around += g.w.cell<dim>(k) * share[number];
-    for (int c = 0; c < dim; c++) g.of_weights[c] += g.w.face<dim>(c, k) * filled[number * dim + c];
+    for (int c = 0; c < dim; c++)
+      g.weight_sums[c] += g.w.face<dim>(c, k) * filled[number * dim + c];
   });
   g.immersed = std::min(1.0, 2.0 * around);
-  return g.immersed > NOTHING && *std::min_element(g.of_weights, g.of_weights + dim) > NOTHING;
+  return g.immersed > NOTHING && *std::min_element(g.weight_sums, g.weight_sums + dim) > NOTHING;
 }
 
 template <int dim>
@@ -104,7 +105,7 @@ void MPMFlowGrains::interpolate(const Grain &g, const double *values, double *v)
     for (int c = 0; c < dim; c++)
       v[c] += g.w.face<dim>(c, k) * filled[number * dim + c] * values[number * dim + c];
   });
-  for (int c = 0; c < dim; c++) v[c] /= g.of_weights[c];
+  for (int c = 0; c < dim; c++) v[c] /= g.weight_sums[c];
 }
 
 namespace {
@@ -208,7 +209,7 @@ template <int dim> void MPMFlowGrains::find_force(Grain &g)
   visit<dim>(reach, [&](int64_t number, const int k[3]) {
     double *const to = sums.data() + number * width;
     for (int c = 0; c < dim; c++) {
-      const double weight = g.w.face<dim>(c, k) / g.of_weights[c];
+      const double weight = g.w.face<dim>(c, k) / g.weight_sums[c];
       to[dim + c] += weight * (g.rate - without / duration);
       to[2 * dim + c] += weight * (g.least[c] + without * gravity[c]);
     }
@@ -241,26 +242,26 @@ void MPMFlowGrains::find_all(const std::vector<double> &share, const std::vector
 
 /* ---------------------------------------------------------------------- */
 
-void MPMFlowGrains::begin(double time, const std::vector<double> &of_points,
+void MPMFlowGrains::begin(double time, const std::vector<double> &point_sums,
                           const std::vector<double> &share, const std::vector<double> &before,
                           std::vector<double> &velocity)
 {
   const int dim = cells.lattice.dim, width = 3 * dim + 1;
   duration = time;
-  find_filled(of_points);
+  find_filled(point_sums);
   dim == 2 ? find_all<2>(share, before) : find_all<3>(share, before);
 
-  share_of_gradient.assign(cells.size() * dim, 1.0);
+  face_mobility.assign(cells.size() * dim, 1.0);
   for (int64_t k = 0; k < cells.size(); k++)
     for (int c = 0; c < dim; c++) {
-      const double mass = of_points[k * width + dim + c];
+      const double mass = point_sums[k * width + dim + c];
       if (!(mass > 0.0)) continue;
       const int64_t face = k * dim + c;
       const double per_mass = duration * filled[face] / mass;
       const double mobile = 1.0 / (1.0 + per_mass * sums[k * width + dim + c]);
       velocity[face] = before[face] +
           mobile * (velocity[face] - before[face] - per_mass * sums[k * width + 2 * dim + c]);
-      share_of_gradient[face] = mobile;
+      face_mobility[face] = mobile;
     }
   cells.reflect_velocities(velocity.data());
 }
@@ -320,7 +321,7 @@ double MPMFlowGrains::at_wall(int axis, int side, const std::vector<double> &bef
 
 double MPMFlowGrains::memory_usage() const
 {
-  return (filled.capacity() + solid.capacity() + sums.capacity() + share_of_gradient.capacity()) *
+  return (filled.capacity() + solid.capacity() + sums.capacity() + face_mobility.capacity()) *
       sizeof(double) +
       grains.capacity() * sizeof(Grain) + kind_of.capacity() * sizeof(int);
 }

@@ -47,7 +47,7 @@ class MPMFlowGrains : protected Pointers {
   void begin(double duration, const std::vector<double> &sums, const std::vector<double> &share,
              const std::vector<double> &before, std::vector<double> &velocity);
   /** [cell][dim] share of the gradient of the pressure, as a change of the velocity, that accelerates a face. */
-  const std::vector<double> &mobility() const { return share_of_gradient; }
+  const std::vector<double> &mobility() const { return face_mobility; }
   /** End of a step: applies the forces to the grains. velocity: [cell][dim] at the end of the step. */
   void end(const std::vector<double> &velocity);
   /** Force of grains on the faces in a wall of the box, positive outwards [mass velocity/time], less the part of the force on
@@ -66,13 +66,13 @@ class MPMFlowGrains : protected Pointers {
   struct Grain {
     int i, kind, slot;
     MPM_NS::StaggeredWeights w;
-    double of_weights[3];    // sums of weights, by component
-    double before[3];        // velocity of the flow at the start of the step
-    double immersed;         // share of the grain that is in the fluid
-    double mass;             // infinite: the grain is held
-    double least[3];         // force F0
-    double rate;             // b
-    double displaced;        // mass of fluid
+    double weight_sums[3];    // sums of weights, by component
+    double before[3];         // velocity of the flow at the start of the step
+    double immersed;          // share of the grain that is in the fluid
+    double mass;              // infinite: the grain is held
+    double least[3];          // force F0
+    double rate;              // b
+    double displaced;         // mass of fluid
   };
   const double density;
   MPMFlowLattice &cells;
@@ -83,7 +83,7 @@ class MPMFlowGrains : protected Pointers {
   std::vector<double> filled;    // [cell][dim] factor of weights
   std::vector<double> solid;     // [cell] share of its volume that grains take up
   std::vector<double> sums;      // [cell][3 dim + 1] -, b, and F0 at faces, volume of grains
-  std::vector<double> share_of_gradient;
+  std::vector<double> face_mobility;
   double duration = 0.0;
 
   template <int dim> bool find(Grain &, const std::vector<double> &share) const;
@@ -94,7 +94,7 @@ class MPMFlowGrains : protected Pointers {
   void find_all(const std::vector<double> &share, const std::vector<double> &before);
   template <int dim> void go_on(const std::vector<double> &velocity);
   template <int dim> void interpolate(const Grain &, const double *values, double *v) const;
-  void find_filled(const std::vector<double> &of_points);
+  void find_filled(const std::vector<double> &point_sums);
 };
 
 }    // namespace LAMMPS_NS

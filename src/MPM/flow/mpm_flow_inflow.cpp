@@ -10,7 +10,7 @@
 
 #include "flow/mpm_flow_regions.h"
 #include "loads/fix_mpm_emit.h"
-#include "loads/mpm_mouth.h"
+#include "loads/mpm_inlet.h"
 
 #include "error.h"
 #include "fix.h"
@@ -24,47 +24,47 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// ends of mouths this close to a face, in spacings, are at the face
+// ends of inlets this close to a face, in spacings, are at the face
 static constexpr double AT_FACE = 1.0e-6;
 // least component of the direction of a flow that counts as along an axis of the lattice
 static constexpr double ALONG = 1.0 - 1.0e-9;
 
 // differences of shares of faces, and of squares of distances in spacings, that count as none; relative
-// difference of velocities in mouths that is small
+// difference of velocities in inlets that is small
 static constexpr double ALIKE = 1.0e-6, LIKE_POINTS = 0.05;
 // least open part of a face over the share of a section in it: that
 // of a corner into which columns of points just fit
 static constexpr double LEAST_OPEN = 0.25;
 
-MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, const Fix &flow) :
+MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, int groupbit) :
     Pointers(lmp), cells(cells)
 {
   for (auto *ifix : modify->get_fix_by_style("^mpm/emit$")) {
     auto *const fix = dynamic_cast<FixMPMEmit *>(ifix);
-    if (!fix || !fix->emits_into(flow)) continue;
-    mouths.emplace_back();
-    mouths.back().fix = fix;
+    if (!fix || !fix->emits_into(groupbit)) continue;
+    inlets.emplace_back();
+    inlets.back().fix = fix;
   }
 }
 
-/** Finds the faces across a mouth, and the share of each that is in its section, from the columns of its
+/** Finds the faces across a inlet, and the share of each that is in its section, from the columns of its
  *  points. */
-void MPMFlowInflow::find_section(Mouth &one) const
+void MPMFlowInflow::find_section(Inlet &one) const
 {
   const int dim = cells.lattice.dim;
   const double h = cells.lattice.h;
-  const MPMMouth &mouth = one.fix->passage();
+  const MPMInlet &inlet = one.fix->shape();
   one.axis = -1;
   for (int d = 0; d < dim; d++)
-    if (std::fabs(mouth.normal[d]) > ALONG) one.axis = d;
+    if (std::fabs(inlet.normal[d]) > ALONG) one.axis = d;
   if (one.axis < 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: into an incompressible flow points must come along an axis of the box, "
                "not along {:.6g} {:.6g} {:.6g}: use such a normal and mouth",
-               one.fix->style, one.fix->id, mouth.normal[0], mouth.normal[1], mouth.normal[2]);
-  one.side = mouth.normal[one.axis] > 0.0 ? 1 : 0;
-  const double middle = (mouth.middle()[one.axis] - cells.lattice.origin[one.axis]) / h,
-               half = 0.5 * mouth.length / h;
+               one.fix->style, one.fix->id, inlet.normal[0], inlet.normal[1], inlet.normal[2]);
+  one.side = inlet.normal[one.axis] > 0.0 ? 1 : 0;
+  const double middle = (inlet.middle()[one.axis] - cells.lattice.origin[one.axis]) / h,
+               half = 0.5 * inlet.length / h;
   one.first = (int) std::ceil(middle - half - AT_FACE);
   one.last = (int) std::floor(middle + half + AT_FACE);
   if (!cells.lattice.periodic[one.axis]) {    // walls hold their own faces
@@ -77,7 +77,7 @@ void MPMFlowInflow::find_section(Mouth &one) const
                one.fix->style, one.fix->id);
 
   std::map<std::array<int, 2>, double> areas;
-  for (const auto &column : mouth.columns) {
+  for (const auto &column : inlet.columns) {
     std::array<int, 2> index = {0, 0};
     for (int d = 0, k = 0; d < dim; d++) {
       if (d == one.axis) continue;
@@ -95,17 +95,17 @@ void MPMFlowInflow::find_section(Mouth &one) const
 /** Replaces the section by whole cells with the same flow: the cells of which it has most, as many as its
  *  area amounts to. Cells that are alike by symmetry are taken or left out together, if the velocity is then
  *  about that of the points. */
-void MPMFlowInflow::round_off(Mouth &one) const
+void MPMFlowInflow::round_off(Inlet &one) const
 {
   auto &section = one.section;
   double all = 0.0;
   for (const auto &part : section) all += part.share;
   const auto away =
-      [&](const Section &part) {    // from the middle of the mouth, in spacings, squared
+      [&](const Section &part) {    // from the middle of the inlet, in spacings, squared
         double sum = 0.0;
         for (int d = 0, k = 0; d < cells.lattice.dim; d++) {
           if (d == one.axis) continue;
-          const double middle = one.fix->passage().middle()[d];
+          const double middle = one.fix->shape().middle()[d];
           const double x = part.index[k++] + 0.5 -
               (middle - cells.lattice.origin[d]) / cells.lattice.h,
                        around = cells.lattice.periodic[d] ? cells.lattice.ncell[d] : 0.0;
@@ -140,7 +140,7 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
   const double h = cells.lattice.h;
   held.clear();
   source.assign(cells.size(), 0.0);
-  for (auto &one : mouths) {
+  for (auto &one : inlets) {
     if (!found) find_section(one);
     if (!found && clamps && !regions) round_off(one);
     one.fix->velocity_now(one.velocity);
@@ -156,7 +156,7 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
     for (const auto &part : one.section) {
       for (int face = one.first; face <= one.last; face++)
         visit(face, part, [&](int64_t number) {
-          const double open = regions ? regions->open(number, one.axis) : 1.0;
+          const double open = regions ? regions->aperture(number, one.axis) : 1.0;
           held.push_back(
               {number * dim + one.axis, part.share * v / std::max(open, LEAST_OPEN * part.share)});
         });
@@ -172,15 +172,15 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
   found = true;
 }
 
-/** Holds all faces of a cell that are along a mouth. */
-void MPMFlowInflow::clamp(const Mouth &mouth, int at, const Section &part)
+/** Holds all faces of a cell that are along a inlet. */
+void MPMFlowInflow::clamp(const Inlet &inlet, int at, const Section &part)
 {
   const int dim = cells.lattice.dim;
   int index[3] = {0, 0, 0};
   for (int d = 0, k = 0; d < dim; d++)
-    index[d] = d == mouth.axis ? cells.lattice.wrap(d, at) : part.index[k++];
+    index[d] = d == inlet.axis ? cells.lattice.wrap(d, at) : part.index[k++];
   for (int d = 0; d < dim; d++)
-    for (int s = 0; d != mouth.axis && s < 2; s++) {
+    for (int s = 0; d != inlet.axis && s < 2; s++) {
       int next[3] = {index[0], index[1], index[2]};
       next[d] += s;
       if (cells.lattice.periodic[d])
@@ -188,7 +188,7 @@ void MPMFlowInflow::clamp(const Mouth &mouth, int at, const Section &part)
       else if (next[d] == cells.lattice.ncell[d])
         continue;    // this face is a wall
       const int64_t number = cells.grid.locate(next);
-      if (number >= 0) held.push_back({number * dim + d, mouth.velocity[d]});
+      if (number >= 0) held.push_back({number * dim + d, inlet.velocity[d]});
     }
 }
 
@@ -205,8 +205,8 @@ void MPMFlowInflow::hold(std::vector<double> &velocity, std::vector<double> *mob
 
 bool MPMFlowInflow::carry(double *x, double *v, double dt) const
 {
-  for (const auto &one : mouths) {
-    if (!one.fix->passage().holds(x, 0.0)) continue;
+  for (const auto &one : inlets) {
+    if (!one.fix->shape().holds(x, 0.0)) continue;
     for (int d = 0; d < 3; d++) {
       v[d] = one.velocity[d];
       x[d] += dt * v[d];

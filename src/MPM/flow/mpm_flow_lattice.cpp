@@ -174,12 +174,12 @@ void MPMFlowLattice::find_cells()
     cover(range, margin_of_all, true);
     cover(range, margin_of_all + overlap, false);
   }
-  of_visitors.clear();
+  visitor_ranges.clear();
   for (const int i : visitors) {
     Range r;
     base_of(atom->x[i], r.low);
     std::copy_n(r.low, 3, r.high);
-    of_visitors.push_back(r);
+    visitor_ranges.push_back(r);
     cover(r, margin_of_all, true);
     cover(r, margin_of_all + overlap, false);
   }
@@ -233,7 +233,7 @@ bool MPMFlowLattice::visitors_in_reach() const
     int base[3];
     base_of(atom->x[visitors[k]], base);
     for (int d = 0; d < lattice.dim; d++)
-      in = in && std::abs(base[d] - of_visitors[k].low[d]) <= DRIFT;
+      in = in && std::abs(base[d] - visitor_ranges[k].low[d]) <= DRIFT;
   }
   return in;
 }
@@ -313,13 +313,14 @@ void MPMFlowLattice::list_images()
         if (i < -1 || i > last + 1 || (i >= 0 && i < last)) continue;
         const int side = i < 0 ? 0 : 1, wall = side ? last : 0;
         index[d] = std::max(0, std::min(2 * wall - i, last));
-        const int of_face = (int) grid.locate(index);
+        const int source_face = (int) grid.locate(index);
         index[d] = std::max(0, std::min(2 * wall - 1 - i, last - 1));
-        const int of_cell = (int) grid.locate(index);
+        const int source_cell = (int) grid.locate(index);
         index[d] += side ? -1 : 1;
-        const int of_next = (int) grid.locate(index);
-        if (of_face >= 0 && of_cell >= 0)
-          images.push_back({number, of_face, of_cell, of_next < 0 ? of_cell : of_next, d, side});
+        const int source_behind = (int) grid.locate(index);
+        if (source_face >= 0 && source_cell >= 0)
+          images.push_back({number, source_face, source_cell,
+                            source_behind < 0 ? source_cell : source_behind, d, side});
       }
   }
 }
@@ -334,7 +335,8 @@ void MPMFlowLattice::sum(double *values, int width, bool moving) const
     const auto &wall = walls[image.axis][image.side];
     for (int k = 0; k < width; k++) {
       const bool normal = k % dim == image.axis && k < 3 * dim;
-      double *const to = values + (int64_t) (normal ? image.of_face : image.of_cell) * width;
+      double *const to =
+          values + (int64_t) (normal ? image.source_face : image.source_cell) * width;
       if (to == from) continue;    // the face in the wall itself
       if (k < dim && normal)
         to[k] -= from[k];
@@ -344,7 +346,7 @@ void MPMFlowLattice::sum(double *values, int width, bool moving) const
         to[k] += from[k];
     }
     for (int k = 0; k < width; k++)
-      if (k % dim != image.axis || k >= 3 * dim || image.of_face != image.number) from[k] = 0.0;
+      if (k % dim != image.axis || k >= 3 * dim || image.source_face != image.number) from[k] = 0.0;
   }
   sum_freely(values, width);
 }
@@ -391,9 +393,10 @@ void MPMFlowLattice::reflect_velocities(double *values, bool moving) const
     const auto &wall = walls[image->axis][image->side];
     for (int c = 0; c < dim; c++) {
       const bool normal = c == image->axis;
-      const double from = values[(int64_t) (normal ? image->of_face : image->of_cell) * dim + c];
+      const double from =
+          values[(int64_t) (normal ? image->source_face : image->source_cell) * dim + c];
       if (normal)
-        to[c] = image->of_face == image->number ? 0.0 : -from;
+        to[c] = image->source_face == image->number ? 0.0 : -from;
       else
         to[c] = wall.sticks && moving ? 2.0 * wall.v[c] - from : from;
     }
@@ -413,8 +416,9 @@ void MPMFlowLattice::reflect_paths(double *values) const
     const auto &wall = walls[image->axis][image->side];
     for (int c = 0; c < dim; c++) {
       const bool normal = c == image->axis;
-      if (normal && image->of_face == image->number) continue;
-      const double from = values[(int64_t) (normal ? image->of_face : image->of_cell) * dim + c];
+      if (normal && image->source_face == image->number) continue;
+      const double from =
+          values[(int64_t) (normal ? image->source_face : image->source_cell) * dim + c];
       if (normal)
         to[c] = wall.sticks ? from : -from;
       else
@@ -426,7 +430,7 @@ void MPMFlowLattice::reflect_paths(double *values) const
 void MPMFlowLattice::reflect_cells(double *values) const
 {
   for (auto image = images.rbegin(); image != images.rend(); ++image)
-    values[image->number] = values[image->of_cell];
+    values[image->number] = values[image->source_cell];
 }
 
 double MPMFlowLattice::memory_usage() const
@@ -434,7 +438,7 @@ double MPMFlowLattice::memory_usage() const
   return grid.memory_usage() + halo.memory_usage() + runs.capacity() * sizeof(Run) +
       kept.capacity() * sizeof(double) + cells.capacity() * sizeof(Cell) +
       around.capacity() * sizeof(int) +
-      (ranges.capacity() + of_visitors.capacity()) * sizeof(Range) +
+      (ranges.capacity() + visitor_ranges.capacity()) * sizeof(Range) +
       visitors.capacity() * sizeof(int) + images.capacity() * sizeof(Image) +
       at_walls.capacity() * sizeof(AtWall);
 }

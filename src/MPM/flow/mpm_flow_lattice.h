@@ -116,7 +116,8 @@ class MPMFlowLattice : protected Pointers {
   template <class F> void fill_images(double *values, const F &f) const
   {
     for (auto image = images.rbegin(); image != images.rend(); ++image)
-      values[image->number] = f(image->of_cell, image->axis, image->side, values[image->of_cell]);
+      values[image->number] =
+          f(image->source_cell, image->axis, image->side, values[image->source_cell]);
   }
   /** Is a cell within walls? */
   bool is_inside(int64_t number) const;
@@ -127,7 +128,7 @@ class MPMFlowLattice : protected Pointers {
   template <class F> void extrapolate_cells(double *values, const F &inside) const
   {
     for (auto image = images.rbegin(); image != images.rend(); ++image) {
-      const int one = image->of_cell, next = image->of_next;
+      const int one = image->source_cell, next = image->source_behind;
       values[image->number] = inside(one) && inside(next) ? 2.0 * values[one] - values[next]
                                                           : values[one];
     }
@@ -145,17 +146,17 @@ class MPMFlowLattice : protected Pointers {
     int low[3], high[3];
   };
   struct Image {
-    // of_face, of_cell: originals of the normal component, and of all other values
-    int number, of_face, of_cell;
-    int of_next;    // the cell behind of_cell
+    // source_face, source_cell: originals of the normal component, and of all other values
+    int number, source_face, source_cell;
+    int source_behind;    // the cell behind source_cell
     int axis, side;
   };
   const int groupbit;
   mutable MPMHalo halo;
   mutable std::vector<double> kept;
-  std::vector<Range> ranges;         // of bases, by slot
-  std::vector<Range> of_visitors;    // their bases when cells were found
-  std::vector<Image> images;         // by axis
+  std::vector<Range> ranges;            // of bases, by slot
+  std::vector<Range> visitor_ranges;    // their bases when cells were found
+  std::vector<Image> images;            // by axis
   struct AtWall {
     int number, axis, side;
     int inner;    // the next cell within; -1: there is none

@@ -79,13 +79,13 @@ void MPMFlowPockets::fill(int64_t first, int label)
     int index[3];
     index_of(here, index);
     info.cells++;
-    const double room = rooms.empty() ? 1.0 : rooms[here];
-    info.room += room;
+    const double volume = volume_fractions.empty() ? 1.0 : volume_fractions[here];
+    info.volume += volume;
     for (int d = 0; d < cells.lattice.dim; d++)
       for (int s = 0; s < 2; s++) {
         int next[3] = {index[0], index[1], index[2]};
         if (!step(next, d, 2 * s - 1)) {
-          info.at[d][s] += room;
+          info.at[d][s] += volume;
           info.open = info.open || open[d][s];
           continue;
         }
@@ -109,7 +109,7 @@ void MPMFlowPockets::number()
     int index[3];
     index_of(k, index);
     const int pocket = next_to(index);
-    if (pocket != NONE) infos[pocket].room += rooms[k];
+    if (pocket != NONE) infos[pocket].volume += volume_fractions[k];
   }
 }
 
@@ -184,15 +184,15 @@ void MPMFlowPockets::compare()
   for (int from = 0; from < nbefore; from++)
     if (!is_there[from])
       for (const auto &[to, many] : nearest(from)) common[{from, to}] = many;
-  of_before.clear();
-  for (const auto &[pair, many] : common) of_before.push_back({pair.first, pair.second, many});
+  common_cells.clear();
+  for (const auto &[pair, many] : common) common_cells.push_back({pair.first, pair.second, many});
 }
 
 /** Finds the pockets of cells of the lattice. A dry cell with its middle in a wall belongs to a pocket next
  *  to it. */
 void MPMFlowPockets::find_lattice(const MPMFlowPressure &water)
 {
-  of_lattice.assign(cells.size(), NONE);
+  pocket_of_cell.assign(cells.size(), NONE);
   const int dim = cells.lattice.dim;
   for (int64_t k = 0; k < cells.size(); k++) {
     int index[3];
@@ -200,9 +200,9 @@ void MPMFlowPockets::find_lattice(const MPMFlowPressure &water)
     bool in = true;
     for (int d = 0; d < dim; d++) in = step(index, d, 0) && in;
     if (!in) continue;
-    of_lattice[k] = labels[place(index)];
-    if (of_lattice[k] != NONE || solid.empty() || water.is_wet(k)) continue;
-    of_lattice[k] = next_to(index);
+    pocket_of_cell[k] = labels[place(index)];
+    if (pocket_of_cell[k] != NONE || solid.empty() || water.is_wet(k)) continue;
+    pocket_of_cell[k] = next_to(index);
   }
 }
 
@@ -210,12 +210,12 @@ void MPMFlowPockets::find_solid(const MPMFlowRegions *regions)
 {
   solid.clear();
   cut.clear();
-  rooms.clear();
+  volume_fractions.clear();
   if (!regions) return;
   const int dim = cells.lattice.dim;
   const double h = cells.lattice.h;
   solid.assign((size + 63) / 64, 0);
-  rooms.assign(size, 1.0f);
+  volume_fractions.assign(size, 1.0f);
   for (int64_t k = 0; k < size; k++) {
     int index[3];
     index_of(k, index);
@@ -232,7 +232,7 @@ void MPMFlowPockets::find_solid(const MPMFlowRegions *regions)
     for (int corners = 0; corners < 1 << dim && all_alike; corners++)
       all_alike = is_in(corners & 1, corners >> 1 & 1, corners >> 2 & 1) == middle;
     if (all_alike) {
-      if (middle) rooms[k] = 0.0f;
+      if (middle) volume_fractions[k] = 0.0f;
       continue;
     }
     int out = 0, all = 0;
@@ -242,7 +242,7 @@ void MPMFlowPockets::find_solid(const MPMFlowRegions *regions)
           all++;
           if (!is_in((a + 0.5) / SAMPLES, (b + 0.5) / SAMPLES, (c + 0.5) / SAMPLES)) out++;
         }
-    rooms[k] = (float) out / (float) all;
+    volume_fractions[k] = (float) out / (float) all;
     if (middle && out > 0) cut.push_back(k);
   }
 }
@@ -277,7 +277,8 @@ double MPMFlowPockets::memory_usage() const
 {
   return (wet.capacity() + closed.capacity() + closed_before.capacity() + solid.capacity()) *
       sizeof(uint64_t) +
-      rooms.capacity() * sizeof(float) + (stack.capacity() + cut.capacity()) * sizeof(int64_t) +
-      (labels.capacity() + labels_before.capacity() + of_lattice.capacity()) * sizeof(int) +
-      infos.capacity() * sizeof(Info) + of_before.capacity() * sizeof(Share);
+      volume_fractions.capacity() * sizeof(float) +
+      (stack.capacity() + cut.capacity()) * sizeof(int64_t) +
+      (labels.capacity() + labels_before.capacity() + pocket_of_cell.capacity()) * sizeof(int) +
+      infos.capacity() * sizeof(Info) + common_cells.capacity() * sizeof(Overlap);
 }

@@ -28,7 +28,7 @@ class MPMFlowPockets : protected Pointers {
 
   /** Number of cells that a new pocket has in common with one before. If no pocket has cells in common with the one before,
    *  the nearest ones take their place. */
-  struct Share {
+  struct Overlap {
     int from, to;
     bigint cells;
   };
@@ -39,21 +39,21 @@ class MPMFlowPockets : protected Pointers {
   MPMFlowPockets(class LAMMPS *, const MPMFlowLattice &);
   /** Finds the cells of the box that are solid, those with their middle in a region; null: none. */
   void find_solid(const MPMFlowRegions *);
-  /** Finds the pockets for the cells that are wet now. Returns false if nothing has changed; else shares() relate them to the
+  /** Finds the pockets for the cells that are wet now. Returns false if nothing has changed; else overlaps() relate them to the
    *  pockets before. Collective. */
   bool find(const MPMFlowPressure &);
   int n() const { return (int) infos.size(); }    ///< number of pockets
   bigint cells_of(int pocket) const { return infos[pocket].cells; }
   /** Volume of these cells that is not solid, in volumes of a cell. */
-  double room_of(int pocket) const { return infos[pocket].room; }
+  double volume_of(int pocket) const { return infos[pocket].volume; }
   /** Does a pocket reach an open face of the box? */
   bool is_open(int pocket) const { return infos[pocket].open; }
   /** Sum of the open shares of the cells of a pocket at a wall of the box. */
   double cells_at(int pocket, int axis, int side) const { return infos[pocket].at[axis][side]; }
-  const std::vector<Share> &shares() const { return of_before; }
+  const std::vector<Overlap> &overlaps() const { return common_cells; }
 
   /** Pocket of a cell of the lattice of the flow; NONE: it is in none, or beyond a wall. */
-  int of(int64_t number) const { return of_lattice[number]; }
+  int pocket(int64_t number) const { return pocket_of_cell[number]; }
 
   /** For restart files: pairs of the number of a pocket and the number of consecutive cells that have it. */
   std::vector<double> runs() const;
@@ -65,7 +65,7 @@ class MPMFlowPockets : protected Pointers {
  private:
   struct Info {
     bigint cells = 0;
-    double room = 0.0, at[3][2] = {};
+    double volume = 0.0, at[3][2] = {};
     bool open = false;
   };
 
@@ -74,11 +74,11 @@ class MPMFlowPockets : protected Pointers {
   int64_t size;
   std::vector<uint64_t> wet, closed, closed_before, solid;    // bits of cells
   std::vector<int64_t> cut;                                   // solid cells that are open in part
-  std::vector<float> rooms;                                   // of cells, with regions
-  std::vector<int> labels, labels_before, of_lattice;
+  std::vector<float> volume_fractions;                        // of cells, with regions
+  std::vector<int> labels, labels_before, pocket_of_cell;
   std::vector<int64_t> stack;
   std::vector<Info> infos;
-  std::vector<Share> of_before;
+  std::vector<Overlap> common_cells;
   int nbefore = 0;
 
   int64_t place(const int *index) const

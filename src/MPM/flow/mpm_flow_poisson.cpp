@@ -45,9 +45,9 @@ void MPMFlowPoisson::apply(const double *x, double *y)
   for (int i = 0; i < n; i++) y[i] = diagonal[i] * x[i] - sum[i];
   if (gas) gas->add(x, y);
   if (!bodies) return;
-  on_lattice(y, of_cells[1]);
-  bodies->add(on_lattice(x, of_cells[0]), of_cells[1].data());
-  for (int i = 0; i < n; i++) y[i] = of_cells[1][rows.cell_at(i)];
+  on_lattice(y, on_cells[1]);
+  bodies->add(on_lattice(x, on_cells[0]), on_cells[1].data());
+  for (int i = 0; i < n; i++) y[i] = on_cells[1][rows.cell_at(i)];
 }
 
 /** Corrects values of even cells by their residuals in sum. */
@@ -85,9 +85,9 @@ void MPMFlowPoisson::precondition(const double *r, double *z)
   for (int i = 0; i < neven; i++) z[i] = inverse[i] * (r[i] + sum[i]);
   std::copy_n(values.data() + neven, n - neven, z + neven);
   if (multigrid.closed_pools() == 0) return;
-  on_lattice(z, of_cells[0]);
-  multigrid.project(of_cells[0].data());
-  for (int i = 0; i < n; i++) z[i] = of_cells[0][rows.cell_at(i)];
+  on_lattice(z, on_cells[0]);
+  multigrid.project(on_cells[0].data());
+  for (int i = 0; i < n; i++) z[i] = on_cells[0][rows.cell_at(i)];
 }
 
 void MPMFlowPoisson::products(int n, const double *const *a, const double *const *b, double *value)
@@ -95,14 +95,14 @@ void MPMFlowPoisson::products(int n, const double *const *a, const double *const
   mine.assign(n, 0.0);
   for (int k = 0; k < n; k++)
     for (int i = 0; i < rows.size(); i++) mine[k] += a[k][i] * b[k][i];
-  sum_in_order(lmp, n, mine.data(), of_ranks, value);
+  sum_in_order(lmp, n, mine.data(), rank_sums, value);
 }
 
 double MPMFlowPoisson::memory_usage() const
 {
   double reals = 0.0;
   for (const auto *list :
-       {&diagonal, &weight, &inverse, &sum, &parts, &mine, &of_ranks, &of_cells[0], &of_cells[1]})
+       {&diagonal, &weight, &inverse, &sum, &parts, &mine, &rank_sums, &on_cells[0], &on_cells[1]})
     reals += list->capacity();
   return reals * sizeof(double) + part.capacity() * sizeof(int) + multigrid.memory_usage();
 }

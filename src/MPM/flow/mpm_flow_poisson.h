@@ -53,8 +53,8 @@ class MPMFlowPoisson : public MPM_NS::LinearSystem {
   const MPMFlowLattice &cells;
   MPMFlowRows &rows;
   std::vector<int> part;    // [place] part of the multigrid, see CellMultigrid::part_of()
-  std::vector<double> inverse, sum, parts, mine, of_ranks;
-  std::vector<double> of_cells[2];    // on the lattice
+  std::vector<double> inverse, sum, parts, mine, rank_sums;
+  std::vector<double> on_cells[2];    // on the lattice
 
   void correct();
   const double *on_lattice(const double *of, std::vector<double> &to) const;

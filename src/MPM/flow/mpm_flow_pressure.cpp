@@ -29,7 +29,7 @@ static constexpr double HALF = 0.5 + 1.0e-9, SURROUNDED = 0.6;
 static constexpr double UNSURE = 0.25;
 // open share of the surroundings of a cell below which its neighbors decide whether it is wet, if it has
 // a least share of water
-static constexpr double ROOM = 0.5, LEAST = 0.2;
+static constexpr double OPEN_VOLUME = 0.5, LEAST = 0.2;
 
 /** Depth below a flat surface, in spacings, at which a hat function is filled by this share. */
 static double depth(double share)
@@ -40,9 +40,8 @@ static double depth(double share)
 
 double MPMFlowPressure::distance(int64_t wet_cell, int64_t dry) const
 {
-  if (!(share_of[wet_cell] > HALF))
-    return 0.5;    // surrounded: the place of the surface is unknown
-  const double in = depth(share_of[wet_cell]), out = depth(share_of[dry]);
+  if (!(filled[wet_cell] > HALF)) return 0.5;    // surrounded: the place of the surface is unknown
+  const double in = depth(filled[wet_cell]), out = depth(filled[dry]);
   return std::max(nearest, in / (in - out));
 }
 
@@ -54,24 +53,24 @@ double MPMFlowPressure::weight_to(int64_t wet_cell, int64_t other) const
   return 1.0 / (h * h * (is_wet(other) ? 1.0 : distance(wet_cell, other)));
 }
 
-double MPMFlowPressure::open(int64_t cell, int axis) const
+double MPMFlowPressure::aperture(int64_t cell, int axis) const
 {
-  return regions ? regions->open(cell, axis) : 1.0;
+  return regions ? regions->aperture(cell, axis) : 1.0;
 }
 
 /** Open share of a side of a cell, also of one in a wall of the box. */
-double MPMFlowPressure::open_side(const MPMFlowLattice::Cell &cell, int side) const
+double MPMFlowPressure::aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const
 {
   const int64_t of = side % 2 ? cell.near[side] : cell.number;
-  return of < 0 ? 1.0 : open(of, side / 2);
+  return of < 0 ? 1.0 : aperture(of, side / 2);
 }
 
 double MPMFlowPressure::density_in(const MPMFlowLattice::Cell &cell) const
 {
-  if (!lightness) return 1.0;
+  if (!inverse_density) return 1.0;
   double sum = 0.0, sides = 0.0;
   for (int s = 0; s < 2 * cells.lattice.dim; s++) {
-    const double side = open_side(cell, s);
+    const double side = aperture_of_side(cell, s);
     if (side == 0.0) continue;
     sum += side / light(s % 2 ? cell.near[s] : cell.number, s / 2);
     sides += side;
@@ -86,7 +85,7 @@ double MPMFlowPressure::flux_of_side(const double *velocity, const MPMFlowLattic
   const int64_t of = side % 2 ? cell.near[side] : cell.number;
   const bool wall = cell.walls >> side & 1;
   const double u = wall ? 0.0 : velocity[of * cells.lattice.dim + axis];
-  return regions ? regions->open(of, axis) * u + regions->flux(of, axis) : u;
+  return regions ? regions->aperture(of, axis) * u + regions->flux(of, axis) : u;
 }
 
 /** Are the neighbors of a cell filled so well that the cell between them is water? At a flat surface, their
@@ -96,9 +95,9 @@ bool MPMFlowPressure::is_surrounded(const MPMFlowLattice::Cell &cell) const
   double sum = 0.0, sides = 0.0;
   for (int s = 0; s < 2 * cells.lattice.dim; s++) {
     if (cell.walls >> s & 1) continue;
-    const double side = open_side(cell, s);
+    const double side = aperture_of_side(cell, s);
     sides += side;
-    sum += side * std::min(2.0, share_of[cell.near[s]]);
+    sum += side * std::min(2.0, filled[cell.near[s]]);
   }
   return sum > SURROUNDED * sides;
 }
@@ -109,13 +108,13 @@ void MPMFlowPressure::follow_neighbors()
 {
   std::vector<int> changed;
   for (const auto &cell : cells.cells) {
-    if (regions->room(cell.number) > ROOM || regions->is_closed(cell.number) ||
-        is_wet(cell.number) || share_of[cell.number] < LEAST)
+    if (regions->volume_fraction(cell.number) > OPEN_VOLUME || regions->is_closed(cell.number) ||
+        is_wet(cell.number) || filled[cell.number] < LEAST)
       continue;
     double wet_sides = 0.0, sides = 0.0;
     for (int s = 0; s < 2 * cells.lattice.dim; s++) {
       if (cell.walls >> s & 1) continue;
-      const double side = open_side(cell, s);
+      const double side = aperture_of_side(cell, s);
       sides += side;
       if (is_wet(cell.near[s])) wet_sides += side;
     }
@@ -128,7 +127,7 @@ void MPMFlowPressure::follow_neighbors()
 
 void MPMFlowPressure::find_wet(const std::vector<double> &share)
 {
-  share_of = share.data();
+  filled = share.data();
   flag.assign(cells.size(), 0.0);
   for (const auto &cell : cells.cells)
     if (!(regions && regions->is_closed(cell.number)))
@@ -140,9 +139,9 @@ void MPMFlowPressure::find_wet(const std::vector<double> &share)
   find_weights();
 }
 
-void MPMFlowPressure::set_mobility(const std::vector<double> *of_faces)
+void MPMFlowPressure::set_mobility(const std::vector<double> *faces)
 {
-  mobility = of_faces;
+  mobility = faces;
   find_weights();
 }
 
@@ -159,7 +158,7 @@ void MPMFlowPressure::find_weights()
     one.diagonal = 0.0;
     for (int s = 0; s < sides; s++) {
       const int other = cell.near[s];
-      const double side = cell.walls >> s & 1 ? 0.0 : open_side(cell, s);
+      const double side = cell.walls >> s & 1 ? 0.0 : aperture_of_side(cell, s);
       const bool wall = side == 0.0;
       one.weight[s] = wall ? 0.0 : side * weight_to(cell.number, other);
       if (!wall) one.weight[s] *= light(s % 2 ? other : cell.number, s / 2);
@@ -186,27 +185,27 @@ void MPMFlowPressure::find_rows()
 }
 
 /** Sorts the equations by rows; screen: 1/length^2. */
-void MPMFlowPressure::weigh_rows(double screen, std::vector<double> &of_cell,
-                                 std::vector<double> &of_sides) const
+void MPMFlowPressure::weigh_rows(double screen, std::vector<double> &to_diagonal,
+                                 std::vector<double> &to_weight) const
 {
   const int sides = rows.sides();
-  of_cell.resize(rows.size());
-  of_sides.resize((std::size_t) rows.size() * sides);
+  to_diagonal.resize(rows.size());
+  to_weight.resize((std::size_t) rows.size() * sides);
   for (int i = 0; i < rows.size(); i++) {
     const auto &one = wet[rows.row_at(i)];
-    of_cell[i] = one.diagonal + screen;
+    to_diagonal[i] = one.diagonal + screen;
     for (int s = 0; s < sides; s++)
-      of_sides[(std::size_t) i * sides + s] = one.near[s] < 0 ? 0.0 : one.weight[s];
+      to_weight[(std::size_t) i * sides + s] = one.near[s] < 0 ? 0.0 : one.weight[s];
   }
 }
 
 /** Copies values of rows to all cells of all ranks. */
-void MPMFlowPressure::to_cells(const std::vector<double> &of_rows,
-                               std::vector<double> &of_cells) const
+void MPMFlowPressure::to_cells(const std::vector<double> &row_values,
+                               std::vector<double> &cell_values) const
 {
-  of_cells.assign(size(), 0.0);
-  for (int i = 0; i < rows.size(); i++) of_cells[rows.cell_at(i)] = of_rows[i];
-  cells.publish(of_cells.data(), 1);
+  cell_values.assign(size(), 0.0);
+  for (int i = 0; i < rows.size(); i++) cell_values[rows.cell_at(i)] = row_values[i];
+  cells.publish(cell_values.data(), 1);
 }
 
 /** Gives the same equations to the multigrid preconditioner: owners of cells give the weights of their upper
@@ -349,7 +348,7 @@ void MPMFlowPressure::subtract_gradient(const std::vector<double> &of, const dou
       const int here = cell.number, lower = cell.near[2 * d];
       const bool in = is_wet(here), below = is_wet(lower), wall = cell.walls >> 2 * d & 1;
       after[face] = known[face] = 0.0;
-      if (wall || ((in || below) && open(here, d) > 0.0)) known[face] = 1.0;
+      if (wall || ((in || below) && aperture(here, d) > 0.0)) known[face] = 1.0;
       if (wall || known[face] == 0.0) continue;
       const double weight = light(here, d) *
           (in ? weight_to(here, lower) : weight_to(lower, here)) *
@@ -364,7 +363,8 @@ bool MPMFlowPressure::is_deep(const MPMFlowLattice::Cell &cell) const
 {
   bool deep = is_wet(cell.number);
   for (int s = 0; s < 2 * cells.lattice.dim; s++)
-    deep = deep && (cell.walls >> s & 1 || is_wet(cell.near[s]) || open_side(cell, s) == 0.0);
+    deep =
+        deep && (cell.walls >> s & 1 || is_wet(cell.near[s]) || aperture_of_side(cell, s) == 0.0);
   return deep;
 }
 
@@ -372,8 +372,8 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
                                     const SolveGoal &goal)
 {
   const double h = cells.lattice.h;
-  if (lightness) {    // spreading of points has no density
-    lightness = nullptr;
+  if (inverse_density) {    // spreading of points has no density
+    inverse_density = nullptr;
     find_weights();
   }
   const double screen = 1.0 / (SPREAD * SPREAD * h * h);
@@ -382,8 +382,8 @@ SolveReport MPMFlowPressure::spread(double rate, double *displacement, double *k
   solution.resize(rows.size());
   for (int i = 0; i < rows.size(); i++) {
     const auto &cell = cells.cells[wet[rows.row_at(i)].cell];
-    double more = share_of[cell.number] - 1.0;
-    if (regions && regions->room(cell.number) < 1.0)
+    double more = filled[cell.number] - 1.0;
+    if (regions && regions->volume_fraction(cell.number) < 1.0)
       more = std::max(0.0, more - UNSURE);
     else if (more < 0.0 && !is_deep(cell))
       more = 0.0;
@@ -437,7 +437,7 @@ void MPMFlowPressure::extend_into_air(std::vector<double> &values,
     int n = 0;
     for (int s = 0; s < 2 * cells.lattice.dim; s++) {
       const int other = cell.near[s];
-      if (cell.walls >> s & 1 || !is_wet(other) || open_side(cell, s) == 0.0) continue;
+      if (cell.walls >> s & 1 || !is_wet(other) || aperture_of_side(cell, s) == 0.0) continue;
       const double in =
           distance(other, cell.number);    // from the middle of the wet cell to the surface
       const double at = surface ? (*surface)[(int64_t) (s % 2 ? other : cell.number) * dim + s / 2]
@@ -463,7 +463,7 @@ double MPMFlowPressure::at_wall(int axis, int side) const
     const int next = cell.near[2 * axis + 1 - side];
     const bool both = is_wet(next) && !(cell.walls >> (2 * axis + 1 - side) & 1);
     const double value = both ? 1.5 * psi[cell.number] - 0.5 * psi[next] : psi[cell.number];
-    sum += open_side(cell, 2 * axis + side) * value;
+    sum += aperture_of_side(cell, 2 * axis + side) * value;
   }
   return sum * std::pow(cells.lattice.h, cells.lattice.dim - 1);
 }

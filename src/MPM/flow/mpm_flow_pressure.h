@@ -54,7 +54,7 @@ class MPMFlowPressure : protected Pointers {
   const std::vector<double> *sources = nullptr;
 
   /** [cell][dim] density in psi over the density at faces, of all cells; null: there is one density. */
-  const std::vector<double> *lightness = nullptr;
+  const std::vector<double> *inverse_density = nullptr;
 
   /** Uses Fourier transforms as the preconditioner, instead of multigrid; see MPMFlowFourier::is_there(). */
   void use_fourier();
@@ -76,10 +76,10 @@ class MPMFlowPressure : protected Pointers {
   bool is_next_to_water(const MPMFlowLattice::Cell &cell, int axis) const
   {
     return cell.walls >> 2 * axis & 1 ||
-        ((is_wet(cell.number) || is_wet(cell.near[2 * axis])) && open(cell.number, axis) > 0.0);
+        ((is_wet(cell.number) || is_wet(cell.near[2 * axis])) && aperture(cell.number, axis) > 0.0);
   }
   /** Open share of the lower face of a cell along an axis. */
-  double open(int64_t cell, int axis) const;
+  double aperture(int64_t cell, int axis) const;
 
   /** Least distance of the surface from the middle of a cell in the equations, in spacings. If surfaces have a pressure, its
    *  difference to the pressure in the cell loses as many digits as this has. */
@@ -146,7 +146,7 @@ class MPMFlowPressure : protected Pointers {
   bool rows_are_there = false, levels_are_there = false;    // for the cells that are wet now
   std::vector<Wet> wet;
   std::vector<double> excess, lift, flag, right_side, solution;
-  const double *share_of = nullptr;
+  const double *filled = nullptr;
   const std::vector<double> *mobility = nullptr;
   MPMFlowSpread equal_filling;
   std::vector<double> diagonal, weight;    // of the rows of equal_filling
@@ -155,10 +155,10 @@ class MPMFlowPressure : protected Pointers {
   int64_t size() const { return cells.size(); }
   void find_rows();
   void weigh_rows(double screen, std::vector<double> &diagonal, std::vector<double> &weight) const;
-  void to_cells(const std::vector<double> &of_rows, std::vector<double> &of_cells) const;
+  void to_cells(const std::vector<double> &row_values, std::vector<double> &cell_values) const;
   void find_lift(const std::vector<double> &surface);
   double weight_to(int64_t wet_cell, int64_t other) const;
-  double open_side(const MPMFlowLattice::Cell &cell, int side) const;
+  double aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const;
   double outflow(const double *velocity, const MPMFlowLattice::Cell &) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,
                          double *known, const std::vector<double> *surface = nullptr) const;
@@ -169,7 +169,7 @@ class MPMFlowPressure : protected Pointers {
   void find_box();
   double light(int64_t cell, int axis) const
   {
-    return lightness ? (*lightness)[cell * cells.lattice.dim + axis] : 1.0;
+    return inverse_density ? (*inverse_density)[cell * cells.lattice.dim + axis] : 1.0;
   }
 };
 

@@ -12,6 +12,7 @@
 #include "base/mpm_options.h"
 #include "contact/fix_mpm_rigid.h"
 #include "field/mpm_physics.h"
+#include "flow/mpm_flow_cut_cell.h"
 #include "walls/mpm_region_motion.h"
 
 #include "comm.h"
@@ -26,109 +27,12 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// distance up to which a wall is looked at, and up to which closed faces have its normal velocity, in spacings
-static constexpr double FAR = 4.0, HELD = 3.5;
-// distance between two regions from which on there is a gap, in spacings
-static constexpr double LEAST_GAP = 0.05;
+// distance up to which closed faces have the normal velocity of a wall, in spacings
+static constexpr double HELD = 3.5;
 // open share of a face that is only rounding
 static constexpr double NO_SHARE = 1.0e-9;
 // distance that points are kept outside of walls, in spacings
 static constexpr double MARGIN = 1.0e-6;
-// open share of the surroundings of a cell below which the cells around count, too
-static constexpr double LITTLE_ROOM = 0.3;
-// places along an axis at which the open share of surroundings is found
-static constexpr int PLACES = 8;
-// least cosine between a floor and the surface; open share from which on a cell is whole; a cell has a
-// surface with a share of water above SURFACE and below 1 - SURFACE; least slope of shares that shows
-// the direction of the surface, and what keeps its equations regular
-static constexpr double FLOOR = 0.7, WHOLE = 0.75, SURFACE = 0.1, LEAST_SLOPE = 0.3,
-                        REGULAR = 1.0e-3;
-// layers of closed cells that points near walls reach
-static constexpr int LAYERS = 2;
-
-namespace {
-/** Share of a segment, and of a triangle, in which a linear function with these values at the ends is
- *  positive. */
-double positive(double a, double b)
-{
-  if (a >= 0.0 && b >= 0.0) return 1.0;
-  if (a <= 0.0 && b <= 0.0) return 0.0;
-  return std::max(a, b) / std::fabs(a - b);
-}
-
-double positive(double a, double b, double c)
-{
-  if (a >= 0.0 && b >= 0.0 && c >= 0.0) return 1.0;
-  if (a <= 0.0 && b <= 0.0 && c <= 0.0) return 0.0;
-  const int n = (a > 0.0) + (b > 0.0) + (c > 0.0);
-  const double sign = n == 1 ? 1.0 : -1.0;    // makes the corner that is alone on its side positive
-  a *= sign;
-  b *= sign;
-  c *= sign;
-  double share;
-  if (a > 0.0)
-    share = a * a / ((a - b) * (a - c));
-  else if (b > 0.0)
-    share = b * b / ((b - a) * (b - c));
-  else
-    share = c * c / ((c - a) * (c - b));
-  return n == 1 ? share : 1.0 - share;
-}
-
-/** The same for a square with these corners in order: the mean over both ways to divide it into triangles. */
-double positive(double a, double b, double c, double d)
-{
-  return 0.25 * (positive(a, b, c) + positive(a, c, d) + positive(a, b, d) + positive(b, c, d));
-}
-
-/** Adds to sum[2] the length, and its moment about the middle, of the part of a segment of length one in
- *  which a linear function is positive. */
-void add_positive(double a, double b, double *sum)
-{
-  const double length = positive(a, b);
-  sum[0] += length;
-  sum[1] += 0.5 * length * (1.0 - length) * (a > b ? -1.0 : 1.0);
-}
-
-/** Adds to sum[3] the area and its moments, times weight, of the part of a triangle in which a linear
- *  function with the values f at the corners is positive. */
-void add_positive(const double f[3], const double corner[3][2], double weight, double *sum)
-{
-  double x[4][2];    // corners of the positive part, a triangle or a square
-  int n = 0;
-  for (int k = 0; k < 3; k++) {
-    const int next = (k + 1) % 3;
-    if (f[k] > 0.0) std::copy_n(corner[k], 2, x[n++]);
-    if ((f[k] > 0.0) == (f[next] > 0.0)) continue;
-    const double part = f[k] / (f[k] - f[next]);
-    for (int e = 0; e < 2; e++) x[n][e] = corner[k][e] + part * (corner[next][e] - corner[k][e]);
-    n++;
-  }
-  for (int k = 2; k < n; k++) {
-    const double area = 0.5 * weight *
-        std::fabs((x[k - 1][0] - x[0][0]) * (x[k][1] - x[0][1]) -
-                  (x[k - 1][1] - x[0][1]) * (x[k][0] - x[0][0]));
-    sum[0] += area;
-    for (int e = 0; e < 2; e++) sum[1 + e] += area * (x[0][e] + x[k - 1][e] + x[k][e]) / 3.0;
-  }
-}
-
-/** The same for a square of area one with these corners in order, about its middle. */
-void add_positive(double a, double b, double c, double d, double *sum)
-{
-  const double f[4] = {a, b, c, d};
-  constexpr double x[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
-  for (int left_out = 0; left_out < 4; left_out++) {
-    double at[3], corner[3][2];
-    for (int k = 0; k < 3; k++) {
-      const int from = k < left_out ? k : k + 1;
-      at[k] = f[from];
-      std::copy_n(x[from], 2, corner[k]);
-    }
-    add_positive(at, corner, 0.5, sum);
-  }
-}
-}    // namespace
 
 /* ---------------------------------------------------------------------- */
 
@@ -227,7 +131,7 @@ void MPMFlowRegions::find(double duration)
       std::copy_n(wall.last, 9, wall.older);    // as if it had moved like that before
     wall.has_last = true;
   }
-  find_shares();
+  find_apertures();
   find_cuts();
   if (any_bodies) warn_of_bodies();
   for (auto &wall : walls)
@@ -343,7 +247,7 @@ double MPMFlowRegions::closed_by(int wall, int64_t cell, int axis, double *arm) 
   face_middle(cell, axis, x);
   MathExtra::sub3(x, walls[wall].center, arm);
   nearest_image(*domain, arm);
-  return 1.0 - shares[face];
+  return 1.0 - apertures[face];
 }
 
 void MPMFlowRegions::find_wall(int wall, const MPMFlowLattice::Cell &cell, double *way) const
@@ -369,7 +273,7 @@ void MPMFlowRegions::set_velocity(int w, const double *u)
     if (body_faces[face] != w) continue;
     face_middle(face / dim, face % dim, x);
     velocity_at(w, x, v);
-    fluxes[face] = (1.0 - shares[face]) * v[face % dim];
+    fluxes[face] = (1.0 - apertures[face]) * v[face % dim];
   }
   for (auto &held : helds)
     if (held.wall == w) velocity_at(w, held.x, held.velocity);
@@ -389,15 +293,15 @@ void MPMFlowRegions::place(const int *index, const double *offset, double *x) co
    This is done for all cells that this rank has, so that nothing has to be communicated.
 ------------------------------------------------------------------------- */
 
-void MPMFlowRegions::find_shares()
+void MPMFlowRegions::find_apertures()
 {
   const auto &lattice = cells.lattice;
   const double h = lattice.h, far = FAR * h, near = 1.01 * std::sqrt((double) dim) * h;
   const int64_t size = cells.size();
   const int ncorner = 1 << dim;
   int nearest;
-  shares.assign(size * dim, 1.0);
-  rooms.assign(size, 1.0);
+  apertures.assign(size * dim, 1.0);
+  volume_fractions.assign(size, 1.0);
   levels.assign(size, far);
   if (any_moves) fluxes.assign(size * dim, 0.0);
   if (any_bodies) body_faces.assign(size * dim, -1);
@@ -411,8 +315,8 @@ void MPMFlowRegions::find_shares()
     const double level = levels[number] = distance(x, far, nearest);
     if (level > near) continue;
     if (level < -near) {
-      rooms[number] = 0.0;
-      std::fill_n(shares.begin() + number * dim, dim, 0.0);
+      volume_fractions[number] = 0.0;
+      std::fill_n(apertures.begin() + number * dim, dim, 0.0);
     } else {
       double corner[8], slope[3] = {0.0, 0.0, 0.0};
       for (int k = 0; k < ncorner; k++) {
@@ -425,42 +329,26 @@ void MPMFlowRegions::find_shares()
       }
       for (int d = 0; d < dim; d++) {
         const int e = d == 0 ? 2 : 1, f = d == 2 ? 2 : 4;    // the other axes
-        const double share = dim == 2 ? positive(corner[0], corner[e])
-                                      : positive(corner[0], corner[e], corner[e | f], corner[f]);
-        shares[number * dim + d] = share < NO_SHARE ? 0.0 : share;
+        const double share = dim == 2
+            ? MPMFlowCutCell::positive(corner[0], corner[e])
+            : MPMFlowCutCell::positive(corner[0], corner[e], corner[e | f], corner[f]);
+        apertures[number * dim + d] = share < NO_SHARE ? 0.0 : share;
         slope[d] /= ncorner / 2;
       }
 
       // the surroundings, with the plane that is nearest to these distances
 
-      double sum = 0.0;
-      const double step = 2.0 / PLACES;
-      double width = 0.0;
-      for (int d = 0; d < dim; d++) width += std::fabs(slope[d]) * step;
-      for (int a = 0; a < PLACES; a++)
-        for (int b = 0; b < PLACES; b++)
-          for (int c = 0; c < (dim == 3 ? PLACES : 1); c++) {
-            const int k[3] = {a, b, c};
-            double weight = 1.0, at = level;
-            for (int d = 0; d < dim; d++) {
-              const double t = (k[d] + 0.5) * step - 1.0;
-              weight *= (1.0 - std::fabs(t)) * step;
-              at += slope[d] * t;
-            }
-            sum +=
-                weight * (width > 0.0 ? std::max(0.0, std::min(0.5 + at / width, 1.0)) : at > 0.0);
-          }
-      rooms[number] = sum;
+      volume_fractions[number] = MPMFlowCutCell::positive_in_hat(dim, level, slope);
     }
     for (int d = 0; any_moves && d < dim; d++) {
       const int64_t face = number * dim + d;
-      if (shares[face] == 1.0) continue;
+      if (apertures[face] == 1.0) continue;
       double y[3], v[3];
       int wall;
       face_middle(number, d, y);
       distance(y, far, wall);
       velocity_at(wall, y, v);
-      fluxes[face] = (1.0 - shares[face]) * v[d];
+      fluxes[face] = (1.0 - apertures[face]) * v[d];
       if (walls[wall].body) body_faces[face] = wall;
     }
   }
@@ -478,24 +366,6 @@ void MPMFlowRegions::find_cuts()
   helds.clear();
   int nthin = 0, ngaps = 0;
 
-  // Less than a spacing between two regions that face each other: a cell has only a part of one wall, so
-  // that forces on the other wall would count as forces on this one
-
-  const auto is_gap = [&](const MPMFlowLattice::Cell &cell) {
-    constexpr double AGAINST = -0.5, middle[3] = {0.5, 0.5, 0.5};
-    double x[3], normal[2][3];
-    int wall;
-    place(cell.index, middle, x);
-    const double first = distance(x, far, wall);
-    normal_at(wall, x, normal[0]);
-    for (int w = 0; w < n(); w++) {
-      const double sum = w == wall ? 0.0 : first + distance_from(walls[w], x, far);
-      if (!(sum > LEAST_GAP * h && sum < 0.999 * h)) continue;
-      normal_at(w, x, normal[1]);
-      if (MathExtra::dot3(normal[0], normal[1]) < AGAINST) return 1;
-    }
-    return 0;
-  };
   for (int k = 0; k < (int) cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
     Cut cut = {};
@@ -503,15 +373,15 @@ void MPMFlowRegions::find_cuts()
     double most = 0.0;
     bool whole = true;
     for (int d = 0; d < dim; d++) {
-      const double low = open(cell.number, d), high = open(cell.near[2 * d + 1], d);
+      const double low = aperture(cell.number, d), high = aperture(cell.near[2 * d + 1], d);
       if (!(cell.walls >> 2 * d & 1)) most = std::max(most, low);
       if (!(cell.walls >> 2 * d & 2)) most = std::max(most, high);
       whole = whole && low == 1.0 && high == 1.0;
       cut.area[d] = (low - high) * face_area;
     }
     if (most == 0.0) flag[cell.number] = 1.0;
-    if (!told_of_thin && levels[cell.number] < 0.5 * h) nthin += is_thin(cell);
-    if (!told_of_thin && std::fabs(levels[cell.number]) < 0.5 * h) ngaps += is_gap(cell);
+    if (!warned_of_thin && levels[cell.number] < 0.5 * h) nthin += is_thin(cell);
+    if (!warned_of_thin && std::fabs(levels[cell.number]) < 0.5 * h) ngaps += is_gap(cell);
     double x[3];
     if (!whole && most > 0.0) {
       constexpr double middle[3] = {0.5, 0.5, 0.5};
@@ -523,7 +393,7 @@ void MPMFlowRegions::find_cuts()
     }
     if (levels[cell.number] > 2.0 * h || levels[cell.number] <= -HELD * h) continue;
     for (int d = 0; d < dim; d++) {
-      if (open(cell.number, d) > 0.0 || cell.walls >> 2 * d & 1) continue;
+      if (aperture(cell.number, d) > 0.0 || cell.walls >> 2 * d & 1) continue;
       double offset[3] = {0.5, 0.5, 0.5};
       offset[d] = 0.0;
       place(cell.index, offset, x);
@@ -539,19 +409,7 @@ void MPMFlowRegions::find_cuts()
   }
   cells.publish(flag.data(), 1);
   for (int64_t number = 0; number < cells.size(); number++) closed[number] = flag[number] > 0.0;
-  if (told_of_thin) return;
-  warn_of_thin(nthin);
-  int all_gaps;
-  MPI_Allreduce(&ngaps, &all_gaps, 1, MPI_INT, MPI_SUM, world);
-  if (all_gaps == 0) return;
-  told_of_thin = true;
-  if (comm->me == 0)
-    error->warning(
-        FLERR,
-        "Fix mpm/incompressible: regions leave gaps of less than a node spacing in {} cells, in "
-        "which the flow, its pressure, and the forces on either region are wrong: use a smaller "
-        "node spacing, or close the gap",
-        all_gaps);
+  if (!warned_of_thin) warn_of_thin(nthin, ngaps);
 }
 
 /* ----------------------------------------------------------------------
@@ -564,7 +422,8 @@ void MPMFlowRegions::find_moments(Cut &cut) const
   const auto &cell = cells.cells[cut.cell];
   const double h = cells.lattice.h, far = FAR * h, volume = cells.lattice.cell_volume();
   const int ncorner = 1 << dim;
-  double level[8], of_face[3][2][3] = {};    // [axis][side]: area, and moments along the other axes
+  double level[8],
+      face_areas[3][2][3] = {};    // [axis][side]: area, and moments along the other axes
   for (int k = 0; k < ncorner; k++) {
     const double offset[3] = {(double) (k & 1), (double) (k >> 1 & 1), (double) (k >> 2 & 1)};
     double x[3];
@@ -578,10 +437,11 @@ void MPMFlowRegions::find_moments(Cut &cut) const
     for (int s = 0; s < 2; s++) {
       const int at = s ? 1 << d : 0;
       if (dim == 2)
-        add_positive(level[at], level[at | e], of_face[d][s]);
+        MPMFlowCutCell::add_positive(level[at], level[at | e], face_areas[d][s]);
       else
-        add_positive(level[at], level[at | e], level[at | e | f], level[at | f], of_face[d][s]);
-      faces += 0.5 * of_face[d][s][0];
+        MPMFlowCutCell::add_positive(level[at], level[at | e], level[at | e | f], level[at | f],
+                                     face_areas[d][s]);
+      faces += 0.5 * face_areas[d][s][0];
     }
     square += cut.area[d] * cut.area[d];
   }
@@ -590,7 +450,7 @@ void MPMFlowRegions::find_moments(Cut &cut) const
   for (int d = 0; d < dim; d++)
     for (int e = 0; e < dim; e++) {
       const int k = 1 + (e > (d == 0 ? 1 : 0));    // index of e among the axes other than d
-      const auto *const low = of_face[d][0], *const high = of_face[d][1];
+      const auto *const low = face_areas[d][0], *const high = face_areas[d][1];
       cut.moment[d][e] = volume * (d == e ? open - 0.5 * (low[0] + high[0]) : low[k] - high[k]);
     }
 }
@@ -628,263 +488,7 @@ void MPMFlowRegions::set_motion(const std::vector<double> &all)
   }
 }
 
-/** Is a place in a wall, and has it come there by the motion of the last two steps? */
-MPMFlowRegions::Meets MPMFlowRegions::meets(int wall, const double *x) const
-{
-  const double far = FAR * cells.lattice.h;
-  if (distance_from(walls[wall], x, far) >= 0.0) return AWAY;
-  double v[3], before[3];    // the place that was as far from the wall as x is now
-  velocity_at(wall, x, v);
-  for (int d = 0; d < 3; d++) before[d] = x[d] + 2.0 * duration_of_motion * v[d];
-  return distance_from(walls[wall], before, far) >= 0.0 ? COMES : INSIDE;
-}
-
-/** Warns of bodies that have come into walls or regions. Bodies touch nothing, so that a stone would go on
- *  through the floor unnoticed. Overlap at the start of a run is intended, also where water, and with it the
- *  cells in which overlap is seen, comes later. */
-void MPMFlowRegions::warn_of_bodies()
-{
-  constexpr int FACES = 6;
-  const double h = cells.lattice.h;
-  std::vector<int> mine((FACES + 1) * n(), 0), all(mine.size());
-  for (const auto &cell : cells.cells) {
-    if (levels[cell.number] > h || levels[cell.number] < -h) continue;
-    for (int w = 0; w < n(); w++) {
-      if (!walls[w].body) continue;
-      int *const here = &mine[(FACES + 1) * w];
-      double offset[3] = {0.5, 0.5, 0.5}, x[3];
-      for (int k = 0; k < 2 * dim; k++) {
-        if (!(cell.walls >> k & 1) || here[k] == COMES) continue;
-        offset[k / 2] = k % 2;
-        place(cell.index, offset, x);
-        offset[k / 2] = 0.5;
-        here[k] = std::max<int>(here[k], meets(w, x));
-      }
-      if (here[FACES] == COMES || !(levels[cell.number] < 0.0)) continue;
-      place(cell.index, offset, x);
-      const int own = meets(w, x);
-      for (int other = 0; other < n() && own != AWAY; other++) {
-        const int its = other == w ? AWAY : meets(other, x);
-        if (its != AWAY) here[FACES] = std::max({here[FACES], own, its});
-      }
-    }
-  }
-  MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_INT, MPI_MAX, world);
-  const bool first = met.empty();
-  met.resize(all.size());
-  for (int k = 0; k < (int) all.size(); k++) {
-    if (all[k] == AWAY || met[k]) continue;
-    met[k] = 1;
-    if (all[k] != COMES || first) continue;
-    const int face = k % (FACES + 1);
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     "Fix mpm/incompressible: the body of fix {} goes through {}, as bodies in a "
-                     "flow touch neither each other nor walls: end the run before, or hold it",
-                     walls[k / (FACES + 1)].body->id,
-                     face == FACES ? std::string("another region")
-                                   : fmt::format("wall {}{}", (char) ('x' + face / 2),
-                                                 face % 2 ? "hi" : "lo"));
-  }
-}
-
-/** Is there a wall between the middles of opposite faces that are both open? */
-bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
-{
-  constexpr double OPEN = 0.75, TOWARDS = 0.5;
-  const double h = cells.lattice.h;
-  for (int d = 0; d < dim; d++) {
-    if (open(cell.number, d) < OPEN || open(cell.near[2 * d + 1], d) < OPEN) continue;
-    double from_wall[2], sum = 0.0;
-    for (int s = 0; s < 2; s++) {
-      double offset[3] = {0.5, 0.5, 0.5}, x[3], n[3];
-      offset[d] = s;
-      place(cell.index, offset, x);
-      int wall;
-      sum += distance(x, FAR * h, wall);
-      normal_at(wall, x, n);
-      from_wall[s] = n[d];
-    }
-    if (sum < 1.001 * h && from_wall[0] < -TOWARDS && from_wall[1] > TOWARDS && !is_corner(cell, d))
-      return true;
-  }
-  return false;
-}
-
-/** A corner of a wall that ends in the cell is as thin there, but lets nothing through: next to the cell, the
- *  wall is thicker than a cell. */
-bool MPMFlowRegions::is_corner(const MPMFlowLattice::Cell &cell, int axis) const
-{
-  // cells up to which a corner of 60 degrees gets that thick, wherever it ends in the cell
-  constexpr int NEAR = 2;
-  for (int e = 0; e < dim; e++) {
-    if (e == axis) continue;
-    for (int along = -NEAR; along <= NEAR; along++) {
-      int index[3] = {cell.index[0], cell.index[1], cell.index[2]}, wall;
-      index[e] += along;
-      bool solid = along != 0;
-      for (int s = 0; s < 2 && solid; s++) {
-        double offset[3] = {0.5, 0.5, 0.5}, x[3];
-        offset[axis] = s;
-        place(index, offset, x);
-        solid = distance(x, FAR * cells.lattice.h, wall) < 0.0;
-      }
-      if (solid) return true;
-    }
-  }
-  return false;
-}
-
-void MPMFlowRegions::warn_of_thin(int nthin)
-{
-  int all;
-  MPI_Allreduce(&nthin, &all, 1, MPI_INT, MPI_SUM, world);
-  if (all == 0) return;
-  told_of_thin = true;
-  if (comm->me == 0)
-    error->warning(
-        FLERR,
-        "Fix mpm/incompressible: regions are thinner than a node spacing in {} cells, so that "
-        "the flow goes through: use a smaller node spacing, or thicker walls",
-        all);
-}
-
 /* ---------------------------------------------------------------------- */
-
-void MPMFlowRegions::normalize(std::vector<double> &share) const
-{
-  values.assign(cells.size(), 0.0);
-  for (int64_t number = 0; number < cells.size(); number++)
-    if (rooms[number] < 1.0 && rooms[number] >= LITTLE_ROOM) share[number] /= rooms[number];
-  for (const auto &cell : cells.cells) {
-    double &mine = values[cell.number];
-    mine = share[cell.number];
-    if (rooms[cell.number] >= LITTLE_ROOM) continue;
-    double sum = 0.0, weight = 0.0;
-    for (int s = 0; s < 2 * dim; s++) {
-      const int other = cell.near[s];
-      const double a = open(s % 2 ? other : cell.number, s / 2);
-      if (cell.walls >> s & 1 || rooms[other] < LITTLE_ROOM) continue;
-      sum += a * share[other];
-      weight += a;
-    }
-    if (weight > 0.0)
-      mine = (mine + (LITTLE_ROOM - rooms[cell.number]) * sum / weight) / LITTLE_ROOM;
-    else
-      mine = rooms[cell.number] > 0.0 ? mine / rooms[cell.number] : 0.0;
-  }
-  cells.publish(values.data(), 1);
-  cells.reflect_cells(values.data());
-  share.swap(values);
-  continue_surface(share);
-}
-
-/* ----------------------------------------------------------------------
-   Only a part of the surroundings of a cell next to a wall is open, above a floor the upper part. Their
-   filled share therefore does not show how deep the middle of the cell is below a surface. Where whole cells
-   around have a surface, it is continued as a plane.
-------------------------------------------------------------------------- */
-
-void MPMFlowRegions::continue_surface(std::vector<double> &share) const
-{
-  const int naround = dim == 2 ? 9 : 27;
-  values.assign(cells.size(), 0.0);
-  for (std::size_t k = 0; k < cells.cells.size(); k++) {
-    const auto &cell = cells.cells[k];
-    double &mine = values[cell.number];
-    mine = share[cell.number];
-    if (rooms[cell.number] >= WHOLE || closed[cell.number]) continue;
-
-    // gradient of the shares of whole cells, by least squares
-
-    const int *const at = cells.around.data() + (int64_t) k * naround;
-    double n = 0.0, mean = 0.0, middle[3] = {0.0, 0.0, 0.0};
-    const auto each = [&](const auto &f) {
-      for (int j = 0; j < naround; j++) {
-        if (at[j] < 0 || rooms[at[j]] < WHOLE) continue;
-        const int plain = dim == 2 ? 3 * j : j;    // as if there were three layers
-        const double offset[3] = {(double) (plain / 9 - 1), (double) (plain / 3 % 3 - 1),
-                                  dim == 2 ? 0.0 : (double) (plain % 3 - 1)};
-        f(std::min(1.0, share[at[j]]), offset);
-      }
-    };
-    each([&](double s, const double *offset) {
-      n += 1.0;
-      mean += s;
-      for (int d = 0; d < dim; d++) middle[d] += offset[d];
-    });
-    if (n == 0.0) continue;
-    double A[3][3] = {{REGULAR, 0.0, 0.0}, {0.0, REGULAR, 0.0}, {0.0, 0.0, REGULAR}};
-    double b[3] = {0.0, 0.0, 0.0}, up[3];
-    each([&](double s, const double *offset) {
-      for (int d = 0; d < dim; d++) {
-        b[d] += (s - mean / n) * (offset[d] - middle[d] / n);
-        for (int e = 0; e < dim; e++)
-          A[d][e] += (offset[d] - middle[d] / n) * (offset[e] - middle[e] / n);
-      }
-    });
-    double inverse[3][3];
-    MathExtra::invert3(A, inverse);
-    MathExtra::matvec(inverse, b, up);
-    double slope = MathExtra::len3(up);
-    constexpr double center[3] = {0.5, 0.5, 0.5};
-    double x[3], normal[3];
-    int wall;
-    place(cell.index, center, x);
-    distance(x, FAR * cells.lattice.h, wall);
-    normal_at(wall, x, normal);
-    if (slope <
-        LEAST_SLOPE * std::min(1.0, 2.0 * mean / n)) {    // equal depths: a film along the wall
-      for (int d = 0; d < 3; d++) up[d] = -normal[d];
-      slope = 1.0;
-    }
-    if (-MathExtra::dot3(up, normal) < FLOOR * slope) continue;
-
-    double depth = 0.0, weight = 0.0;
-    each([&](double s, const double *offset) {
-      if (s < SURFACE || s > 1.0 - SURFACE) return;
-      const double of = s < 0.5 ? std::sqrt(2.0 * s) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - s));
-      depth += of - MathExtra::dot3(up, offset) / slope;
-      weight += 1.0;
-    });
-    if (weight == 0.0) continue;
-    depth = std::max(-1.0, std::min(depth / weight, 1.0));
-    mine = std::max(mine,
-                    depth < 0.0 ? 0.5 * (1.0 + depth) * (1.0 + depth)
-                                : 1.0 - 0.5 * (1.0 - depth) * (1.0 - depth));
-  }
-  cells.publish(values.data(), 1);
-  cells.reflect_cells(values.data());
-  share.swap(values);
-}
-
-void MPMFlowRegions::hold(std::vector<double> &velocity, bool moving) const
-{
-  const int here = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
-  constexpr int stride2[2] = {3, 1}, stride3[3] = {9, 3, 1};
-  const int *const stride = dim == 2 ? stride2 : stride3;
-  changed.resize(helds.size());
-  for (std::size_t k = 0; k < helds.size(); k++) {
-    const auto &held = helds[k];
-    const int *const at = cells.around.data() + (int64_t) held.cell * naround + here;
-    const int c = held.axis;
-    double into = 0.0;
-    for (int d = 0; d < dim; d++) {
-      const auto v = [&](int offset) {
-        return velocity[(int64_t) at[offset] * dim + d];
-      };
-      const double u =
-          d == c ? v(0) : 0.25 * (v(0) + v(stride[d]) + v(-stride[c]) + v(stride[d] - stride[c]));
-      into += held.normal[d] * (moving ? u - held.velocity[d] : u);
-    }
-    const int64_t face = (int64_t) cells.cells[held.cell].number * dim + c;
-    changed[k] = velocity[face] - into * held.normal[c];
-  }
-  for (std::size_t k = 0; k < helds.size(); k++)
-    velocity[(int64_t) cells.cells[helds[k].cell].number * dim + helds[k].axis] = changed[k];
-  cells.keep_owned(velocity.data(), dim);
-  cells.publish(velocity.data(), dim);
-}
 
 void MPMFlowRegions::keep_outside(double *x, double *v) const
 {
@@ -893,11 +497,11 @@ void MPMFlowRegions::keep_outside(double *x, double *v) const
     int wall;
     const double d = distance(x, FAR * h, wall);
     if (d >= margin) return;
-    double n[3], of_wall[3];
+    double n[3], wall_velocity[3];
     normal_at(wall, x, n);
-    velocity_at(wall, x, of_wall);
+    velocity_at(wall, x, wall_velocity);
     double into = 0.0;
-    for (int k = 0; k < dim; k++) into += n[k] * (v[k] - of_wall[k]);
+    for (int k = 0; k < dim; k++) into += n[k] * (v[k] - wall_velocity[k]);
     for (int k = 0; k < dim; k++) {
       x[k] += (2.0 * margin - d) * n[k];
       if (into < 0.0) v[k] -= into * n[k];
@@ -911,66 +515,11 @@ double MPMFlowRegions::depth(const double *x, double far) const
   return -distance(x, far, wall);
 }
 
-/* ----------------------------------------------------------------------
-   Owners of wet cells have the slopes of psi away from closed neighbors; the next layer has the same slopes.
-------------------------------------------------------------------------- */
-
-void MPMFlowRegions::extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const
-{
-  const int width = dim + 2;    // psi, slopes per spacing, and whether these are known
-  std::vector<double> &all = slopes;
-  all.assign(cells.size() * width, 0.0);
-  for (const auto &cell : cells.cells) {
-    double *const mine = all.data() + (int64_t) cell.number * width;
-    mine[0] = psi[cell.number];
-    if (!(wet[cell.number] > 0.0)) continue;
-    mine[dim + 1] = 1.0;
-    for (int d = 0; d < dim; d++) {
-      double sum = 0.0;
-      int n = 0;
-      for (int s = 0; s < 2; s++) {
-        const int other = cell.near[2 * d + s];
-        if (cell.walls >> (2 * d + s) & 1 || !(wet[other] > 0.0)) continue;
-        sum += (s ? 1.0 : -1.0) * (psi[other] - psi[cell.number]);
-        n++;
-      }
-      if (n) mine[1 + d] = sum / n;
-    }
-  }
-  cells.publish(all.data(), width);
-  for (int layer = 0; layer < LAYERS; layer++) {
-    std::vector<double> next(all.size(), 0.0);
-    for (const auto &cell : cells.cells) {
-      const double *const from = all.data() + (int64_t) cell.number * width;
-      double *const mine = next.data() + (int64_t) cell.number * width;
-      std::copy_n(from, width, mine);
-      if (from[dim + 1] > 0.0 || !closed[cell.number]) continue;
-      double sum[4] = {0.0, 0.0, 0.0, 0.0};
-      int n = 0;
-      for (int s = 0; s < 2 * dim; s++) {
-        if (cell.walls >> s & 1) continue;
-        const double *const other = all.data() + (int64_t) cell.near[s] * width;
-        if (!(other[dim + 1] > 0.0)) continue;
-        sum[0] += other[0] + (s % 2 ? -1.0 : 1.0) * other[1 + s / 2];
-        for (int d = 0; d < dim; d++) sum[1 + d] += other[1 + d];
-        n++;
-      }
-      if (n == 0) continue;
-      for (int k = 0; k <= dim; k++) mine[k] = sum[k] / n;
-      mine[dim + 1] = 1.0;
-    }
-    cells.publish(next.data(), width);
-    all.swap(next);
-  }
-  for (int64_t number = 0; number < cells.size(); number++)
-    if (closed[number]) psi[number] = all[number * width];
-}
-
 double MPMFlowRegions::memory_usage() const
 {
   double bytes = cuts.capacity() * sizeof(Cut) + helds.capacity() * sizeof(Held) +
       closed.capacity() + body_faces.capacity() * sizeof(int);
-  for (const auto *list : {&shares, &rooms, &fluxes, &levels})
+  for (const auto *list : {&apertures, &volume_fractions, &fluxes, &levels})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -37,7 +37,7 @@ class MPMFlowRegions : protected Pointers {
   void init(const std::string &name);
   /** Notes the state of regions at the start of a run. */
   void start_run();
-  /** Finds the motion of regions in this step, and open shares at its start. duration 0: no motion. */
+  /** Finds the motion of regions in this step, and apertures at its start. duration 0: no motion. */
   void find(double duration);
   int n() const { return walls.size(); }    ///< number of regions
   bool any_move() const { return any_moves; }
@@ -53,9 +53,9 @@ class MPMFlowRegions : protected Pointers {
   void set_velocity(int wall, const double *u);
 
   /** Open share of the lower face of a cell along an axis, 0 to 1. */
-  double open(int64_t cell, int axis) const { return shares[cell * dim + axis]; }
+  double aperture(int64_t cell, int axis) const { return apertures[cell * dim + axis]; }
   /** Open share of the hat function of a cell. */
-  double room(int64_t cell) const { return rooms[cell]; }
+  double volume_fraction(int64_t cell) const { return volume_fractions[cell]; }
   /** Are all faces of a cell closed? */
   bool is_closed(int64_t cell) const { return closed[cell]; }
   /** Flux of the walls through the lower face of a cell, per area [velocity]: closed share times velocity of the wall. */
@@ -121,6 +121,8 @@ class MPMFlowRegions : protected Pointers {
   double memory_usage() const;
 
  private:
+  static constexpr double FAR = 4.0;    // distance up to which a wall is looked at, in spacings
+
   struct Wall {
     std::string id;
     Region *region = nullptr;
@@ -150,13 +152,13 @@ class MPMFlowRegions : protected Pointers {
   const int dim;
   const std::vector<std::string> ids;
   std::vector<Wall> walls;
-  std::vector<double> shares, rooms, fluxes;
+  std::vector<double> apertures, volume_fractions, fluxes;
   std::vector<char> closed;
   std::vector<int> body_faces;    // [cell][dim] wall of the body that closes a face, or -1
   std::vector<Cut> cuts;
   std::vector<Held> helds;
   bigint nbuild = -1;
-  bool any_moves = false, any_bodies = false, known = false, told_of_thin = false;
+  bool any_moves = false, any_bodies = false, known = false, warned_of_thin = false;
   // [wall][7] has a body been seen in another region, or in one of the 6 walls of the box?
   std::vector<int> met;
   double speed = 0.0, duration_of_motion = 0.0;
@@ -170,13 +172,14 @@ class MPMFlowRegions : protected Pointers {
   void velocity_at(int wall, const double *x, double *v) const;
   void place(const int *index, const double *offset, double *x) const;
   void continue_surface(std::vector<double> &share) const;
-  void find_shares();
+  void find_apertures();
   void find_cuts();
   void find_moments(Cut &) const;
   void find_change(Cut &, const double *x) const;
   bool is_thin(const MPMFlowLattice::Cell &) const;
   bool is_corner(const MPMFlowLattice::Cell &, int axis) const;
-  void warn_of_thin(int nthin);
+  bool is_gap(const MPMFlowLattice::Cell &) const;
+  void warn_of_thin(int nthin, int ngaps);
   enum Meets { AWAY, INSIDE, COMES };
   Meets meets(int wall, const double *x) const;
   void warn_of_bodies();

@@ -194,11 +194,11 @@ template <int dim> struct PlaceOfPoint {
       lattice(lattice), per_cell(1.0 / lattice.cell_volume())
   {
   }
-  void find(const double *x, double of_volume, double *t)
+  void find(const double *x, double point_volume, double *t)
   {
     for (int d = 0; d < dim; d++) t[d] = (x[d] - lattice.origin[d]) / lattice.h;
-    if (of_volume == volume) return;
-    volume = of_volume;
+    if (point_volume == volume) return;
+    volume = point_volume;
     width = std::min(1.0, std::pow(volume * per_cell, 1.0 / dim));
   }
 };
@@ -465,8 +465,8 @@ template <int dim> void MPMFlowSolids::find_shares()
   cells.sum_freely(shares.data(), width);
   solid_share.resize(cells.size());
   for (int64_t k = 0; k < cells.size(); k++) {
-    const double *const of_cell = shares.data() + width * k;
-    solid_share[k] = of_cell[1] > 0.0 ? of_cell[0] / of_cell[1] : 0.0;
+    const double *const volumes = shares.data() + width * k;
+    solid_share[k] = volumes[1] > 0.0 ? volumes[0] / volumes[1] : 0.0;
   }
   cells.reflect_cells(solid_share.data());
 }

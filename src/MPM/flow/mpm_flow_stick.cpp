@@ -26,7 +26,7 @@ static constexpr double MOST_BEHIND = 0.6;
 // hardly be determined, and take thousands of iterations
 static constexpr double LEAST_OPEN = 0.1;
 // least open share of a cell
-static constexpr double LEAST_ROOM = 0.01;
+static constexpr double LEAST_VOLUME = 0.01;
 // where rounding decides whether the middle of a face is in a wall, it is [spacings]
 static constexpr double ROUNDING = 1.0e-6;
 // area below which a wall drags at a face itself, and this drag (times viscosity and mass)
@@ -73,25 +73,26 @@ void MPMFlowStick::find(bool again)
   masses.assign(cells.size() * dim, 1.0);
   drags.assign(cells.size() * dim, 0.0);
   areas.assign(cells.size() * dim * dim, 1.0);
-  rooms.assign(cells.size(), 1.0);
-  edge_rooms.assign(cells.size() * npair(), 1.0);
+  volume_fractions.assign(cells.size(), 1.0);
+  edge_volume_fractions.assign(cells.size() * npair(), 1.0);
   nearest.assign(cells.size() * npair(), -1);
   for (int64_t number = 0; number < cells.size(); number++) {
     for (int c = 0; c < dim; c++) {
       const int64_t face = number * dim + c;
       level[face] = regions.level_of_face(number, c, FAR * h, carried[face]) / h;
-      if (regions.open(number, c) == 0.0) level[face] = std::min(level[face], 0.0);
+      if (regions.aperture(number, c) == 0.0) level[face] = std::min(level[face], 0.0);
     }
     if (regions.level(number) > FAR * h) continue;
     for (int c = 0; c < dim; c++) {
-      find_face(number * dim + c, regions.open(number, c));
+      find_face(number * dim + c, regions.aperture(number, c));
       for (int d = c + 1; d < dim; d++) find_edge(number, c, d);
     }
     constexpr double middle[3] = {0.5, 0.5, 0.5};
     double slope[3];
     int wall;
-    const double of_cell = plane_at(number, middle, slope, wall);
-    rooms[number] = std::max(LEAST_ROOM, positive(of_cell, slope[0], slope[1], slope[2]));
+    const double in_middle = plane_at(number, middle, slope, wall);
+    volume_fractions[number] =
+        std::max(LEAST_VOLUME, positive(in_middle, slope[0], slope[1], slope[2]));
   }
 }
 
@@ -142,7 +143,7 @@ void MPMFlowStick::find_edge(int64_t cell, int c, int d)
   const double middle = plane_at(cell, offset, slope, wall);
   if (middle >= FAR) return;
   nearest[edge] = wall;
-  edge_rooms[edge] = std::max(NEAREST, positive(middle, slope[0], slope[1], slope[2]));
+  edge_volume_fractions[edge] = std::max(NEAREST, positive(middle, slope[0], slope[1], slope[2]));
 }
 
 double MPMFlowStick::velocity_near(int64_t cell, int pair, int64_t face) const
@@ -155,8 +156,8 @@ double MPMFlowStick::velocity_near(int64_t cell, int pair, int64_t face) const
 double MPMFlowStick::memory_usage() const
 {
   double bytes = nearest.capacity() * sizeof(int);
-  for (const auto *list : {&level, &carried, &masses, &drags, &areas, &rooms, &edge_rooms, &known,
-                           &other, &other_known})
+  for (const auto *list : {&level, &carried, &masses, &drags, &areas, &volume_fractions,
+                           &edge_volume_fractions, &known, &other, &other_known})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

@@ -43,9 +43,12 @@ class MPMFlowStick {
   /** Open share of a face for the shear along another axis; 1 far from walls. */
   double area(int64_t face, int axis) const { return areas[face * cells.lattice.dim + axis]; }
   /** Open share of a cell. */
-  double room(int64_t cell) const { return rooms[cell]; }
+  double volume_fraction(int64_t cell) const { return volume_fractions[cell]; }
   /** Open share of the box around the lower edge of a cell that is normal to two axes; pair: their sum less one. */
-  double room_at_edge(int64_t cell, int pair) const { return edge_rooms[cell * npair() + pair]; }
+  double volume_fraction_at_edge(int64_t cell, int pair) const
+  {
+    return edge_volume_fractions[cell * npair() + pair];
+  }
   /** Component at a face of the velocity of the wall that is nearest to such an edge; 0 far from walls. */
   double velocity_near(int64_t cell, int pair, int64_t face) const;
   /** Component of the velocity of the nearest wall, extended rigidly to the middle of a face; 0 far from walls. */
@@ -77,8 +80,9 @@ class MPMFlowStick {
   bigint nbuild = -1;
   // [face] distance of the middle from walls, positive in the flow [spacings]; see velocity()
   std::vector<double> level, carried;
-  std::vector<double> masses, drags, areas, rooms, edge_rooms;    // see the functions
-  std::vector<int> nearest;                                       // [edge] wall, or -1
+  std::vector<double> masses, drags, areas, volume_fractions,
+      edge_volume_fractions;    // see the functions
+  std::vector<int> nearest;     // [edge] wall, or -1
   std::vector<double> known, other, other_known;
 };
 

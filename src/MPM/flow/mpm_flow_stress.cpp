@@ -31,15 +31,15 @@ MPMFlowStress::MPMFlowStress(LAMMPS *lmp, const MPMFlowLattice &cells,
 }
 
 /** Open share of a face. */
-double MPMFlowStress::open(int64_t face) const
+double MPMFlowStress::aperture(int64_t face) const
 {
-  return stick ? water.open(face / dim, face % dim) : 1.0;
+  return stick ? water.aperture(face / dim, face % dim) : 1.0;
 }
 
 /** Open share of a side of a cell that is not in a wall of the box. */
-double MPMFlowStress::open_side(const MPMFlowLattice::Cell &cell, int side) const
+double MPMFlowStress::aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const
 {
-  return open((int64_t) (side % 2 ? cell.near[side] : cell.number) * dim + side / 2);
+  return aperture((int64_t) (side % 2 ? cell.near[side] : cell.number) * dim + side / 2);
 }
 
 bool MPMFlowStress::is_wall(int64_t face) const
@@ -78,7 +78,7 @@ void MPMFlowStress::find_lengths()
     for (int s = 0; s < 2 * dim; s++) {
       const int other = cell.near[s];
       const bool surface =
-          !(cell.walls >> s & 1) && !water.is_wet(other) && open_side(cell, s) > 0.0;
+          !(cell.walls >> s & 1) && !water.is_wet(other) && aperture_of_side(cell, s) > 0.0;
       length[(int64_t) cell.number * dim + s / 2] +=
           surface ? std::max(NEAREST, water.distance(cell.number, other)) : 0.5;
     }
@@ -112,12 +112,12 @@ void MPMFlowStress::find_faces()
       }
       Face face = {};
       face.at = here * dim + c;
-      const double inside = mass * open(face.at);
+      const double inside = mass * aperture(face.at);
       if (stick) mass *= stick->mass(face.at);
-      double of_walls = 0.0;
+      double wall_mass = 0.0;
       if (stick && stick->drag(face.at) > 0.0)
-        of_walls = number * at_face(here, lower) * mass * stick->drag(face.at);
-      if (of_walls > 0.0) face.wall = of_walls * stick->velocity(face.at);
+        wall_mass = number * at_face(here, lower) * mass * stick->drag(face.at);
+      if (wall_mass > 0.0) face.wall = wall_mass * stick->velocity(face.at);
       for (int d = 0; d < dim; d++)
         for (int s = 0; d != c && s < 2; s++) {
           const auto &wall = cells.walls[d][s];
@@ -136,11 +136,11 @@ void MPMFlowStress::find_faces()
           if (!sticks) continue;
           const double thick = at_edge(s ? cell.near[2 * d + 1] : here, pair_of(c, d)),
                        drag = number * thick * inside / (distance * across[d]);
-          of_walls += drag;
+          wall_mass += drag;
           face.wall += drag * v;
         }
-      if (lightness) mass /= (*lightness)[face.at];
-      face.inverse = inverse_mass[face.at] = 1.0 / (mass + of_walls);
+      if (inverse_density) mass /= (*inverse_density)[face.at];
+      face.inverse = inverse_mass[face.at] = 1.0 / (mass + wall_mass);
       face.share = mass * face.inverse;
       face.wall *= face.inverse;
       faces.push_back(face);
@@ -173,17 +173,17 @@ void MPMFlowStress::find_stresses()
         one.lower[d] = here * dim + d;
         one.upper[d] = (int64_t) cell.near[2 * d + 1] * dim + d;
       }
-      one.room = stick ? stick->room(here) : 1.0;
+      one.volume_fraction = stick ? stick->volume_fraction(here) : 1.0;
       std::fill_n(volumes.begin() + one.at, dim, one.volume);
       const auto wall = [&](int64_t face, int side) {
         const bool open_too = is_wall(face) && !(cell.walls >> side & 1);
         return water.regions->flux(face / dim, face % dim) +
-            (open_too ? open(face) * stick->velocity(face) : 0.0);
+            (open_too ? aperture(face) * stick->velocity(face) : 0.0);
       };
       for (int d = 0; stick && d < dim; d++)
         carried[one.at + d] =
             one.volume * (wall(one.upper[d], 2 * d + 1) - wall(one.lower[d], 2 * d));
-      one.compliance = one.volume * one.room * (0.5 / (number * in_cell(here)));
+      one.compliance = one.volume * one.volume_fraction * (0.5 / (number * in_cell(here)));
       normals.push_back(one);
     }
     for (int c = 0; c < dim; c++)
@@ -224,7 +224,7 @@ void MPMFlowStress::find_stresses()
 void MPMFlowStress::find_edge(Edge &edge, int pair)
 {
   const int64_t cell = edge.at / width;
-  edge.volume *= stick->room_at_edge(cell, pair);
+  edge.volume *= stick->volume_fraction_at_edge(cell, pair);
   for (int k = 0; k < 4; k++)
     carried[edge.at] +=
         (k % 2 ? 1.0 : -1.0) * edge.area[k] * stick->velocity_near(cell, pair, edge.face[k]);
@@ -264,7 +264,7 @@ void MPMFlowStress::find_forces()
           face->from[upper] = (int64_t) cell.near[2 * d + 1] * width + pair;
           face->from[lower] = here * width + pair;
         }
-        const double share = d == c ? open(face->at) : shear_area(face->at, d);
+        const double share = d == c ? aperture(face->at) : shear_area(face->at, d);
         face->weight[upper] = share * volumes[face->from[upper]];
         face->weight[lower] = -share * volumes[face->from[lower]];
       }
@@ -281,15 +281,15 @@ void MPMFlowStress::find_diagonal()
   for (auto &one : normals) {
     double shares = 0.0;
     for (int d = 0; d < dim; d++) {
-      const double of_faces = square(one.volume) *
-          (square(open(one.lower[d])) * inverse_mass[one.lower[d]] +
-           square(open(one.upper[d])) * inverse_mass[one.upper[d]]);
+      const double from_faces = square(one.volume) *
+          (square(aperture(one.lower[d])) * inverse_mass[one.lower[d]] +
+           square(aperture(one.upper[d])) * inverse_mass[one.upper[d]]);
       if (several()) {
-        inverse_diagonal[one.row + d] = 1.0 / (of_faces + one.compliance);
-        shares += of_faces * inverse_diagonal[one.row + d];
+        inverse_diagonal[one.row + d] = 1.0 / (from_faces + one.compliance);
+        shares += from_faces * inverse_diagonal[one.row + d];
       } else
-        inverse_diagonal[one.row + d] =
-            1.0 / (of_faces + one.volume * one.room * (1.0 - 1.0 / dim) / (2.0 * number));
+        inverse_diagonal[one.row + d] = 1.0 /
+            (from_faces + one.volume * one.volume_fraction * (1.0 - 1.0 / dim) / (2.0 * number));
     }
     // the inverse of diag(a + c) - c/dim, without the difference of numbers that are almost the same
     one.coupling = shares > 0.0 ? one.compliance / shares : 0.0;
@@ -315,7 +315,7 @@ void MPMFlowStress::strain(const double *u, double *out, double sign) const
   for (const auto &one : normals)
     for (int d = 0; d < dim; d++)
       out[one.row + d] += sign * one.volume *
-          (open(one.upper[d]) * u[one.upper[d]] - open(one.lower[d]) * u[one.lower[d]]);
+          (aperture(one.upper[d]) * u[one.upper[d]] - aperture(one.lower[d]) * u[one.lower[d]]);
   for (const auto &edge : edges) {
     const int64_t *const f = edge.face;
     out[edge.row] += sign *
@@ -344,7 +344,7 @@ void MPMFlowStress::products(int n, const double *const *a, const double *const 
       mine[k] += sum;
     }
   }
-  sum_in_order(lmp, n, mine.data(), of_ranks, value);
+  sum_in_order(lmp, n, mine.data(), rank_sums, value);
 }
 
 void MPMFlowStress::apply(const double *x, double *y)

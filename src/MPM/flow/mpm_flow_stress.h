@@ -55,7 +55,7 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   /** Viscosities of several liquids; null: there is one. */
   const MPMFlowViscosities *viscosities = nullptr;
   /** See MPMFlowPressure; null: there is one density. */
-  const std::vector<double> *lightness = nullptr;
+  const std::vector<double> *inverse_density = nullptr;
   /** [cell][dim] of all cells: zero for faces that keep their velocity, which no stress changes; null: there are none. */
   const std::vector<double> *mobility = nullptr;
 
@@ -80,12 +80,12 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
     double wall;    // velocity of walls times their share
   };
   struct Normal {
-    int64_t at;                    // place of the first component in stresses
-    int row;                       // place of it in vectors
-    int64_t lower[3], upper[3];    // faces
-    double volume, room;           // volume up to the surface; open share of it
-    double compliance;             // of deviators
-    double coupling;               // of the components, in the inverse of their equations
+    int64_t at;                        // place of the first component in stresses
+    int row;                           // place of it in vectors
+    int64_t lower[3], upper[3];        // faces
+    double volume, volume_fraction;    // volume up to the surface; open share of it
+    double compliance;                 // of deviators
+    double coupling;                   // of the components, in the inverse of their equations
   };
   struct Edge {
     int64_t at;
@@ -109,7 +109,7 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   std::vector<double> volumes;    // [stress] without the part behind walls
   std::vector<double> length, inverse_mass, speed, stress;       // of the lattice
   std::vector<double> right_side, solution, inverse_diagonal;    // by unknowns
-  std::vector<double> mine, of_ranks;                            // sums
+  std::vector<double> mine, rank_sums;                           // sums
   MPM_NS::ConjugateGradients method;
 
   static int pair_of(int c, int d) { return c + d - 1; }    // 01, 02, 12
@@ -120,14 +120,14 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   void find_forces();
   void find_diagonal();
   void find_edge(Edge &, int pair);
-  double open(int64_t face) const;
-  double open_side(const MPMFlowLattice::Cell &cell, int side) const;
+  double aperture(int64_t face) const;
+  double aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const;
   bool is_wall(int64_t face) const;
   double shear_area(int64_t face, int axis) const;
   double in_cell(int64_t cell) const;
   double at_face(int64_t upper, int64_t lower) const;
   double at_edge(int64_t cell, int pair) const;
-  bool several() const { return viscosities || lightness; }
+  bool several() const { return viscosities || inverse_density; }
   bool is_held(int64_t face) const { return mobility && (*mobility)[face] == 0.0; }
   void strain(const double *u, double *out, double sign) const;
   void spread(const double *x);

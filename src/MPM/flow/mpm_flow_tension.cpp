@@ -93,8 +93,8 @@ void MPMFlowTension::find_curvature()
     if (square < LEAST_SLOPE * LEAST_SLOPE) continue;
     for (int c = 0; c < dim; c++)
       for (int d = 0; d < dim; d++) along += slope[c] * H[c][d] * slope[d];
-    const double of_surface = (along / square - trace) / std::sqrt(square);
-    curvature[cell.number] = std::max(1.0 - dim, std::min(of_surface, dim - 1.0));
+    const double unclamped = (along / square - trace) / std::sqrt(square);
+    curvature[cell.number] = std::max(1.0 - dim, std::min(unclamped, dim - 1.0));
   }
   wetting.complete(curvature, false, true);
 }

@@ -84,11 +84,11 @@ template <int dim> struct Gifts {
   double filled[FILLED];
   int base[3], slot;
 
-  void clear(const int at[3], int of_slot)
+  void clear(const int at[3], int new_slot)
   {
     *this = {};
     for (int d = 0; d < dim; d++) base[d] = at[d];
-    slot = of_slot;
+    slot = new_slot;
   }
   void add_to(const MPM_NS::Grid &grid, double *sums) const
   {
@@ -323,6 +323,17 @@ template <int dim> void move_in_field(const double *shift, double *v, double *G)
   }
 }
 
+/** Interpolates values in the middle of the cells around a place. */
+template <int dim> double in_cells(const StaggeredWeights &w, const double *values)
+{
+  double sum = 0.0;
+  for (int n = 0; n < MPMFlowStencil<dim>::CELLS; n++) {
+    const int k[3] = {n >> (dim - 1) & 1, n >> (dim - 2) & 1, dim == 3 ? n & 1 : 0};
+    sum += w.cell<dim>(k) * values[n];
+  }
+  return sum;
+}
+
 /** Viscosities of cells and edges, over the largest one, near places with the same base. */
 template <int dim> struct Thickness {
   double in_cell[MPMFlowStencil<dim>::CELLS];
@@ -341,11 +352,7 @@ template <int dim> struct Thickness {
   /** Those at a place: of normal stresses, and of the shear stresses 01, 02, 12. */
   void at(const StaggeredWeights &w, double *of) const
   {
-    of[0] = 0.0;
-    for (int n = 0; n < MPMFlowStencil<dim>::CELLS; n++) {
-      const int k[3] = {n >> (dim - 1) & 1, n >> (dim - 2) & 1, dim == 3 ? n & 1 : 0};
-      of[0] += w.cell<dim>(k) * in_cell[n];
-    }
+    of[0] = in_cells<dim>(w, in_cell);
     for (int pair = 0; pair < (dim == 2 ? 1 : 3); pair++) {
       const double *const edge = at_edge[pair];
       of[1 + pair] = dim == 2 ? edge[0] : edge[0] + w.f[2 - pair] * (edge[1] - edge[0]);
@@ -370,6 +377,54 @@ void add_viscous(double viscosity, const double *thick, double h, const double *
   }
 }
 
+/** What points with the same base get. */
+template <int dim> struct Around {
+  Faces<dim> fields[4];
+  double pressure[MPMFlowStencil<dim>::CELLS];
+  Thickness<dim> thickness;
+
+  void find(const MPMFlowStencil<dim> &stencil, int nfield, const double *const *values,
+            const double *pressures, const MPMFlowViscosities *viscosities)
+  {
+    for (int field = 0; field < nfield; field++) fields[field].find(stencil, values[field]);
+    for (int n = 0; n < stencil.CELLS; n++) pressure[n] = pressures[stencil.cell(n)];
+    if (viscosities) thickness.find(stencil, *viscosities);
+  }
+};
+
+/** New velocity v of a point that keeps a share of the part of its velocity that cells do not see. now, old: velocities of the
+ *  lattice at the point, at the end and at the start of the step. Adds to squares[2], see MPMFlowUpdate. */
+template <int dim>
+void keep_unseen(const MPMFlowUpdate &update, double mass, const double *now, const double *old,
+                 const double *bend, double *v, double *squares)
+{
+  for (int c = 0; c < dim; c++) {
+    const double unseen = v[c] - old[c];
+    if (update.squares) {
+      squares[0] += mass * unseen * unseen;
+      squares[1] += mass * bend[c] * bend[c];
+    }
+    v[c] = now[c] + update.flip * unseen;
+  }
+}
+
+/** Changes the velocity v of point i by its gradient along a shift. Adds the change of the kinetic energy and the work of forces
+ *  to energy[2]. */
+template <int dim>
+void change_by_shift(const MPMFlowPoints &points, int i, const double *shift, double *v,
+                     double *energy)
+{
+  double before = 0.0, after = 0.0, work = 0.0;
+  for (int c = 0; c < dim; c++) before += v[c] * v[c];
+  if (points.gradient) move_in_field<dim>(shift, v, points.gradient[i]);
+  for (int c = 0; c < dim; c++) {
+    after += v[c] * v[c];
+    work += points.f[i][c] * shift[c];
+  }
+  energy[0] += 0.5 * points.mass[i] * (after - before);
+  energy[1] += work;
+}
+
 template <int dim>
 bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double *velocity,
          const MPMFlowUpdate &update, const double *pressure, MPMRows stress)
@@ -379,18 +434,13 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
   bool all_in_reach = true;
   double squares[2] = {0.0, 0.0};
   const double *fields[4] = {velocity};    // and, if there are such: those before, the shift, more
-  const int of_old = 1, of_shift = update.old ? 2 : 1, of_more = of_shift + (update.shift ? 1 : 0);
-  if (update.old) fields[of_old] = update.old;
-  if (update.shift) fields[of_shift] = update.shift;
-  if (update.more) fields[of_more] = update.more;
-  const int nall = of_more + (update.more ? 1 : 0);
-  struct Around {
-    Faces<dim> fields[4];
-    double pressure[MPMFlowStencil<dim>::CELLS];
-    Thickness<dim> thickness;
-  };
+  const int at_old = 1, at_shift = update.old ? 2 : 1, at_more = at_shift + (update.shift ? 1 : 0);
+  if (update.old) fields[at_old] = update.old;
+  if (update.shift) fields[at_shift] = update.shift;
+  if (update.more) fields[at_more] = update.more;
+  const int nall = at_more + (update.more ? 1 : 0);
   double thick[4] = {1.0, 1.0, 1.0, 1.0};    // of one liquid
-  MPMFlowNear<dim, Around> near;
+  MPMFlowNear<dim, Around<dim>> near;
   FacesNear<dim> at_starts(cells.grid, update.paths),
       at_middles(cells.grid, update.paths ? update.paths : velocity);
   for (const auto &run : cells.runs) {
@@ -400,28 +450,20 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       places.find(x, w);
       const auto &around = near.at(
           w.base,
-          [](Around &) {
+          [](Around<dim> &) {
           },
-          [&](Around &one) {
-            const MPMFlowStencil<dim> stencil(cells.grid, block, w.base);
-            for (int field = 0; field < nall; field++)
-              one.fields[field].find(stencil, fields[field]);
-            for (int n = 0; n < stencil.CELLS; n++) one.pressure[n] = pressure[stencil.cell(n)];
-            if (update.viscosities) one.thickness.find(stencil, *update.viscosities);
+          [&](Around<dim> &one) {
+            one.find({cells.grid, block, w.base}, nall, fields, pressure, update.viscosities);
           });
       constexpr int NSLOPE = flow_slopes(dim);
       const bool solid = update.solids && update.solids->holds(i);
-      const int nfield = of_shift + (update.shift && !solid ? 1 : 0);
+      const int nfield = at_shift + (update.shift && !solid ? 1 : 0);
       double at_point[3][dim], G[NSLOPE], bend[dim], more[dim] = {}, G_more[NSLOPE];
       points.gradient || update.viscosity > 0.0
           ? interpolate_all<dim, true>(nfield, around.fields, w, at_point, G, bend)
           : interpolate_all<dim, false>(nfield, around.fields, w, at_point, nullptr, nullptr);
       const double *const now = at_point[0];
-      double p = 0.0;
-      for (int n = 0; n < MPMFlowStencil<dim>::CELLS; n++) {
-        const int k[3] = {n >> (dim - 1) & 1, n >> (dim - 2) & 1, dim == 3 ? n & 1 : 0};
-        p += w.cell<dim>(k) * around.pressure[n];
-      }
+      const double p = in_cells<dim>(w, around.pressure);
       if (solid)
         update.solids->set_pressure(stress[i], p);
       else
@@ -439,18 +481,11 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         continue;
       }
       if (update.old)
-        for (int c = 0; c < dim; c++) {
-          const double unseen = v[c] - at_point[of_old][c];
-          if (update.squares) {
-            squares[0] += points.mass[i] * unseen * unseen;
-            squares[1] += points.mass[i] * bend[c] * bend[c];
-          }
-          v[c] = now[c] + update.flip * unseen;
-        }
+        keep_unseen<dim>(update, points.mass[i], now, at_point[at_old], bend, v, squares);
       else
         std::copy_n(now, dim, v);
       if (update.more) {
-        interpolate<dim>(around.fields[of_more], w, more, points.gradient ? G_more : nullptr);
+        interpolate<dim>(around.fields[at_more], w, more, points.gradient ? G_more : nullptr);
         for (int c = 0; c < dim; c++) v[c] += more[c];
         for (int e = 0; points.gradient && e < NSLOPE; e++) G[e] += G_more[e];
       }
@@ -459,17 +494,9 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
           points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
 
       double shift[dim] = {};
-      if (update.shift && !solid) std::copy_n(at_point[of_shift], dim, shift);
       if (update.shift && !solid) {
-        double before = 0.0, after = 0.0, work = 0.0;
-        for (int c = 0; c < dim; c++) before += v[c] * v[c];
-        if (points.gradient) move_in_field<dim>(shift, v, points.gradient[i]);
-        for (int c = 0; c < dim; c++) {
-          after += v[c] * v[c];
-          work += points.f[i][c] * shift[c];
-        }
-        update.of_shift[0] += 0.5 * points.mass[i] * (after - before);
-        update.of_shift[1] += work;
+        std::copy_n(at_point[at_shift], dim, shift);
+        change_by_shift<dim>(points, i, shift, v, update.shift_energy);
       }
 
       // The midpoint rule in the field of velocities, which has no divergence.

@@ -49,7 +49,7 @@ struct MPMFlowUpdate {
    *  changed to fit the new places in the field of velocities. null: none. */
   const double *shift = nullptr;
   const MPMFlowRegions *regions = nullptr;    ///< regions that points must not enter; null: none
-  const MPMFlowInflow *inflow = nullptr;      ///< mouths that move the points in them; null: none
+  const MPMFlowInflow *inflow = nullptr;      ///< inlets that move the points in them; null: none
   /** Points that keep the stress of their material law and are not shifted; null: none. */
   const MPMFlowSolids *solids = nullptr;
   /** Receives two mass-weighted sums over the points of this rank: of the squares of the velocities that cells
@@ -58,7 +58,7 @@ struct MPMFlowUpdate {
   double *squares = nullptr;
   /** Two sums over the points of this rank are added to it, both due to the shift: the change of the kinetic
    *  energy, and the work of forces along the shift. */
-  double *of_shift = nullptr;
+  double *shift_energy = nullptr;
   /** [cell][dim] velocities that points move with; null: their new velocities. */
   const double *paths = nullptr;
   /** Viscosity of the stress that fluid points have in addition to the pressure. */

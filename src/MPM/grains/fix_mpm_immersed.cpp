@@ -161,7 +161,7 @@ void FixMPMImmersed::init_action()
                 {field->options.modified_edges, "edges modified", "use edges plain"},
                 {field->options.series == MPMFieldOptions::FMPM, "transfer fmpm", "use xpic"}});
 
-  field->keep_old = true;    // for the acceleration of the fluid
+  field->keep_old_velocities();    // for the acceleration of the fluid
   check_grains(modify->get_fix_by_style("^mpm$")[0], field->lattice.h);
 }
 

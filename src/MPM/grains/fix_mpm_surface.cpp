@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "atom_vec.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "comm.h"
@@ -22,6 +23,7 @@
 #include "field/mpm_node_sums.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_refined_body.h"
+#include "field/mpm_setup_checks.h"
 #include "force.h"
 #include "group.h"
 #include "modify.h"
@@ -204,7 +206,7 @@ void FixMPMSurface::setup_pre_exchange()
 {
   domain->pbc();    // reference positions of points are inside of the box
   for (auto *field : MPMField::all(lmp)) {
-    if (force->pair) field->guard->check_radii();    // cutoffs are for the largest ones
+    if (force->pair) MPMSetupChecks(lmp, *field).radii();    // cutoffs are for the largest ones
     field->choose_kernels();
     field->map->setup();
     field->map->valid = false;

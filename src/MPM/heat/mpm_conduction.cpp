@@ -62,8 +62,8 @@
    that reach such a node conduct less, by the factor that makes the sum of the node four times the usual one:
    the matrix stays symmetric, and heat is kept.
 
-   Bernstein polynomials: a point whose room is divided by a side of cells conducts with its parts in each
-   cell (mpm_cut_rooms.cpp), by which the sums are integrals wherever points are. Parts with a node whose rate
+   Bernstein polynomials: a point whose domain is divided by a side of cells conducts with its parts in each
+   cell (mpm_cut_domains.cpp), by which the sums are integrals wherever points are. Parts with a node whose rate
    is more than 1.4 times what is allowed conduct nothing, because a little conduction would make an
    insulating layer at a surface. These nodes, and those with less than a quarter of their conduction left,
    are idle: no heat comes in there, so that the body ends at the side of the cell.
@@ -102,25 +102,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-// greatest rate of nodes that points barely reach, over the bound of rates inside of a body
-static constexpr double MOST_AT_LIGHT_NODES = 4.0;
-// half of the range over which a conductivity that jumps at melting is averaged, in node spacings
-static constexpr double HALF_RANGE = 0.25;
-// Bernstein polynomials: points with less than this share of their conductivity left do not conduct
-static constexpr double TOO_LITTLE = 0.7;
-// nodes that have less than this share of the conduction around them get no heat through surfaces
-static constexpr double LEAST_LEFT = 0.25;
-// distance from a side of cells, in cells, within which a point is on both sides
-static constexpr double ON_SIDE = 1.0e-9;
-// ratio of conductivities for which means across interfaces matter little
-static constexpr double SAME = 2.0;
 
 /* ---------------------------------------------------------------------- */
 
@@ -133,14 +119,14 @@ MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer
 
 /* ---------------------------------------------------------------------- */
 
-void MPMConduction::init(double sigma, bool surfaces, bool &told_of_layers)
+void MPMConduction::init(double sigma, bool surfaces, bool &warned_of_layers)
 {
-  told = &told_of_layers;
+  warned = &warned_of_layers;
   thermals.clear();
   for (const auto *fix : field.materials) {
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
-    const int T = fix->find_history("temperature"), molten = fix->find_history("molten");
+    const int T = fix->temperature(), molten = fix->molten();
     thermals.push_back({fix, T, molten, material.conduction_varies(),
                         molten >= 0 && conductivity_varies_with_temperature(material),
                         material.conduction(nullptr)});
@@ -245,8 +231,8 @@ const MPMConduction::Thermal *MPMConduction::thermal(const FixMPMMaterial *fix) 
 double MPMConduction::capacity_of(int i) const
 {
   const Thermal *const t = thermal(field.material_of(i));
-  Conduction room;
-  return t ? atom->rmass[i] * t->at(i, room).capacity : 0.0;
+  Conduction buffer;
+  return t ? atom->rmass[i] * t->at(i, buffer).capacity : 0.0;
 }
 
 double MPMConduction::heat_of_points() const
@@ -278,190 +264,9 @@ bool MPMConduction::has_front() const
   return false;
 }
 
-double MPMConduction::crossing_rate() const
-{
-  return slowest / (field.lattice.h * field.lattice.h);
-}
-
 double MPMConduction::volume_of(int i) const
 {
   return atom->vfrac[i] * field.points->jacobian(i);
-}
-
-/** Materials of different conductivity in one field get means next to their interfaces, if conductivities are
- *  numbers and functions are smooth. */
-void MPMConduction::init_layers()
-{
-  layers.reset();
-  greatest = 0.0;
-  const bool can = !total && steepest != 0.0;
-  bool differ = false, orthotropic = false;
-  double fastest = 0.0, least = 0.0;
-  const Thermal *first = nullptr;
-  for (const auto &t : thermals) {
-    if (!is_present(t)) continue;
-    orthotropic = orthotropic || t.all.orthotropic;
-    if (!first)
-      first = &t;
-    else
-      differ = differ || t.varies || first->varies || t.all.orthotropic != first->all.orthotropic ||
-          t.all.conductivity != first->all.conductivity;
-    const double capacity = t.fix->material->density() * t.all.capacity;
-    greatest = std::max(greatest, t.all.conductivity);
-    least = &t == first ? t.all.conductivity : std::min(least, t.all.conductivity);
-    fastest = std::max(fastest, t.all.conductivity / capacity);
-  }
-  if (!can && differ && greatest > SAME * least && !*told) {
-    *told = true;
-    if (comm->me == 0)
-      error->warning(
-          FLERR,
-          "Fix mpm/heat: conductivities of materials in fix mpm {} are {:.3g} to {:.3g}, "
-          "and with {} there are no means across their interfaces, through which too "
-          "much heat goes{}: use shape quadratic or cubic{}",
-          field.id(), least, greatest, total ? "frame total" : "this shape",
-          steepest == 0.0 ? " unless they are in planes of nodes" : "",
-          total ? " with frame updated" : "");
-  }
-  if (!can) {
-    greatest = 0.0;
-    return;
-  }
-  if (orthotropic && differ && !*told) {
-    *told = true;
-    if (comm->me == 0)
-      error->warning(FLERR,
-                     "Fix mpm/heat: materials of different conductivity share fix mpm {}, and one "
-                     "of them is orthotropic: there are no means across their interfaces, and with "
-                     "few cells too little or too much heat goes through",
-                     field.id());
-  }
-  if (orthotropic) return;
-  if (!differ) return;
-  const bool along = greatest <= MPMLayerMean::MOST * fastest * least_capacity;
-  layers = std::make_unique<MPMLayerMean>(field, along);
-  layers->init();
-}
-
-/** As Thermal::at(), with the mean of conductivities that jump. */
-const Conduction &MPMConduction::conduction_of(const Thermal &t, int i, Conduction &room) const
-{
-  if (!t.jumps || ranges.empty()) return t.at(i, room);
-  return room = mean_conduction(*t.fix->material, t.fix->history[i], ranges[i].low, ranges[i].high);
-}
-
-/** Finds the ranges of the means of conductivities that jump, from the temperatures of nodes. Raises the rate
- *  of the fastest point by these means. */
-void MPMConduction::find_ranges()
-{
-  if (std::none_of(thermals.begin(), thermals.end(), [](const Thermal &t) {
-        return t.jumps;
-      }))
-    return;
-  ranges.resize(atom->nmax);
-  const int dim = field.lattice.dim;
-  const double half = HALF_RANGE * field.lattice.h;
-  scalar.gradients_to_points(
-      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-        const Thermal &t = *thermal(run.material);
-        for (int p = 0; t.jumps && p < n; p++) {
-          double reach = 0.0;
-          for (int d = 0; d < dim; d++) reach = std::max(reach, half * fabs(q[p][d]));
-          ranges[first + p] = {q[p][3] - reach, q[p][3] + reach};
-        }
-      });
-  for (const auto &run : field.map->runs) {
-    const Thermal *const t = thermal(run.material);
-    for (int i = run.first; t && t->jumps && i < run.last; i++) {
-      Conduction room;
-      const double own = t->at(i, room).most(), mean = conduction_of(*t, i, room).most();
-      if (!(mean > own)) continue;
-      const double rate = simple ? mean * volumes[i] / (atom->rmass[i] * room.capacity)
-                                 : bound(*t, i, volumes[i]);
-      const double layer = layers ? layers->most(i) / own : 1.0;
-      fastest_point = std::max(fastest_point, layer * rate);
-    }
-  }
-}
-
-/* ----------------------------------------------------------------------
-   Conductivity of a point for gradients on the lattice. Total frame: V k becomes V F^-1 k F^-T
-------------------------------------------------------------------------- */
-
-void MPMConduction::tensor(const Thermal &t, int i, double k[3][3]) const
-{
-  Conduction room;
-  const Conduction &c = conduction_of(t, i, room);
-  for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) k[a][b] = a == b ? c.conductivity : 0.0;
-  if (c.orthotropic) {
-    double along[3], n[3][3];
-    principal_conductivities(c, field.points->F[i], along, n);
-    for (int a = 0; a < 3; a++)
-      for (int b = 0; b < 3; b++)
-        k[a][b] = along[0] * n[0][a] * n[0][b] + along[1] * n[1][a] * n[1][b] +
-            along[2] * n[2][a] * n[2][b];
-  }
-  if (!total) return;
-  double F[3][3], inverse[3][3], half[3][3];
-  field.frame->lattice_F(i, F);
-  MathExtra::invert3(F, inverse);
-  MathExtra::times3(inverse, k, half);
-  MathExtra::times3_transpose(half, inverse, k);
-}
-
-/** Upper bound of the greatest eigenvalue of a symmetric matrix: the greatest sum of absolute values of a
- *  row. */
-static double greatest_row(int dim, const double k[3][3])
-{
-  double most = 0.0;
-  for (int a = 0; a < dim; a++) {
-    double row = 0.0;
-    for (int b = 0; b < dim; b++) row += fabs(k[a][b]);
-    most = std::max(most, row);
-  }
-  return most;
-}
-
-/** Bound of sum_i grad N grad N^T/N of a point [1/area]; 0 if there is none. */
-double MPMConduction::steepness(int i) const
-{
-  const double h = field.lattice.h;
-  const int dim = field.lattice.dim;
-  if (field.boxes) {
-    double size[3], least = 0.5;
-    field.boxes->size_of(i, size);
-    for (int d = 0; d < dim; d++) least = std::min(least, size[d]);
-    return (2.0 / least + 1.0 / (1.0 - least)) / (h * h);
-  }
-  if (!field.domains) return steepest;
-  double x[24], w[8], g[24], sum[3][3] = {};
-  field.domains->corners_of(i, x, w, g);
-  for (int c = 0; c < 1 << dim; c++)
-    for (int a = 0; a < dim; a++)
-      for (int b = 0; b < dim; b++) sum[a][b] += g[dim * c + a] * g[dim * c + b] / w[c];
-  return greatest_row(dim, sum);
-}
-
-/** Bound of the rate of a point with this volume, or its largest diffusivity for functions that points do not
- *  bound. */
-double MPMConduction::bound(const Thermal &t, int i, double volume) const
-{
-  Conduction room;
-  const Conduction &c = conduction_of(t, i, room);
-  double most = c.most();
-  if (total) {
-    double k[3][3];
-    tensor(t, i, k);
-    most = greatest_row(field.lattice.dim, k);
-  }
-  const double steep = steepness(i);
-  return most * volume / (atom->rmass[i] * c.capacity) * (steep > 0.0 ? steep : 1.0);
-}
-
-bool MPMConduction::is_bounded_by_rows() const
-{
-  return !field.boxes && !field.domains && steepest == 0.0;
 }
 
 bool MPMConduction::looks_beyond_points() const
@@ -479,100 +284,6 @@ void MPMConduction::extend_topology()
     const int b[3] = {block.b[0], block.b[1], block.b[2]};
     activate_blocks_around(field, b);
   }
-}
-
-/** Adds the rows of the matrix of rates, for functions that points alone do not bound. */
-void MPMConduction::add_rows(Left left)
-{
-  scalar.add_rows([&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-    const Thermal *const t = thermal(run.material);
-    for (int p = 0; p < n; p++) {
-      double k[3][3];
-      tensor(*t, first + p, k);
-      double V = volumes[first + p];
-      if (cuts.any() && cuts.is_cut[first + p]) V = 0.0;
-      if (left == AS_SHARES) V *= shares[first + p];
-      for (int a = 0; a < 3; a++) q[p][a] = V * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
-    }
-  });
-  for (const auto &part : cuts.parts) {
-    double k[3][3];
-    tensor(*thermal(field.material_of(part.point)), part.point, k);
-    const double times = 2.0 / field.lattice.h * part.volume * volumes[part.point] *
-        (left == AS_SHARES ? part.share : 1.0);
-    cuts.each_node(part, [&](int node, const double *slope) {
-      for (int a = 0; a < 3; a++)
-        rate[node] += times * fabs(slope[a]) * (fabs(k[a][0]) + fabs(k[a][1]) + fabs(k[a][2]));
-    });
-  }
-}
-
-/** Reduces the conduction of points at nodes with a much greater rate than inside of a body, which have next
- *  to no capacity. */
-double MPMConduction::bound_by_rows(double greatest_of_rank)
-{
-  const double usual = 4.0 * field.lattice.dim / (field.lattice.h * field.lattice.h);
-  double mine[2] = {usual * fastest_point, greatest_of_rank}, all[2];
-  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
-  shares.clear();
-  idle.clear();
-  usual_rate = all[0];
-  if (cuts.any()) {
-    shares.assign(atom->nmax, 1.0);
-    for (const auto &part : cuts.parts) shares[part.point] = 0.0;
-  }
-  const double limit = MOST_AT_LIGHT_NODES * all[0];
-  if (all[1] <= limit) return mine[1];
-
-  field.nodes.complete(rate.data(), 1, 1);
-  shares.resize(atom->nmax, 1.0);
-  if (looks_beyond_points()) {
-    idle.resize(rate.size());
-    for (std::size_t k = 0; k < rate.size(); k++) idle[k] = rate[k] * TOO_LITTLE > limit;
-  }
-  for (auto &part : cuts.parts)
-    for (int k = 0; k < (field.lattice.dim == 3 ? 27 : 9); k++)
-      if (is_idle(part.node[k]))
-        part.share = 0.0;
-      else if (part.share * rate[part.node[k]] > limit)
-        part.share = limit / rate[part.node[k]];
-  MPMStencil stencil(field);
-  const double width = shape_constants[field.options.shape].cell, h = field.lattice.h;
-  const int dim = field.lattice.dim;
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; thermal(run.material) && i < run.last; i++) {
-      // on a side of cells, round-off decides in which of them the kernels see the point
-      const double *const place = field.frame->places()[i];
-      bool on_side[3] = {false, false, false};
-      for (int d = 0; d < dim; d++) {
-        const double cells = (place[d] - field.lattice.origin[d]) / (width * h);
-        on_side[d] = std::fabs(cells - std::round(cells)) < ON_SIDE;
-      }
-      for (int k = 0; k < 1 << dim; k++) {
-        double x[3] = {place[0], place[1], place[2]};
-        bool again = false;
-        for (int d = 0; d < dim; d++) {
-          if (on_side[d]) x[d] += (k >> d & 1 ? 2.0 : -2.0) * ON_SIDE * width * h;
-          again = again || (!on_side[d] && (k >> d & 1));
-        }
-        if (again) continue;
-        stencil.visit_around(x, [&](int64_t node, double, const double *) {
-          if (is_idle(node))
-            shares[i] = 0.0;
-          else if (shares[i] * rate[node] > limit)
-            shares[i] = limit / rate[node];
-        });
-      }
-    }
-  if (looks_beyond_points()) {
-    const std::vector<double> whole = rate;
-    add_rows(AS_SHARES);
-    scalar.greatest_row();
-    field.nodes.complete(rate.data(), 1, 1);
-    for (std::size_t k = 0; k < rate.size(); k++)
-      if (rate[k] < LEAST_LEFT * whole[k]) idle[k] = 1;
-  }
-  return limit;
 }
 
 const std::vector<double> &MPMConduction::face_capacity()
@@ -628,7 +339,7 @@ void MPMConduction::find_ends()
   static constexpr double REACH = 5.0;    // node spacings: the cell of a face and the next one
   const MPMFrame &frame = *field.frame;
   const double reach = REACH * field.lattice.h;
-  const auto add = [&](const MPMCutRooms::Part &part) {
+  const auto add = [&](const MPMCutDomains::Part &part) {
     const int i = part.point;
     const double V = part.volume * atom->vfrac[i] * frame.lattice_jacobian(i) /
         frame.circle(frame.places()[i][0]);
@@ -641,7 +352,7 @@ void MPMConduction::find_ends()
     if (faces.is_near(frame.places()[part.point], reach)) add(part);
   for (const auto &run : field.map->runs)
     for (int i = run.first; thermal(run.material) && i < run.last; i++) {
-      MPMCutRooms::Part whole;
+      MPMCutDomains::Part whole;
       if (!cuts.is_cut[i] && faces.is_near(frame.places()[i], reach) &&
           cuts.make_whole(i, run, whole))
         add(whole);
@@ -665,9 +376,9 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
     layers->find([&](const MPMPointMap::Run &run, int first, int n, double *k, double *V) {
       const Thermal *const t = thermal(run.material);
       if (!t) return false;
-      Conduction room;
+      Conduction buffer;
       for (int p = 0; p < n; p++) {
-        k[p] = t->at(first + p, room).conductivity;
+        k[p] = t->at(first + p, buffer).conductivity;
         V[p] = volume_of(first + p);
       }
       return true;
@@ -678,8 +389,8 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
         if (!t) return false;
         const double *const rmass = atom->rmass + first, *const vfrac = atom->vfrac + first;
         double *const V = volumes.data() + first;
-        double room[BATCH];
-        const double *const J = field.jacobians.get(field, first, n, room);
+        double buffer[BATCH];
+        const double *const J = field.jacobians.get(field, first, n, buffer);
         for (int p = 0; p < n; p++) V[p] = vfrac[p] * J[p];
         Conduction c = t->all;
         double greatest = c.most();
@@ -693,7 +404,7 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
         }
         if (simple && !t->varies && !layers) {
           for (int p = 0; p < n; p++) points.capacity[p] = rmass[p] * c.capacity;
-          for (int p = 0; p < n; p++) room[p] = greatest * V[p];
+          for (int p = 0; p < n; p++) buffer[p] = greatest * V[p];
         } else {
           for (int p = 0; p < n; p++) {
             if (t->varies) {
@@ -703,10 +414,10 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
             if (layers) greatest = layers->most(first + p);
             if (!simple) most = std::max(most, bound(*t, first + p, V[p]));
             points.capacity[p] = rmass[p] * c.capacity;
-            room[p] = greatest * V[p];
+            buffer[p] = greatest * V[p];
           }
         }
-        if (simple) raise_ratio(most, n, room, points.capacity);
+        if (simple) raise_ratio(most, n, buffer, points.capacity);
         for (int p = 0; wants_volumes && p < n; p++)
           points.volume[p] = total ? vfrac[p] * field.frame->lattice_jacobian(first + p) : V[p];
         return true;
@@ -733,8 +444,9 @@ void MPMConduction::find_unseen()
       transfer.order,
       [this](const MPMPointMap::Run &run, int first, int n, double *C) {
         const Thermal *const t = thermal(run.material);
-        Conduction room;
-        for (int p = 0; p < n; p++) C[p] = atom->rmass[first + p] * t->at(first + p, room).capacity;
+        Conduction buffer;
+        for (int p = 0; p < n; p++)
+          C[p] = atom->rmass[first + p] * t->at(first + p, buffer).capacity;
       },
       unseen);
   for (std::size_t k = 0; k < unseen.size(); k++) unseen[k] = temperature[k] - unseen[k];
@@ -757,7 +469,7 @@ void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::R
 {
   const double *const V = volumes.data() + first;
   const double *const share = shares.empty() || left == ALL ? nullptr : shares.data() + first;
-  Conduction room;
+  Conduction buffer;
   for (int p = 0; p < n; p++) {
     const double conducting = share ? V[p] * share[p] : V[p];
     if (total || t.all.orthotropic) {
@@ -768,13 +480,13 @@ void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::R
     } else if (layers) {
       double times = -conducting;
       if (t.jumps && !ranges.empty()) {
-        const double mean = conduction_of(t, first + p, room).conductivity;
-        times *= mean / t.at(first + p, room).conductivity;
+        const double mean = conduction_of(t, first + p, buffer).conductivity;
+        times *= mean / t.at(first + p, buffer).conductivity;
       }
       layers->multiply(first + p, q[p]);
       for (int d = 0; d < 3; d++) q[p][d] *= times;
     } else {
-      const double factor = -conducting * conduction_of(t, first + p, room).conductivity;
+      const double factor = -conducting * conduction_of(t, first + p, buffer).conductivity;
       for (int d = 0; d < 3; d++) q[p][d] *= factor;
     }
     q[p][3] = 0.0;
@@ -806,7 +518,7 @@ void MPMConduction::find_changes()
       });
 }
 
-/** Adds the conduction of points whose rooms are in several cells. */
+/** Adds the conduction of points whose domains are in several cells. */
 void MPMConduction::conduct_parts()
 {
   for (const auto &part : cuts.parts) {
@@ -971,64 +683,6 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
       (relaxes && at_start == OF_NODES) || xpic);
   ranges.clear();
   return got;
-}
-
-/* ---------------------------------------------------------------------- */
-
-/** Greatest of all conductivities, including those that points have at present by their temperature or a
- *  random field. */
-double MPMConduction::greatest_possible() const
-{
-  if (std::none_of(thermals.begin(), thermals.end(), [this](const Thermal &t) {
-        return t.varies && is_present(t);
-      }))
-    return greatest;
-  double mine = greatest, all;
-  Conduction room;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (const Thermal *const t = field.is_point(i) ? thermal(field.material_of(i)) : nullptr)
-      mine = std::max(mine, t->at(i, room).conductivity);
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return all;
-}
-
-/** Points with domains have the bound of the last step and, before the first step, that inside of an
- *  undeformed body. Functions that points alone do not bound have the rate of light nodes, which appear as
- *  soon as a point comes to another cell. */
-double MPMConduction::greatest_rate_of_points(tagint &tag) const
-{
-  if (!active) return 0.0;
-  const double h = field.lattice.h;
-  const int dim = field.lattice.dim;
-  const bool bounded = steepest > 0.0 || field.boxes;
-  double most = 0.0;
-  const double possible = layers ? greatest_possible() : 0.0;
-  Conduction room;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
-    const Thermal *const t = thermal(field.material_of(i));
-    if (!t) continue;
-    double here = 0.0;
-    if (bounded) {
-      here = bound(*t, i, volume_of(i));
-      // at interfaces what is possible counts, not what is there at
-      // present, so that it is the same after a restart
-      if (layers) here *= layers->most_over_own(possible / t->at(i, room).conductivity);
-    } else if (!field.domains || conducted == 0.0) {
-      double k[3][3], x[24], least = 1.0;
-      tensor(*t, i, k);
-      if (field.domains) field.domains->corners_of_box(i, x);
-      for (int d = 0; field.domains && d < dim; d++)
-        for (int c = 0; c < 1 << dim; c++) least = std::min(least, fabs(x[dim * c + d]) / h);
-      const double steep = field.domains ? 1.0 / (least * least) : MOST_AT_LIGHT_NODES * 4.0 * dim;
-      here = steep / (h * h) * greatest_row(dim, k) * volume_of(i) /
-          (atom->rmass[i] * t->at(i, room).capacity);
-    }
-    if (here <= most) continue;
-    most = here;
-    tag = atom->tag[i];
-  }
-  return field.domains && conducted > 0.0 ? conducted : most;
 }
 
 double MPMConduction::memory_usage() const

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_CONDUCTION_H
 #define LMP_MPM_CONDUCTION_H
 
-#include "diffusion/mpm_cut_rooms.h"
+#include "diffusion/mpm_cut_domains.h"
 #include "diffusion/mpm_diffusion_solver.h"
 #include "diffusion/mpm_layer_mean.h"
 #include "diffusion/mpm_node_scalar.h"
@@ -58,9 +58,9 @@ class MPMConduction : protected Pointers {
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
-  /** Start of a run. surfaces: heat also comes through surfaces other than faces of the box. told_of_layers: set once a
+  /** Start of a run. surfaces: heat also comes through surfaces other than faces of the box. warned_of_layers: set once a
    *  warning about interfaces without mean conductivities has been printed. */
-  void init(double sigma, bool surfaces, bool &told_of_layers);
+  void init(double sigma, bool surfaces, bool &warned_of_layers);
 
   /** First part of a step: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
    *  the transfers pic and xpic. starts: the first call of find_rates() will be for these temperatures, except those that
@@ -121,7 +121,7 @@ class MPMConduction : protected Pointers {
   /** [nnodes] temperatures of nodes and their rates, for MPMSuperStep. */
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
-  /** Bernstein polynomials: the box of a point (MPMCutRooms) can reach into a cell that the point is not in. */
+  /** Bernstein polynomials: the box of a point (MPMCutDomains) can reach into a cell that the point is not in. */
   bool looks_beyond_points() const;
   void extend_topology();
   /** Bernstein polynomials: idle nodes have so little capacity that nothing is conducted there, and no heat may come in. */
@@ -168,11 +168,11 @@ class MPMConduction : protected Pointers {
     bool varies;                // from point to point
     bool jumps;                 // its conductivity depends on the temperature, and it melts
     MPM_NS::Conduction all;     // of all points; if it varies, the mean
-    /** Values of point i. room: memory for these if they vary. */
-    const MPM_NS::Conduction &at(int i, MPM_NS::Conduction &room) const
+    /** Values of point i. buffer: memory for these if they vary. */
+    const MPM_NS::Conduction &at(int i, MPM_NS::Conduction &buffer) const
     {
       if (!varies) return all;
-      return room = fix->material->conduction(fix->history[i]);
+      return buffer = fix->material->conduction(fix->history[i]);
     }
   };
 
@@ -198,7 +198,7 @@ class MPMConduction : protected Pointers {
   std::unique_ptr<MPMLayerMean> layers;
   double greatest = 0.0;    // largest of all conductivities, with layers
   // has a warning been printed about interfaces without means? In the fix, as this object is made anew for each run
-  bool *told = nullptr;
+  bool *warned = nullptr;
   double fastest_point = 0.0;    // largest rate in this step, without the factor of the functions
   // do rates of points follow from capacities and volumes alone; do nodes keep their temperatures of the start of the step?
   bool simple = false, keeps = false;
@@ -210,7 +210,7 @@ class MPMConduction : protected Pointers {
   std::vector<Range> ranges;
   // [n] share of their conductivity that is left to points, see bound_by_rows(), zero for points in parts; empty: all
   std::vector<double> shares;
-  MPMCutRooms cuts;
+  MPMCutDomains cuts;
   std::vector<double> ends;    // [nodes][3], see face_gradient()
   std::vector<char> idle;      // [nodes] is the node idle? Empty: none is
   double usual_rate = 0.0;     // bound of the rates of nodes inside of a body [1/time]
@@ -222,7 +222,7 @@ class MPMConduction : protected Pointers {
   bool is_present(const Thermal &) const;
   void keep_present(const std::vector<signed char> &mine);
   double volume_of(int i) const;
-  const MPM_NS::Conduction &conduction_of(const Thermal &, int i, MPM_NS::Conduction &room) const;
+  const MPM_NS::Conduction &conduction_of(const Thermal &, int i, MPM_NS::Conduction &buffer) const;
   void find_ranges();
   void tensor(const Thermal &, int i, double k[3][3]) const;
   bool is_plain() const;

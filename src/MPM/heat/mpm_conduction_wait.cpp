@@ -46,8 +46,8 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
 #include "field/mpm_stencil.h"
-#include "heat/fix_mpm_heat.h"
 #include "heat/mpm_conduction.h"
+#include "heat/mpm_heat_flow.h"
 #include "implicit/fix_mpm_implicit.h"
 #include "region.h"
 
@@ -68,42 +68,44 @@ static constexpr double ROUND_OFF = 1.0e-9;
 static constexpr double BIG = std::numeric_limits<double>::max();
 
 /** Counts one more step of fix mpm; true while it is not yet time for the conduction. Collective. */
-bool FixMPMHeat::wait()
+bool MPMHeatFlow::wait()
 {
   const double dt = fields[0]->field.step_dt();
   waited.steps++;
   waited.time += dt;
-  if (every == AUTO ? waited.steps >= MOST_STEPS || waited.time + dt > waited.longest * NEARLY
-                    : waited.steps >= every)
+  if (options.every == MPMHeatOptions::AUTO
+          ? waited.steps >= MOST_STEPS || waited.time + dt > waited.longest * NEARLY
+          : waited.steps >= options.every)
     return false;
   for (auto &field : fields) {
-    if (!rubs || !field->conducts_in_part()) continue;
-    if (every == AUTO) return false;
+    if (!has_friction || !field->conducts_in_part()) continue;
+    if (options.every == MPMHeatOptions::AUTO) return false;
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/heat {} every {}: heat of friction needs that all materials of fix mpm "
                "{} conduct: use every 1",
-               id, every, field->field.id());
+               id, options.every, field->field.id());
   }
   for (auto &field : fields)
-    if (rubs && field->conducts()) past.got += field->keep_given();
+    if (has_friction && field->conducts()) totals.got += field->keep_given();
   return true;
 }
 
 /** For the start of a run with every auto: is there anything for which conduction cannot wait? */
-bool FixMPMHeat::needs_each_step() const
+bool MPMHeatFlow::needs_each_step() const
 {
-  const bool moves = std::any_of(surfaces.begin(), surfaces.end(), [this](const auto &s) {
-    auto *const region = s.region.empty() ? nullptr : domain->get_region_by_id(s.region);
-    return region && region->dynamic_check();
-  });
-  const bool rubs_levels = rubs && !refined.empty();
-  return grains || penalty || solver || moves || has_variables() || rubs_levels ||
-      !find_fixes<FixMPMImplicit>(lmp).empty();
+  const bool moves =
+      std::any_of(options.surfaces.begin(), options.surfaces.end(), [this](const auto &s) {
+        auto *const region = s.region.empty() ? nullptr : domain->get_region_by_id(s.region);
+        return region && region->dynamic_check();
+      });
+  const bool friction_on_levels = has_friction && !refined.empty();
+  return options.grains || options.penalty || solver || moves || options.has_variables() ||
+      friction_on_levels || !find_fixes<FixMPMImplicit>(lmp).empty();
 }
 
 /** Called after a conduction: time for which the next one may wait. 0: it must be in the next step.
  *  Collective. */
-double FixMPMHeat::longest_wait() const
+double MPMHeatFlow::longest_wait() const
 {
   if (each_step) return 0.0;
   double rate = 0.0, h = BIG;
@@ -145,7 +147,7 @@ double MPMConduction::keep_given()
     if (given[k] != 0.0) warmed[k / NODES_PER_BLOCK] = 1;
 
   const MPMStencil stencil(field);
-  Conduction room;
+  Conduction buffer;
   double got = 0.0;
   for (const auto &run : field.map->runs) {
     const auto &block = grid.blocks[run.slot];
@@ -162,7 +164,7 @@ double MPMConduction::keep_given()
       if (heat == 0.0) continue;
       got += atom->rmass[i] * heat;
       double *const history = t->fix->history[i];
-      const Conduction &c = t->at(i, room);
+      const Conduction &c = t->at(i, buffer);
       if (c.by_enthalpy) {
         t->fix->material->warm(history, heat);
       } else {

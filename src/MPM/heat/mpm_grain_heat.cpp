@@ -89,7 +89,7 @@ void MPMGrainHeat::show()
 {
   for (int i = 0; i < atom->nlocal; i++) {
     const auto *const material = material_of(i);
-    const int column = material ? material->find_history("temperature") : -1;
+    const int column = material ? material->temperature() : -1;
     if (column >= 0) atom->temperature[i] = material->history[i][column];
   }
 }

@@ -234,7 +234,7 @@ void MPMHeatLevels::find_surface()
 
 void MPMHeatLevels::look_for_thin_skins()
 {
-  if (told) return;
+  if (warned) return;
   int mine = 0, all;
   for (std::size_t k = 0; k < pairs.size(); k++)
     if (pairs[k].fine->faces.has_part_of_line([&](int64_t node) {
@@ -243,7 +243,7 @@ void MPMHeatLevels::look_for_thin_skins()
       mine = (int) k + 1;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MAX, world);
   if (!all) return;
-  told = true;
+  warned = true;
   if (comm->me == 0)
     error->warning(
         FLERR,

@@ -52,7 +52,7 @@ class MPMHeatLevels : protected Pointers {
  private:
   std::vector<Pair> pairs;
   std::vector<MPMConduction *> levels;    // from the coarsest to the finest
-  bool told = false;
+  bool warned = false;
 
   const MPMTwoScale *after(std::size_t k) const;
   template <class F> void to_parents(const F &);

@@ -234,13 +234,13 @@ void MPMHeatSurfaces::look_behind(MPMHeatThin &thin, const Place &place, const i
 }
 
 /** Share of the volume of a node that fixed faces of the box leave. */
-double MPMHeatSurfaces::room(int64_t node) const
+double MPMHeatSurfaces::volume_fraction(int64_t node) const
 {
   int index[3];
   body.field.grid.node_index(node, index);
-  double room = 1.0;
-  for (int d = 0; d < body.field.lattice.dim; d++) room *= body.room(d, index[d]);
-  return room;
+  double fraction = 1.0;
+  for (int d = 0; d < body.field.lattice.dim; d++) fraction *= body.room(d, index[d]);
+  return fraction;
 }
 
 void MPMHeatSurfaces::find_filled()
@@ -249,7 +249,7 @@ void MPMHeatSurfaces::find_filled()
   filled.assign(nnodes, 0.0);
   for (int64_t node = 0; node < nnodes; node++) {
     if (!(body.share[node] > 0.0)) continue;
-    const double all = room(node);
+    const double all = volume_fraction(node);
     filled[node] = all > 0.0 ? body.share[node] / all : 0.0;
   }
   body.field.nodes.complete(filled.data(), 1, 1);
@@ -279,7 +279,7 @@ void MPMHeatSurfaces::find_covered()
   body.field.nodes.sum(covered.data(), 1, 0, 1);
   for (int64_t node = 0; node < grid.nnodes(); node++) {
     if (covered[node] == 0.0) continue;
-    const double all = body.share[node] > 0.0 ? room(node) : 0.0;
+    const double all = body.share[node] > 0.0 ? volume_fraction(node) : 0.0;
     covered[node] = all > 0.0 ? covered[node] / all : 0.0;
   }
   body.field.nodes.complete(covered.data(), 1, 1);

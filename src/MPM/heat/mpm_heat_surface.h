@@ -111,7 +111,7 @@ class MPMHeatSurfaces : protected Pointers {
   void keep(const Place &, const int *index);
   void look_behind(MPMHeatThin &, const Place &, const int *index, double part,
                    const double *into) const;
-  double room(int64_t node) const;
+  double volume_fraction(int64_t node) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -72,7 +72,7 @@ static int is_empty(const MPMHeatBody &body, const double *at)
 
 bool MPMHeatThin::looks(int nentries)
 {
-  if (is_told || steps++ % LOOK_EVERY) return false;
+  if (warned || steps++ % LOOK_EVERY) return false;
   areas.assign(nentries, {0.0, 0.0});
   notes.assign(nentries, {});
   return true;
@@ -103,7 +103,7 @@ bool MPMHeatThin::tell(MPI_Comm world, Found &found)
     std::array<double, 4> first;
     if (!(all[k][0] > MUCH * all[k][1]) || !notes[k].tell(world, first)) continue;
     found = {(int) k, {first[1], first[2], first[3]}};
-    return is_told = true;
+    return warned = true;
   }
   return false;
 }

@@ -37,7 +37,7 @@ class MPMHeatThin {
 
  private:
   int steps = 0;
-  bool is_told = false;
+  bool warned = false;
   std::vector<std::array<double, 2>> areas;    // [entry] area of thin bodies, and of all bodies
   std::vector<MPMFirstNote<4>> notes;          // [entry] a constant number, and the place
 };

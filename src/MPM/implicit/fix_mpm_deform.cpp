@@ -52,6 +52,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
 static constexpr double STRAINED = 1.0e-6;    // mean strain that is more than round-off
@@ -198,13 +199,15 @@ void FixMPMDeform::init_physics(MPMPlan &plan)
 void FixMPMDeform::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
-    plan.together("mean strain", [this]() {
-      find_motion();
-    });
+    plan.together("mean strain", {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::OWN},
+                  {Data::OWN}, [this]() {
+                    find_motion();
+                  });
   if (place == MPMPlan::AFTER_MOTION)
-    plan.together("mean stress", [this]() {
-      end_motion();
-    });
+    plan.together("mean stress", {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::OWN},
+                  {Data::OWN}, [this]() {
+                    end_motion();
+                  });
 }
 
 /* ---------------------------------------------------------------------- */

@@ -37,6 +37,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/implicit static|euler|newmark|midpoint|alpha|hht keyword value ...
@@ -163,7 +164,7 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
   if (!stabilize_is_given) choose_stabilize(plan);
   for (auto *field : fields) check_field(plan, *field);
   for (auto *field : fields) {
-    field->keep_old = true;
+    field->keep_old_velocities();
     field->time_limit->bound = false;
   }
   const MPMImplicitOptions &mine = *this;
@@ -358,31 +359,34 @@ void FixMPMImplicit::choose_stabilize(const MPMPlan &plan)
 
 void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
+  const Data all = {Data::POSITION, Data::VELOCITY, Data::AFFINE, Data::DEFORMATION,
+                    Data::STRESS,   Data::HISTORY,  Data::MASS,   Data::FORCE,
+                    Data::NODES,    Data::BLOCKS,   Data::OWN};
   if (place == MPMPlan::AFTER_MOMENTUM)
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::NODES, Data::OWN}, [this]() {
       step();
     });
   if (place == MPMPlan::AFTER_ACTIONS && time == STATIC)
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::NODES, Data::OWN}, [this]() {
       solver->set_velocities();
     });
   if (place == MPMPlan::AFTER_SOLVE)
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::NODES, Data::OWN}, [this]() {
       solver->finish();
     });
   if (place == MPMPlan::AFTER_MOTION)
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::OWN}, [this]() {
       solver->check_contacts();
     });
   if (place == MPMPlan::AFTER_MOTION && time == STATIC)
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::VELOCITY, Data::AFFINE, Data::OWN}, [this]() {
       rest();
     });
   if (place == MPMPlan::AFTER_MOTION && time == MIDPOINT &&
       std::any_of(fields.begin(), fields.end(), [](const MPMField *of) {
         return (bool) of->affine;
       }))
-    plan.together("implicit step", [this]() {
+    plan.together("implicit step", all, {Data::VELOCITY, Data::AFFINE, Data::OWN}, [this]() {
       solver->end_motion();
     });
 }

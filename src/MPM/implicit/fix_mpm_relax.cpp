@@ -53,6 +53,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 static constexpr double SOON = 3.0;    // steps between two rests
 static constexpr double GROWN =
@@ -98,7 +99,7 @@ void FixMPMRelax::init()
 void FixMPMRelax::init_physics(MPMPlan &plan)
 {
   fields = plan.fields;
-  for (auto *field : fields) field->keep_old = true;
+  for (auto *field : fields) field->keep_old_velocities();
   may_start_by_half = can_start_by_half(plan);
 }
 
@@ -123,13 +124,15 @@ bool FixMPMRelax::can_start_by_half(const MPMPlan &plan) const
 void FixMPMRelax::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::AFTER_SOLVE)
-    plan.together("relaxation", [this]() {
-      look();
-    });
+    plan.together("relaxation", {Data::VELOCITY, Data::MASS, Data::NODES, Data::BLOCKS, Data::OWN},
+                  {Data::NODES, Data::OWN}, [this]() {
+                    look();
+                  });
   if (place == MPMPlan::AFTER_MOTION)
-    plan.together("relaxation", [this]() {
-      if (falls) rest();
-    });
+    plan.together("relaxation", {Data::VELOCITY, Data::MASS, Data::FORCE},
+                  {Data::VELOCITY, Data::AFFINE, Data::OWN}, [this]() {
+                    if (falls) rest();
+                  });
 }
 
 void FixMPMRelax::setup(int)

@@ -90,7 +90,7 @@ void FixMPMColumn::init_action()
                 {field->options.modified_edges, "edges modified", "use edges plain, the default"},
                 {field->options.has_fmpm(), "transfer fmpm",
                  "its terms differ in a plane of nodes: use another transfer"}});
-  field->keep_old = true;
+  field->keep_old_velocities();
   fresh = true;
 }
 

@@ -62,6 +62,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 // rate of a node, in wave speeds over node spacings, times the density of the far side over that of the body: with stress mls, stress
 // pulls less at nodes that points hardly reach than the functions there tell, and dashpots must not pull more
@@ -71,51 +72,6 @@ static constexpr int DEPTH =
     3;    // cells below the surface whose nodes count for what the support lacks
 
 static constexpr double UPRIGHT = 1.0e-3;    // slope of a surface at the side of a column
-
-/* ----------------------------------------------------------------------
-   fix ID group mpm/dashpot region REG cp cs keyword values ...
-------------------------------------------------------------------------- */
-
-Options MPMDashpotOptions::declare(int dim)
-{
-  using namespace option;
-  Options o("fix mpm/dashpot");
-  o.argument(word(surface, {{"region", REGION, "", {text(region, "REG", "")}}}, "surface"));
-  o.argument(number(speed_p, "cp", POSITIVE, "velocity", ""));
-  o.argument(number(speed_s, "cs", NOT_NEGATIVE, "velocity", ""));
-  o.add("density",
-        {number(density, "rho", POSITIVE, "mass/distance^dim",
-                "density of the material on the far side")})
-      .standard("density of the points next to the surface");
-  o.add("incoming",
-        {variables(
-            incoming, 3, "vx vy vz", "velocity",
-            "velocity of the material in waves that come from the far side, can be variables")})
-      .then([this] {
-        has_incoming = true;
-      })
-      .once()
-      .standard("none");
-  o.add("support", {yes_no(support)}, "hold the stress that the surface has at the start");
-  o.add("spring",
-        {number(relax, "tau", POSITIVE, "time",
-                "time that gives springs besides the dashpots the stiffness rho c/tau per area")})
-      .standard("none");
-  o.add("column",
-        {text(column, "fix-ID",
-              "ID of a :doc:`fix mpm/column <fix_mpm_column>` with which the far side moves")})
-      .standard("none, the far side is at rest");
-  MPMFace::declare(o, spacing, area);
-  o.refuse([=] {
-    return OptionRules{{speed_s >= speed_p, "",
-                        "has a speed of shear waves that is not below that of pressure waves"},
-                       {dim == 2 && (incoming[2].value != 0.0 || !incoming[2].variable.empty()),
-                        "incoming", "must be along x and y in 2d: {incoming}"},
-                       {has_incoming && !column.empty(), "column",
-                        "is the free field, whose waves come to its base: remove incoming here"}};
-  });
-  return o;
-}
 
 FixMPMDashpot::FixMPMDashpot(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
@@ -179,7 +135,7 @@ void FixMPMDashpot::init_physics(MPMPlan &plan)
                   {options.has_fmpm(), "transfer fmpm",
                    "its terms do not have the dashpots: use another transfer"}});
     warn_of_light_nodes(*field);
-    field->keep_old = true;
+    field->keep_old_velocities();
     bodies.emplace_back();
     bodies.back().field = field;
     bodies.back().rates = &field->nodes.add_field("rates of " + std::string(id), 6);
@@ -429,9 +385,10 @@ void FixMPMDashpot::add_stages(MPMPlan &plan, MPMPlan::Place place)
         return field->options.watches_gain();
       }))
     return;
-  plan.together("work of supports", [this] {
-    for (const auto &body : bodies) tell_watch(body);
-  });
+  plan.together("work of supports", {Data::VELOCITY, Data::NODES, Data::BLOCKS, Data::OWN},
+                {Data::OWN}, [this] {
+                  for (const auto &body : bodies) tell_watch(body);
+                });
 }
 
 /* ---------------------------------------------------------------------- */

@@ -7,9 +7,9 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The material in the mouth is rigid: its nodes, and those upstream of it and around it that its points reach, have the velocity
-   of the flow. Points there neither strain nor slow down, whatever the pressure behind the mouth is, so that layers keep their
-   distance up to the end of the mouth. Were they free, a pressure at the mouth would slow them down, and new layers would come
+   The material in the inlet is rigid: its nodes, and those upstream of it and around it that its points reach, have the velocity
+   of the flow. Points there neither strain nor slow down, whatever the pressure behind the inlet is, so that layers keep their
+   distance up to the end of the inlet. Were they free, a pressure at the inlet would slow them down, and new layers would come
    on top of those.
 ------------------------------------------------------------------------- */
 
@@ -23,7 +23,7 @@
 #include "field/mpm_guard.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_strain.h"
-#include "loads/mpm_mouth.h"
+#include "loads/mpm_inlet.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "step/mpm_stages.h"
@@ -279,12 +279,12 @@ void FixMPMEmit::init()
 }
 
 /* ----------------------------------------------------------------------
-   Fields are known here, which they need not be in init(). At the very start the mouth is filled
+   Fields are known here, which they need not be in init(). At the very start the inlet is filled
 ------------------------------------------------------------------------- */
 
 void FixMPMEmit::setup_pre_exchange()
 {
-  make_mouth();
+  make_inlet();
   note_ids();
   if (past.started != 0.0) return;
   past.started = 1.0;
@@ -299,11 +299,11 @@ void FixMPMEmit::setup_pre_exchange()
         "Fix mpm/emit {}: point {} is in the mouth at the start, which this fix fills: leave "
         "region {} out when points are made",
         id, there, region_id);
-  past.travel = mouth->length;
+  past.travel = inlet->length;
   emit();
 }
 
-void FixMPMEmit::make_mouth()
+void FixMPMEmit::make_inlet()
 {
   evaluate_velocities();
   if (dot(past.direction, past.direction) == 0.0)
@@ -316,19 +316,19 @@ void FixMPMEmit::make_mouth()
         id);
   const double h = spacing_of_nodes();
   layer = spacing > 0.0 ? spacing : h / ppc;
-  mouth =
-      std::make_unique<MPMMouth>(lmp, fmt::format("Fix mpm/emit {}", id), region, past.direction,
+  inlet =
+      std::make_unique<MPMInlet>(lmp, fmt::format("Fix mpm/emit {}", id), region, past.direction,
                                  layer, area, field && field->options.axisymmetric);
-  std::copy_n(mouth->normal, 3, past.direction);
+  std::copy_n(inlet->normal, 3, past.direction);
   section = 0.0;
-  for (const auto &column : mouth->columns)
+  for (const auto &column : inlet->columns)
     section += column.area * (field ? field->frame->circle(column.x[0]) : 1.0);
   const Fix &grid = fluid ? dynamic_cast<const Fix &>(*fluid) : field->fix;
-  if (mouth->length < h)
+  if (inlet->length < h)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/emit {}: the mouth is {:.6g} long along the flow, less than a cell of fix "
                "{} {} ({:.6g}): make region {} longer",
-               id, mouth->length, grid.style, grid.id, h, region_id);
+               id, inlet->length, grid.style, grid.id, h, region_id);
   if (layer > h * (1.0 + 1.0e-9) && comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/emit {}: points are {:.6g} apart, more than the cells of fix {} {} "
@@ -337,7 +337,7 @@ void FixMPMEmit::make_mouth()
 }
 
 /* ----------------------------------------------------------------------
-   velocities of now: of the flow relative to the mouth, and of the mouth
+   velocities of now: of the flow relative to the inlet, and of the inlet
 ------------------------------------------------------------------------- */
 
 void FixMPMEmit::evaluate_velocities()
@@ -360,7 +360,7 @@ void FixMPMEmit::update_motion()
   if (motion_step == update->ntimestep) return;
   motion_step = update->ntimestep;
   evaluate_velocities();
-  const double *const n = mouth->normal;
+  const double *const n = inlet->normal;
   speed = dot(flow, n);
   double across = 0.0;
   for (int d = 0; d < 3; d++) across += (flow[d] - speed * n[d]) * (flow[d] - speed * n[d]);
@@ -374,7 +374,7 @@ void FixMPMEmit::update_motion()
 }
 
 /* ----------------------------------------------------------------------
-   nodes of the mouth. Upstream and around it as far as its points reach, so that these have its velocity alone
+   nodes of the inlet. Upstream and around it as far as its points reach, so that these have its velocity alone
 ------------------------------------------------------------------------- */
 
 static double reach_in_cells(Shape shape)
@@ -407,16 +407,16 @@ void FixMPMEmit::list_nodes()
     grid.node_position(first, low);
     grid.node_position(first + NODES_PER_BLOCK - 1, high);
     for (int d = 0; d < 3; d++)
-      r[d] = 0.5 * (low[d] + high[d]) - past.shift[d] - mouth->middle()[d];
+      r[d] = 0.5 * (low[d] + high[d]) - past.shift[d] - inlet->middle()[d];
     if (field->lattice.dim == 2) r[2] = 0.0;
     // reach along all axes, which is more than that along one
-    if (!mouth->is_near(r, size + 2.0 * reach)) continue;
+    if (!inlet->is_near(r, size + 2.0 * reach)) continue;
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (grid.blocks[slot].alias >> n & 1) continue;
       double x[3];
       grid.node_position(first + n, x);
       for (int d = 0; d < 3; d++) x[d] -= past.shift[d];
-      if (mouth->holds(x, reach)) nodes.push_back(first + n);
+      if (inlet->holds(x, reach)) nodes.push_back(first + n);
     }
   }
 }
@@ -530,7 +530,7 @@ tagint FixMPMEmit::last_id(bigint npoint) const
 void FixMPMEmit::emit()
 {
   const auto first = (bigint) past.layers, last = layers_now();
-  const bigint ncolumn = (bigint) mouth->columns.size(), npoint = ncolumn * (last - first);
+  const bigint ncolumn = (bigint) inlet->columns.size(), npoint = ncolumn * (last - first);
   if (npoint <= 0) return;
 
   tagint tag = last_id(npoint);
@@ -540,16 +540,16 @@ void FixMPMEmit::emit()
   for (int d = 0; d < 3; d++) v[d] = flow[d] + drift[d];
   if (comm->nprocs > 1) comm->coord2proc_setup();
   for (bigint k = first; k < last; k++)
-    for (const auto &column : mouth->columns) {
+    for (const auto &column : inlet->columns) {
       const double along = past.travel - ((double) k + 0.5) * layer;
       double x[3];
-      for (int d = 0; d < 3; d++) x[d] = column.x[d] + past.shift[d] + along * mouth->normal[d];
+      for (int d = 0; d < 3; d++) x[d] = column.x[d] + past.shift[d] + along * inlet->normal[d];
       make_point(x, v, column.area * layer, ++tag);
     }
   past.layers = (double) last;
   for (auto *other : find_fixes<FixMPMEmit>(lmp)) other->past.newest = (double) tag;
 
-  const bool runs = field && field->running;
+  const bool runs = field && field->is_running();
   if (runs) give_initial_stress(*field, nlocal);
   MPMTraffic here, all;
   for (int i = nlocal; i < atom->nlocal; i++) {
@@ -606,8 +606,7 @@ void FixMPMEmit::make_point(const double *where, const double *v, double volume,
 void FixMPMEmit::give_temperature(int i)
 {
   double *const row = material->history[i];
-  const int column = material->find_history("temperature"),
-            molten = material->find_history("molten");
+  const int column = material->temperature(), molten = material->molten();
   const Conduction c = material->material->conduction(row);
   if (!c.by_enthalpy) {
     row[column] = temperature;
@@ -656,7 +655,7 @@ void FixMPMEmit::restart(char *buf)
 
 /* ----------------------------------------------------------------------
    scalar: mass that has entered; vector: points, mass, momentum, and energy of these, speed and mass of the flow per time,
-   force of the mouth on the material and its work
+   force of the inlet on the material and its work
 ------------------------------------------------------------------------- */
 
 double FixMPMEmit::compute_scalar()
@@ -687,5 +686,5 @@ double FixMPMEmit::compute_vector(int k)
 double FixMPMEmit::memory_usage()
 {
   return nodes.capacity() * sizeof(int64_t) +
-      (mouth ? mouth->columns.capacity() * sizeof(MPMMouth::Column) : 0.0);
+      (inlet ? inlet->columns.capacity() * sizeof(MPMInlet::Column) : 0.0);
 }

@@ -29,14 +29,14 @@ namespace LAMMPS_NS {
 class FixMPMMaterial;
 class MPMField;
 class MPMFluid;
-class MPMMouth;
+class MPMInlet;
 class Region;
 
 /** Keywords of fix mpm/emit. */
 struct MPMEmitOptions {
   std::string region_id;
-  MPM_NS::NumberOrVariable velocity[3];    ///< of the material, relative to the mouth
-  MPM_NS::NumberOrVariable move[3];        ///< velocity of the mouth
+  MPM_NS::NumberOrVariable velocity[3];    ///< of the material, relative to the inlet
+  MPM_NS::NumberOrVariable move[3];        ///< velocity of the inlet
   double normal[3] = {0.0, 0.0, 0.0};    ///< direction of the flow; zero: direction of the velocity
   int ppc = 2;
   double spacing = 0.0, area = 0.0;    ///< 0: not given
@@ -46,8 +46,8 @@ struct MPMEmitOptions {
   MPM_NS::Options declare(int dimension);
 };
 
-/** Inflow of material points through a region, the mouth. Points enter at its upstream end, layer by layer, and move with
- *  the given velocity until they leave it, because the nodes of the mouth have that velocity.
+/** Inflow of material points through a region, the inlet. Points enter at its upstream end, layer by layer, and move with
+ *  the given velocity until they leave it, because the nodes of the inlet have that velocity.
  *
  *  Layers are frozen in the flow: layer k is at the distance S - (k + 1/2) d from the upstream end, where S is the
  *  distance that the flow has traveled so far and d is the distance between layers. A layer enters at its current place in
@@ -80,10 +80,10 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
 
   // for incompressible flows
 
-  /** Do the points enter this flow? */
-  bool emits_into(const Fix &flow) const { return (flow.groupbit & (1 | groupbit)) != 0; }
-  const MPMMouth &passage() const { return *mouth; }    ///< valid from setup_pre_exchange() on
-  /** Velocity v[3] of the material relative to the mouth in this step. Collective. */
+  /** Do the points enter the flow of this group? */
+  bool emits_into(int flow_groupbit) const { return (flow_groupbit & (1 | groupbit)) != 0; }
+  const MPMInlet &shape() const { return *inlet; }    ///< valid from setup_pre_exchange() on
+  /** Velocity v[3] of the material relative to the inlet in this step. Collective. */
   void velocity_now(double *v);
 
  private:
@@ -92,18 +92,18 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   MPMField *field = nullptr;
   const MPMFluid *fluid = nullptr;    // flow, in place of a field and a material
   FixMPMMaterial *material = nullptr;
-  std::unique_ptr<MPMMouth> mouth;
+  std::unique_ptr<MPMInlet> inlet;
   double layer = 0.0;      // distance between layers
-  double section = 0.0;    // area of the mouth; of rings around an axis of symmetry
+  double section = 0.0;    // area of the inlet; of rings around an axis of symmetry
 
-  // state in restart files, together with that of the mouth
+  // state in restart files, together with that of the inlet
   struct {
     double travel = 0.0;                  // distance that the flow has traveled so far, see above
-    double shift[3] = {0.0, 0.0, 0.0};    // displacement of the mouth since the start
+    double shift[3] = {0.0, 0.0, 0.0};    // displacement of the inlet since the start
     double direction[3] = {0.0, 0.0, 0.0};    // of the flow
     double layers = 0.0;                      // number of layers that have entered
     double started = 0.0;
-    double work = 0.0;      // of the mouth on the material, this rank's share [energy]
+    double work = 0.0;      // of the inlet on the material, this rank's share [energy]
     double newest = 0.0;    // largest ID of any point so far, including removed points
     double acted = 0.0;     // 1: there was a last step
     double velocity[3] = {0.0, 0.0, 0.0};    // that nodes had in the last step
@@ -111,17 +111,17 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   } past;
   static constexpr int NREAL = 15 + MPMTraffic::NREAL;
 
-  double flow[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};    // of material, of mouth
-  double speed = 0.0;                                    // along the flow, relative to the mouth
+  double flow[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};    // of material, of inlet
+  double speed = 0.0;                                    // along the flow, relative to the inlet
   bigint motion_step = -1;                               // step for which these are known
   double impulse[3] = {0.0, 0.0, 0.0}, dt_last = 0.0;    // on the material in the last step
-  std::vector<int64_t> nodes;                            // nodes of the mouth, which are held
+  std::vector<int64_t> nodes;                            // nodes of the inlet, which are held
 
   bool moves() const;
   void find_field();
   void refuse_combinations() const;
   double spacing_of_nodes() const;
-  void make_mouth();
+  void make_inlet();
   void evaluate_velocities();
   void update_motion();
   void list_nodes();

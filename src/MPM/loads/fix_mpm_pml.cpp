@@ -59,6 +59,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 static const char *const FACE[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 
@@ -145,7 +146,7 @@ void FixMPMPML::init_physics(MPMPlan &plan)
 {
   bodies.clear();
   is_inside.clear();
-  told = false;
+  warned = false;
   for (auto *field : plan.fields) {
     const auto &options = field->options;
     refuse_field(
@@ -165,7 +166,7 @@ void FixMPMPML::init_physics(MPMPlan &plan)
                    "Fix mpm/pml {}: the layers at {} and {} are thicker than the box, which has "
                    "{:.6g} cells there",
                    id, FACE[2 * axis], FACE[2 * axis + 1], domain->prd[axis] / field->lattice.h);
-    field->keep_old = true;
+    field->keep_old_velocities();
     field->stretching.push_back(this);
     bodies.push_back({field, &field->nodes.add_field("layers of " + std::string(id), 4), {}});
   }
@@ -281,12 +282,12 @@ void FixMPMPML::post_run()
   if (comm->me == 0 && all < known)
     error->warning(FLERR, "Fix mpm/pml {}: {:.0f} of the {:.0f} points of its layers are gone", id,
                    known - all, known);
-  if (comm->me == 0 && most > SMALL_STRAIN && !told)
+  if (comm->me == 0 && most > SMALL_STRAIN && !warned)
     error->warning(FLERR,
                    "Fix mpm/pml {}: strain in its layers is up to {:.3g}, and they are matched to "
                    "small strain only: put them further away, or use fix mpm/dashpot",
                    id, most);
-  told = most > SMALL_STRAIN;
+  warned = most > SMALL_STRAIN;
   known = all;
 }
 
@@ -310,10 +311,13 @@ void FixMPMPML::topology_changed(MPMField &field)
 void FixMPMPML::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   const auto each = [&](const char *name, void (FixMPMPML::*what)(Body &)) {
-    plan.each(name, [this, what](MPMField &field) {
-      for (auto &body : bodies)
-        if (body.field == &field) (this->*what)(body);
-    });
+    plan.each(name,
+              {Data::POSITION, Data::VELOCITY, Data::DEFORMATION, Data::STRESS, Data::MASS,
+               Data::NODES, Data::BLOCKS, Data::OWN},
+              {Data::NODES, Data::OWN}, [this, what](MPMField &field) {
+                for (auto &body : bodies)
+                  if (body.field == &field) (this->*what)(body);
+              });
   };
   if (place == MPMPlan::BEFORE_SOLVE) each("forces of matched layers", &FixMPMPML::find_forces);
   if (place == MPMPlan::AFTER_MOMENTUM) each("matched layers", &FixMPMPML::apply);

@@ -95,7 +95,7 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, public MPMStretch, priv
   double known = 0.0;                                  // number of points in the layers
   double largest = 0.0;                                // largest damping along one axis
   double work_of_nodes = 0.0, work_of_strain = 0.0;    // this rank's shares [energy]
-  bool told = false;
+  bool warned = false;
 
   double thickness(const MPMField &, int face) const;
   double depth(const MPMField &, int face, const double *x) const;

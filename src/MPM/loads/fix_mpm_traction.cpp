@@ -54,6 +54,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 /* ----------------------------------------------------------------------
    fix ID group mpm/traction surface values keyword values ...
@@ -199,7 +200,7 @@ void FixMPMTraction::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (!grows || place != MPMPlan::BEFORE_POINTS_TO_NODES) return;
   plan.each(
-      "area of surfaces",
+      "area of surfaces", {Data::POSITION, Data::DEFORMATION, Data::BLOCKS, Data::OWN}, {Data::OWN},
       [this](MPMField &field) {
         if (!field.time_limit->bound || update->ntimestep % EVERY == 0) find_growth(field);
       },
@@ -230,7 +231,7 @@ void FixMPMTraction::find_growth(MPMField &field)
 
 void FixMPMTraction::setup(int vflag)
 {
-  if (!told_of_nodes) note_nodes();
+  if (!warned_of_nodes) note_nodes();
   if (surface != FREE && !defined) define();
   note_lost();
   evenness_at_start = evenness();
@@ -255,7 +256,7 @@ void FixMPMTraction::note_nodes()
                "Fix mpm/traction {}: all points of group {} are nodes of fix mpm/elements, which "
                "have no surface: {}",
                id, group->names[igroup], remedy);
-  told_of_nodes = true;
+  warned_of_nodes = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/traction {}: {} points of group {} are nodes of fix mpm/elements, and "
@@ -341,10 +342,10 @@ double FixMPMTraction::mean_stretch() const
 void FixMPMTraction::look_for_stretch()
 {
   constexpr double MUCH = 1.5;
-  if (!grows || told_of_stretch || fields[0]->frame->is_total()) return;
+  if (!grows || warned_of_stretch || fields[0]->frame->is_total()) return;
   const double stretch = mean_stretch();
   if (!(stretch > MUCH)) return;
-  told_of_stretch = true;
+  warned_of_stretch = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/traction {}: the surface is stretched by a factor of {:.3g}; in the "

@@ -114,7 +114,7 @@ class FixMPMTraction :
   static constexpr int NSUM = 7;                  // force [3], present area, torque [3]
   double sums[NSUM] = {}, all_sums[NSUM] = {};    // for compute_vector(): of this rank, of all
   bool sums_known = true;
-  bool told_of_nodes = false;    // warned of nodes of finite elements
+  bool warned_of_nodes = false;    // warned of nodes of finite elements
   // so far, by forces on points and by stress, this rank's share [energy]
   double work[2] = {0.0, 0.0};
 
@@ -143,7 +143,7 @@ class FixMPMTraction :
   double evenness_at_start = 1.0;
   double evenness() const;
   void look_for_curls();
-  bool told_of_stretch = false;
+  bool warned_of_stretch = false;
   double mean_stretch() const;
   void look_for_stretch();
   void define();

@@ -153,10 +153,8 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
     const Conduction c = material.conduction(nullptr);
-    thermals.push_back(
-        {fix, fix->find_history("temperature"), fix->find_history("molten"),
-         material.conduction_varies(),
-         fix->find_history("molten") >= 0 && conductivity_varies_with_temperature(material), c});
+    thermals.push_back({fix, fix->temperature(), fix->molten(), material.conduction_varies(),
+                        fix->molten() >= 0 && conductivity_varies_with_temperature(material), c});
     const double volumetric = material.density() * c.capacity;
     const double slowest = c.orthotropic
         ? std::min(c.conductivity, std::min(c.across[0], c.across[1]))

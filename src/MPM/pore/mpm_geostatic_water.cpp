@@ -186,6 +186,26 @@ double MPMGeostaticWater::strain(const std::vector<double> &pressure) const
   return worst;
 }
 
+void MPMGeostaticWater::check_rest(const std::vector<double> &pressure, double differs,
+                                   double left) const
+{
+  double mine[2] = {0.0, std::isfinite(differs) ? differs : 1.0e300}, most[2];
+  for (int i = 0; i < atom->nlocal; i++)
+    if (water.is_point(i)) mine[0] = std::max(mine[0], fabs(pressure[i]));
+  MPI_Allreduce(mine, most, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (!(most[1] <= SAME * most[0]))
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "{}: the material of the water of fix mpm {} does not have the pressure at rest at any "
+        "volume, up to {:.4g} at its bottom: use a larger bulk modulus",
+        who, water.id(), most[0]);
+  if (!(left <= AT_REST))
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: no pressure of the water of fix mpm {} is at rest, as {:.2g} of its weight is "
+               "left over: it needs a level surface, at or above that of the soil",
+               who, water.id(), left);
+}
+
 /* ---------------------------------------------------------------------- */
 
 std::vector<double> MPMGeostaticWater::set_pressure()
@@ -263,7 +283,7 @@ std::vector<double> MPMGeostaticWater::set_pressure()
       if (solid > 0.0 && !(wet > 0.0)) share[j] = 1.0;
       if (!(solid > 0.0 && wet > 0.0)) continue;
       const MPMMixtureShares of(solid, with_pores, wet);
-      share[j] = of.of_soil;
+      share[j] = of.soil_share;
       mean[j] = of.filled / wet;
     }
     Matrix to = Matrix::Zero(n, n);
@@ -286,20 +306,6 @@ std::vector<double> MPMGeostaticWater::set_pressure()
     const Eigen::VectorXd change = solver.solve(missing);
     for (int k = 0; k < n && left > 0.01 * AT_REST; k++) lambda[k] += change[k];
   }
-  double mine[2] = {0.0, std::isfinite(differs) ? differs : 1.0e300}, most[2];
-  for (int i = 0; i < atom->nlocal; i++)
-    if (water.is_point(i)) mine[0] = std::max(mine[0], fabs(pressure[i]));
-  MPI_Allreduce(mine, most, 2, MPI_DOUBLE, MPI_MAX, world);
-  if (!(most[1] <= SAME * most[0]))
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "{}: the material of the water of fix mpm {} does not have the pressure at rest at any "
-        "volume, up to {:.4g} at its bottom: use a larger bulk modulus",
-        who, water.id(), most[0]);
-  if (!(left <= AT_REST))
-    error->all(FLERR, Error::NOLASTLINE,
-               "{}: no pressure of the water of fix mpm {} is at rest, as {:.2g} of its weight is "
-               "left over: it needs a level surface, at or above that of the soil",
-               who, water.id(), left);
+  check_rest(pressure, differs, left);
   return carried;
 }

@@ -40,6 +40,9 @@ class MPMGeostaticWater : protected Pointers {
   void find_water();
   void find_volumes(std::vector<double> &volumes) const;
   double strain(const std::vector<double> &pressure) const;
+  /** Stops with an error if the water does not come to rest. differs: from the pressure of its law; left: share of its weight
+   *  that is not carried. */
+  void check_rest(const std::vector<double> &pressure, double differs, double left) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -274,8 +274,8 @@ double MPMPoreSuction::take_water(int i, const MPMPoreSoil &soil, double before,
 /** Warns, once on each rank that has such a point. */
 void MPMPoreSuction::tell_of_stiff_water(int i, const MPMPoreSoil &soil, double p)
 {
-  if (told) return;
-  told = true;
+  if (warned) return;
+  warned = true;
   const double alpha = soil.retention.alpha;
   error->warning(
       FLERR,

@@ -119,7 +119,7 @@ class MPMPoreSuction : protected Pointers {
   double usual = 0.0, waves = 0.0, slowest = 0.0;    // rates
   double longest = 1.0;                              // greatest factor keep on all ranks
   MPMPoreSurface::Wet wet;
-  bool told = false;    // has the warning of very stiff water been printed?
+  bool warned = false;    // has the warning of very stiff water been printed?
 
   void tell_of_stiff_water(int i, const MPMPoreSoil &, double p);
 };

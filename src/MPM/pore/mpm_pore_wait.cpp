@@ -114,7 +114,7 @@ void MPMPore::begin_wait(const MPMRows &state)
 {
   in_forces.resize(atom->nmax);
   const int width = 1 + field.lattice.dim;
-  double room[BATCH], p_old[BATCH], storage[BATCH];
+  double buffer[BATCH], p_old[BATCH], storage[BATCH];
   for (const auto &run : field.map->runs) {
     const Soil *const s = soil(run.material);
     if (!s) {
@@ -125,7 +125,7 @@ void MPMPore::begin_wait(const MPMRows &state)
     for (int first = run.first; first < run.last; first += BATCH) {
       const int n = std::min(BATCH, run.last - first);
       double *const part = in_forces.data() + first, *const last = *waiting + first;
-      const double *const J = field.jacobians.get(field, first, n, room), *row = state[first];
+      const double *const J = field.jacobians.get(field, first, n, buffer), *row = state[first];
       int unknown = 0;
       for (int p = 0; p < n; p++) unknown += !(last[p] > 0.0);
       for (int p = 0; unknown && p < n; p++) last[p] = last[p] > 0.0 ? last[p] : J[p];

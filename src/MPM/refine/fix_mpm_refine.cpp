@@ -30,6 +30,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+using Data = MPMStageData;    // what stages read and write
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/refine COARSE FINE ...
@@ -93,10 +94,11 @@ void FixMPMRefine::init_action()
   // records of nodes are added
 
   const bool keep = std::any_of(fields.begin(), fields.end(), [&](const auto *field) {
-    return field->keep_old ||
+    return field->keeps_old_velocities() ||
         adds_change(field->options.transfer) != adds_change(fields[0]->options.transfer);
   });
-  for (auto *field : fields) field->keep_old = keep;
+  for (auto *field : fields)
+    if (keep) field->keep_old_velocities();
 }
 
 void FixMPMRefine::check(MPMField &coarse, MPMField &fine) const
@@ -293,14 +295,15 @@ void FixMPMRefine::init_physics(MPMPlan &plan)
 void FixMPMRefine::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_POINTS_TO_NODES)
-    plan.together("tied nodes", [this]() {
+    plan.together("tied nodes", {Data::POSITION, Data::BLOCKS, Data::OWN}, {Data::OWN}, [this]() {
       find_tied();
     });
   if (place == MPMPlan::AFTER_POINTS_TO_NODES)
-    plan.together("tied nodes", [this]() {
-      for (int k = (int) pairs.size() - 1; k >= 0; k--)
-        pairs[k]->to_parents(k + 1 < (int) pairs.size() ? pairs[k + 1].get() : nullptr);
-    });
+    plan.together(
+        "tied nodes", {Data::NODES, Data::BLOCKS, Data::OWN}, {Data::NODES, Data::OWN}, [this]() {
+          for (int k = (int) pairs.size() - 1; k >= 0; k--)
+            pairs[k]->to_parents(k + 1 < (int) pairs.size() ? pairs[k + 1].get() : nullptr);
+        });
 }
 
 void FixMPMRefine::act(double, Stage)
@@ -426,13 +429,9 @@ void FixMPMRefine::blocks_found()
     for (auto &neighbor : neighbors) neighbor.reach.find(neighbor.field->grid, world);
   }
   const bool keep = std::any_of(fields.begin(), fields.end(), [](const auto *field) {
-    return field->keep_old_now;
+    return field->keeps_old_velocities_now();
   });
-  for (auto *field : fields) {
-    if (field->keep_old_now == keep) continue;
-    field->keep_old_now = keep;
-    field->choose_kernels();
-  }
+  for (auto *field : fields) field->keep_old_velocities_now(keep);
 }
 
 int FixMPMRefine::level(const std::string &name) const

@@ -29,6 +29,7 @@
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_setup_checks.h"
 #include "field/mpm_strain.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"
@@ -74,6 +75,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
   if (!declared.given("origin")) std::copy_n(domain->boxlo, domain->dimension, options.origin);
   field.reset(new MPMField(lmp, *this, h, options, state));
   if (options.watches_fracture()) field->fracture_watch.reset(new MPMFractureWatch(lmp, *field));
+  checks.reset(new MPMSetupChecks(lmp, *field));
   continuation.reset(new MPMContinuation(lmp, *field));
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix mpm {}, MPM package {}: spacing {} {}\n", id, MPM_VERSION, h,
@@ -142,8 +144,8 @@ void FixMPM::init()
   for (auto *other : modify->get_fix_list())
     if (other != this && other->time_integrate) time_integrate = 0;
 
-  // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none. It would
-  // warn of this one, too, as soon as there is a pair style
+  // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none. It
+  // would warn of this one, too, as soon as there is a pair style
 
   const double nothing = 1.0e-8 * field->lattice.h;
   if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
@@ -176,7 +178,8 @@ void FixMPM::check_fields() const
 }
 
 /* ----------------------------------------------------------------------
-   Points that touch something must be in the neighbor lists; none does where the only others are grains in a fluid
+   Points that touch something must be in the neighbor lists; none does where the only others are
+   grains in a fluid
 ------------------------------------------------------------------------- */
 
 void FixMPM::check_include() const
@@ -203,20 +206,12 @@ void FixMPM::setup_pre_neighbor()
 {
   field->choose_kernels();
   field->map->setup();
-  field->guard->check_integrators();
-  field->guard->check_points();
-  if (plan) {
-    field->guard->check_other_points();
-    field->guard->check_commands();
-  }
-  continuation->check(plan != nullptr);
-  if (force->pair) {
-    field->guard->check_radii();
-    if (plan) field->guard->check_neighbors();
-  }
+  const bool first = plan != nullptr;
+  checks->run(MPMSetupChecks::POINTS, first);
+  continuation->check(first);
+  if (force->pair) checks->run(MPMSetupChecks::PAIRS, first);
   field->frame->setup();
-  field->guard->check_places();
-  field->guard->check_locking();
+  checks->run(MPMSetupChecks::PLACES, first);
 
   // other physics may ask for the points of any field
 
@@ -233,10 +228,10 @@ void FixMPM::setup_pre_neighbor()
 void FixMPM::setup(int)
 {
   if (update->dt <= 0.0) error->all(FLERR, "Fix mpm requires a positive time step: {}", update->dt);
-  if (plan && force->pair) field->guard->check_lists();
+  if (force->pair) checks->run(MPMSetupChecks::LISTS, plan != nullptr);
   if (force->pair) warn_of_points_as_grains(lmp, groupbit, fmt::format("Fix mpm {}", id));
   if (plan) plan->start();
-  field->running = true;
+  field->begin_run();
   if (field->affine) field->affine->fit();
   if (field->every && field->every->progress.waited) field->map->valid = false;
   field->ledger.setup();
@@ -275,8 +270,9 @@ void FixMPM::pre_neighbor()
 }
 
 /* ----------------------------------------------------------------------
-   LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include). Nothing exerts
-   torques on the others, so that these stay zero until atoms change their places in memory
+   LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include).
+   Nothing exerts torques on the others, so that these stay zero until atoms change their places in
+   memory
 ------------------------------------------------------------------------- */
 
 void FixMPM::pre_force(int)
@@ -295,11 +291,11 @@ void FixMPM::post_run()
 {
   if (plan) plan->watch->finish();
   if (field->fracture_watch) field->fracture_watch->finish();
-  field->running = false;
+  field->end_run();
   field->guard->wrap_far_points();
   field->ledger.start.clear();
   if (field->affine) field->affine->remember_velocities();
-  if (field->counts.steps)
+  if (field->counts().steps)
     field->plan->report(*field, bytes_per_point(), point_extremes(lmp, *field));
 }
 
@@ -328,7 +324,7 @@ double FixMPM::compute_vector(int k)
   if (k == 4) return map.nsort;
   double mine[4] = {
       (double) map.active.size(), (double) field->grid.blocks.size(), (double) map.npoints(),
-      (double) field->nodes.halo->bytes_sent / std::max((bigint) 1, field->counts.steps)};
+      (double) field->nodes.halo->bytes_sent / std::max((bigint) 1, field->counts().steps)};
   double all[4];
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
   if (k == 2) return all[0] > 0.0 ? all[2] / all[0] : 0.0;
@@ -354,8 +350,8 @@ double FixMPM::memory_usage()
 
 /* ----------------------------------------------------------------------
    totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
-   neighbor lists are made, the options that a run must go on with, the duration of the last step, and
-   what else the run has
+   neighbor lists are made, the options that a run must go on with, the duration of the last step,
+   and what else the run has
 ------------------------------------------------------------------------- */
 
 namespace {
@@ -364,9 +360,9 @@ struct Saved {
   MPMGuard::Deleted deleted;
   double elapsed;
   MPMAffine::Velocities velocities;
-  MPMGuard::Lists lists;
+  MPMSetupChecks::Lists lists;
   int waited, nstart, ntext;    // nstart reals and ntext characters follow,
-  int more;    // and then, of what files from before lack, 1: duration of the last step, 2: and lines
+  int more;    // and then, unless the file is old, 1: duration of the last step, 2: and lines
 };
 }    // namespace
 
@@ -375,7 +371,7 @@ void FixMPM::write_restart(FILE *fp)
   Saved saved;
   memset(&saved, 0, sizeof(Saved));
   if (field->affine) {
-    if (field->running) field->affine->remember_velocities();
+    if (field->is_running()) field->affine->remember_velocities();
     saved.velocities = field->affine->velocities;
   }
   if (field->every) {
@@ -383,7 +379,7 @@ void FixMPM::write_restart(FILE *fp)
     saved.elapsed = field->every->progress.elapsed;
   }
   saved.deleted = field->guard->deleted;
-  saved.lists = field->guard->lists();
+  saved.lists = checks->lists();
   MPMEnergies &energies = field->ledger;
   keep_totals(world, (double *) &energies, sizeof(MPMEnergies) / sizeof(double));
   saved.ledger = energies;
@@ -402,7 +398,8 @@ void FixMPM::write_restart(FILE *fp)
   fwrite(&saved, sizeof(Saved), 1, fp);
   if (!start.empty()) fwrite(start.data(), sizeof(double), start.size(), fp);
   fwrite(text.c_str(), 1, text.size(), fp);
-  fwrite(&field->last_dt, sizeof(double), 1, fp);
+  const double last_dt = field->dt_of_last_step();
+  fwrite(&last_dt, sizeof(double), 1, fp);
   fwrite(lines.c_str(), 1, lines.size() + 1, fp);
 }
 
@@ -426,10 +423,12 @@ void FixMPM::restart(char *buf)
         id, differences);
 
   // without it, the first step counts for the one before, as in a run from the start
-  if (saved.more > 0) memcpy(&field->last_dt, last_dt, sizeof(double));
+  double dt = 0.0;
+  if (saved.more > 0) memcpy(&dt, last_dt, sizeof(double));
+  field->continue_after(dt);
   if (comm->me == 0) static_cast<MPMEnergies &>(field->ledger) = saved.ledger;
   field->guard->deleted = saved.deleted;
-  field->guard->lists_of_file = saved.lists;
+  checks->lists_of_file = saved.lists;
   if (field->affine) field->affine->velocities = saved.velocities;
   if (field->every) {
     field->every->progress.waited = saved.waited;

@@ -24,8 +24,8 @@ namespace LAMMPS_NS {
 class MPMField;
 class MPMPlan;
 
-/** Fix mpm: one velocity field on one lattice, which moves the material points of its group. It is the
- *  interface of LAMMPS to an MPMField.
+/** Fix mpm: one velocity field on one lattice, which moves the material points of its group. It is
+ *  the interface of LAMMPS to an MPMField.
  *
  *  The whole step is done in initial_integrate(): at this time atom->f is complete for any order of
  *  fixes, and at output all state is on one time level. The first instance drives all of them.
@@ -56,6 +56,7 @@ class FixMPM : public FixMPMState, public MPMFieldOwner {
  private:
   std::unique_ptr<MPMPlan> plan;    // only in the driving instance
   std::unique_ptr<class MPMContinuation> continuation;
+  std::unique_ptr<class MPMSetupChecks> checks;
 
   bool no_torques = false;    // torques of atoms outside of neighbor lists are zero already
 

@@ -169,8 +169,9 @@ double FixMPMDt::of_grains(const Limit &limit) const
 }
 
 /* ----------------------------------------------------------------------
-   Grains that will touch before the next look count, too; longest: bound of the time step until then.
-   At looks it is what points alone would allow, and not the time step of now, which a restart may change
+   Grains that will touch before the next look count, too; longest: bound of the time step until
+   then. At looks it is what points alone would allow, and not the time step of now, which a restart
+   may change
 ------------------------------------------------------------------------- */
 
 FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points) const
@@ -215,11 +216,11 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
 }
 
 /* ----------------------------------------------------------------------
-   start of a run: the time step is set at once, without limit to its growth.
-   When the state is the one that the last run or the restart file left, then the time step is kept,
-   so that a run in two parts takes the same steps as one without a break. The neighbor lists are new ones: pairs
-   of grains that these have, and those at the end of the last run had not, do not make another state of it, but
-   are looked at as whenever lists are new.
+   start of a run: the time step is set at once, without limit to its growth. When the state is the
+   one that the last run or the restart file left, then the time step is kept, so that a run in two
+   parts takes the same steps as one without a break. The neighbor lists are new ones: pairs of
+   grains that these have, and those at the end of the last run had not, do not make another state
+   of it, but are looked at as whenever lists are new.
 ------------------------------------------------------------------------- */
 
 void FixMPMDt::setup_pre_force(int)
@@ -291,8 +292,9 @@ void FixMPMDt::announce_end()
 }
 
 /* ----------------------------------------------------------------------
-   the limit of strain is kept at once, as in an impact the next look could be too late; that of grains
-   when there are new neighbor lists, as in old ones two that are about to touch may not be a pair
+   the limit of strain is kept at once, as in an impact the next look could be too late; that of
+   grains when there are new neighbor lists, as in old ones two that are about to touch may not be a
+   pair
 ------------------------------------------------------------------------- */
 
 void FixMPMDt::end_of_step()
@@ -417,8 +419,8 @@ double FixMPMDt::compute_vector(int i)
 }
 
 /* ----------------------------------------------------------------------
-   between runs: what the last one has left, as the next run compares with that; the fixes may not be
-   those of the last run. Files of older versions begin with the time step and have no options
+   between runs: what the last one has left, as the next run compares with that; the fixes may not
+   be those of the last run. Files of older versions begin with the time step and have no options
 ------------------------------------------------------------------------- */
 
 static constexpr double WITH_OPTIONS = -1.0;
@@ -433,7 +435,7 @@ void FixMPMDt::write_restart(FILE *fp)
   const auto fields = MPMField::all(lmp);
   const bool flows = update->whichflag == 1 && !find_fixes<MPMFluid>(lmp).empty();
   const bool running = flows || std::any_of(fields.begin(), fields.end(), [](const auto *field) {
-                         return field->running;
+                         return field->is_running();
                        });
   const Limit steps = smallest(strain_limit_local());
   if (running) {

@@ -35,8 +35,9 @@ struct MPMDtOptions {
   MPM_NS::Options declare();
 };
 
-/** Sets the time step to a fraction of the smallest h/(c + |v|) over all material points. Can also limit the change
- *  of volume of points in a step and the share of a collision of grains in a step, and end runs at a given time. */
+/** Sets the time step to a fraction of the smallest h/(c + |v|) over all material points. Can also
+ *  limit the change of volume of points in a step and the share of a collision of grains in a step,
+ *  and end runs at a given time. */
 class FixMPMDt : public Fix, private MPMDtOptions {
  public:
   FixMPMDt(class LAMMPS *, int, char **);

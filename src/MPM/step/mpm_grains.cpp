@@ -24,8 +24,8 @@
 #include <cstring>
 #include <limits>
 
-// LAMMPS may be built without its package GRANULAR. Only data and virtual functions of its classes are used, so that
-// the plugin can be loaded by such a LAMMPS, too
+// LAMMPS may be built without its package GRANULAR. Only data and virtual functions of its classes
+// are used, so that the plugin can be loaded by such a LAMMPS, too
 
 #if __has_include(<pair_granular.h>)
 #define MPM_HAS_GRANULAR 1
@@ -83,9 +83,9 @@ double MPMGrains::duration(const Law &law, double m, double R, double overlap, d
 }
 
 /* ----------------------------------------------------------------------
-   Forces in units of mass times acceleration. All of LAMMPS's formulas of damping have the mass in units of mass,
-   so that a force ~ mass gamma v becomes an acceleration ftm2v gamma v; in that of tsuji and coeff_restitution,
-   damp sqrt(m k) v, the factor of k takes one root of it.
+   Forces in units of mass times acceleration. All of LAMMPS's formulas of damping have the mass in
+   units of mass, so that a force ~ mass gamma v becomes an acceleration ftm2v gamma v; in that of
+   tsuji and coeff_restitution, damp sqrt(m k) v, the factor of k takes one root of it.
 ------------------------------------------------------------------------- */
 
 MPMGrains::Law MPMGrains::in_units(Law law) const
@@ -166,7 +166,8 @@ MPMGrains::MPMGrains(LAMMPS *lmp, const std::string &who) : Pointers(lmp), who(w
                who);
 }
 
-/** The numbers of a model are what its force is for overlap, contact radius, mass, and velocity 1. */
+/** The numbers of a model are what its force is for overlap, contact radius, mass, and velocity
+ *  1. */
 MPMGrains::Law MPMGrains::law_of_model(void *any) const
 {
   auto *const model = static_cast<Granular_NS::GranularModel *>(any);
@@ -200,7 +201,8 @@ MPMGrains::Law MPMGrains::law_of(const Style &style, int itype, int jtype) const
 }
 
 /* ----------------------------------------------------------------------
-   with planes, which may wiggle, and with regions, whose position is that of the last forces; negative: none
+   with planes, which may wiggle, and with regions, whose position is that of the last forces;
+   negative: none
 ------------------------------------------------------------------------- */
 
 static double deepest_overlap(const FixWallGran &wall, Region *region, bigint now, const double *x,
@@ -320,8 +322,9 @@ void MPMGrains::pairs_of(const Style &style, double ahead, int every, Collision 
 }
 
 /* ----------------------------------------------------------------------
-   Points of one body touch each other as soon as they have their usual diameter. A pair style of grains that is there for other atoms then
-   pushes them apart, besides the stress of the material: a body is stiffer, and starts with energy where diameters are larger than distances
+   Points of one body touch each other as soon as they have their usual diameter. A pair style of
+   grains that is there for other atoms then pushes them apart, besides the stress of the material:
+   a body is stiffer, and starts with energy where diameters are larger than distances
 ------------------------------------------------------------------------- */
 
 void LAMMPS_NS::warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::string &who)

@@ -21,8 +21,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
-   Where the frame has forces of its own (Piola-Kirchhoff stress, hoop stress), it makes them a batch at
-   a time, and so are those of other physics
+   Where the frame has forces of its own (Piola-Kirchhoff stress, hoop stress), it makes them a
+   batch at a time, and so are those of other physics
 ------------------------------------------------------------------------- */
 
 void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,

@@ -35,15 +35,15 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 /* ----------------------------------------------------------------------
-   With scheme usl and without light nodes the motion of this step is that of the material: stress is
-   made at once, while points are in the cache
+   With scheme usl and without light nodes the motion of this step is that of the material: stress
+   is made at once, while points are in the cache
 ------------------------------------------------------------------------- */
 
 void MPMStages::nodes_to_points(MPMField &field, Strain strain, const UseGradients &use)
 {
-  if (field.has_moved) {
+  if (field.has_moved()) {
     move_points(field);
-    field.has_moved = false;
+    field.set_moved(false);
     return;
   }
   field.nodes.complete_velocities();
@@ -54,12 +54,12 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain, const UseGradien
   const bool in_C = field.kernel.gradient_in_C && !refers;    // what stress needs is there
   const bool keeps = strain == GRADIENTS && !in_C;
   const int nL = field.lattice.dim * field.lattice.dim;
-  if (late) field.work.xnew.resize(3 * (std::size_t) field.atom->nmax);
+  if (late) field.positions_to_come().resize(3 * (std::size_t) field.atom->nmax);
   if (strain != ELSEWHERE) frame.begin_strain();
   double *const kept = keeps ? field.locking->room_for_gradients() : nullptr;
 
   PointRows r = field.rows();
-  if (late) r.xnew = field.work.xnew.data();
+  if (late) r.xnew = field.positions_to_come().data();
   if (field.domains && !field.mapped.g2p) r.corners_new = field.domains->moved(late);
   const TransferStep s = field.step_data();
   const double dt = field.step_dt();
@@ -81,14 +81,15 @@ void MPMStages::nodes_to_points(MPMField &field, Strain strain, const UseGradien
     if (use) use(run, i, n, gradients);
     if (strain == STRESS) update_stress(field, r, run, i, n, gradients, dt);
   });
-  field.has_moved = static_cast<bool>(use);
+  field.set_moved(static_cast<bool>(use));
   if (strain == GRADIENTS) {
     field.locking->strain(in_C ? r.C : kept, dt);
     move_points(field);
   }
 }
 
-/** Nothing that comes between AFTER_SOLVE and the motion may change velocities of nodes, or look at the state of points. */
+/** Nothing that comes between AFTER_SOLVE and the motion may change velocities of nodes, or look at
+ *  the state of points. */
 bool MPMStages::can_move_first(const MPMField &field)
 {
   const auto &o = field.options;
@@ -105,16 +106,17 @@ bool MPMStages::can_move_first(const MPMField &field)
 void MPMStages::move_points(MPMField &field)
 {
   for (const auto &run : field.map->runs) {
-    memcpy(field.atom->x[run.first], &field.work.xnew[3 * (std::size_t) run.first],
+    memcpy(field.atom->x[run.first], &field.positions_to_come()[3 * (std::size_t) run.first],
            3 * sizeof(double) * (run.last - run.first));
     if (field.domains) field.domains->take_late(run.first, run.last);
   }
 }
 
 /* ----------------------------------------------------------------------
-   With MUSL and USAVG, points and the corners of domains move with the velocities that were mapped back, which
-   strain takes, too. What moves apart from strain is not held by stress, and under tension goes away from
-   where it belongs. In the total frame forces do not depend on where points are
+   With MUSL and USAVG, points and the corners of domains move with the velocities that were mapped
+   back, which strain takes, too. What moves apart from strain is not held by stress, and under
+   tension goes away from where it belongs. In the total frame forces do not depend on where points
+   are
 ------------------------------------------------------------------------- */
 
 void MPMStages::strain_from_nodes(MPMField &field, double motion_dt, double share,
@@ -165,12 +167,6 @@ void MPMStages::checks(MPMField &field)
   field.guard->handle_bad_points();
   field.frame->end_of_step();
   field.time_limit->check();
-  auto &counts = field.counts;
-  const double dt = field.step_dt();
-  counts.dt_min = std::min(counts.dt_min, dt);
-  counts.dt_max = std::max(counts.dt_max, dt);
-  counts.steps++;
-  counts.point_steps += map.npoints();
-  field.last_dt = dt;
+  field.count_step();
   if (field.every) field.every->finish();
 }

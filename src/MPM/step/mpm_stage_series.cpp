@@ -6,7 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Stages: velocities of the nodes by more terms of the inverse of the full mass matrix, XPIC and FMPM.
+// Stages: velocities of the nodes by more terms of the inverse of the full mass matrix, XPIC and
+// FMPM.
 
 #include "atom.h"
 #include "field/mpm_field.h"

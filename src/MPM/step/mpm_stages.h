@@ -27,8 +27,8 @@ namespace MPMStages {
 
   // mpm_stage_momentum.cpp: points to nodes, and the equation of motion there
 
-  /** What points give to nodes: mass, momentum, and force; mass and momentum; or forces, added to records
-   *  that have mass and momentum already. */
+  /** What points give to nodes: mass, momentum, and force; mass and momentum; or forces, added to
+   *  records that have mass and momentum already. */
   enum Content { ALL, MOMENTUM, FORCE };
   /** Sums over this rank's points. */
   void points_to_nodes(MPMField &, Content);
@@ -38,7 +38,8 @@ namespace MPMStages {
   void momentum_equation(MPMField &);
   /** v = p/m. */
   void velocities(MPMField &);
-  /** Converts velocities back to momentum, without the changes by node actions, and makes room for forces. */
+  /** Converts velocities back to momentum, without the changes by node actions, and makes room for
+   *  forces. */
   void back_to_momentum(MPMField &);
 
   // mpm_stage_points.cpp: nodes to points
@@ -50,30 +51,30 @@ namespace MPMStages {
     GRADIENTS,    ///< also velocity gradients, for MPMLocking::strain()
     STRESS        ///< also stress
   };
-  /** Function that is called with batches of n <= BATCH points of a run. L: [n][dim*dim] velocity gradients
-   *  of the points, column-major. */
+  /** Function that is called with batches of n <= BATCH points of a run. L: [n][dim*dim] velocity
+   *  gradients of the points, column-major. */
   using UseGradients =
       std::function<void(const MPMPointMap::Run &, int first, int n, const double *L)>;
-  /** Updates velocities, affine matrices, and positions of the points. use: not null if physics calls this
-   *  early, at AFTER_SOLVE, because it needs the gradients of the motion. It receives the gradients before
-   *  the strain, and positions wait until the regular call. */
+  /** Updates velocities, affine matrices, and positions of the points. use: not null if physics
+   *  calls this early, at AFTER_SOLVE, because it needs the gradients of the motion. It receives
+   *  the gradients before the strain, and positions wait until the regular call. */
   void nodes_to_points(MPMField &, Strain, const UseGradients &use = nullptr);
   /** May physics make this early call? If not, it must find gradients by itself. */
   bool can_move_first(const MPMField &);
   /** Moves points and corners to the positions at the end of the step, if these had to wait. */
   void move_points(MPMField &);
 
-  /** Updates the stress of points from the present velocities of the nodes, for a share of a motion that
-   *  takes the time dt. shift: see MPMFrame::shift_gradients(), as a share of dt. moves: also move the points
-   *  with these velocities, if MPMField::mapped is there. */
+  /** Updates the stress of points from the present velocities of the nodes, for a share of a motion
+   *  that takes the time dt. shift: see MPMFrame::shift_gradients(), as a share of dt. moves: also
+   *  move the points with these velocities, if MPMField::mapped is there. */
   void strain_from_nodes(MPMField &, double dt, double share, double shift, bool moves = false);
 
   // mpm_stage_light.cpp: nodes with almost no mass
 
   /** Blends the velocities of these nodes, for gradients only. */
   void blend_light_nodes(MPMField &);
-  /** Sets affine matrices from the gradients of these velocities. stress: also update the stress and move the
-   *  points. */
+  /** Sets affine matrices from the gradients of these velocities. stress: also update the stress
+   *  and move the points. */
   void gradients_with_light_nodes(MPMField &, bool stress);
 
   // mpm_stage_series.cpp: more terms of the inverse of the mass matrix

@@ -29,8 +29,8 @@
 using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
-   fixes that do something to atoms. Of those of this package that have a state the atom style tells;
-   those with names in capitals are LAMMPS's own
+   fixes that do something to atoms. Of those of this package that have a state the atom style
+   tells; those with names in capitals are LAMMPS's own
 ------------------------------------------------------------------------- */
 
 static bool acts(const Fix &fix)

@@ -16,9 +16,9 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Checks of a run that continues from a restart file. Warns when the input lacks something that the run
- *  before had and that LAMMPS does not keep in the file (fixes, exclusions from neighbor lists), and when
- *  points or materials have changed since. */
+/** Checks of a run that continues from a restart file. Warns when the input lacks something that
+ *  the run before had and that LAMMPS does not keep in the file (fixes, exclusions from neighbor
+ *  lists), and when points or materials have changed since. */
 class MPMContinuation : protected Pointers {
  public:
   MPMContinuation(class LAMMPS *lmp, const MPMField &field) : Pointers(lmp), field(field) {}
@@ -27,7 +27,8 @@ class MPMContinuation : protected Pointers {
   std::string state() const;
   /** Sets the lines of the restart file from which the next run continues. */
   void expect(const std::string &lines) { expected = lines; }
-  /** Text with the node spacing or origin of the run before, if it gave another lattice; else empty. */
+  /** Text with the node spacing or origin of the run before, if it gave another lattice; else
+   *  empty. */
   std::string other_lattice() const;
   /** Start of a run: warns of differences. first: this is the first of all fields. Collective. */
   void check(bool first);

@@ -29,9 +29,10 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// Each step looks at the forces on a part of the points, others in the next step. Whose turn it is follows from the ID
-// alone: with parts by the place in memory, points would be looked at twice or not at all when their order changes, and
-// in water at rest forces are so large that this is as much as the energy in play
+// Each step looks at the forces on a part of the points, others in the next step. Whose turn it is
+// follows from the ID alone: with parts by the place in memory, points would be looked at twice or
+// not at all when their order changes, and in water at rest forces are so large that this is as
+// much as the energy in play
 static constexpr int SAME_TURN = 16;    // consecutive IDs, which are mostly neighbors
 static constexpr int MOST_BITS = 7,
                      PAIR_BITS = 4;    // one in 128, of those with contacts one in 16
@@ -44,8 +45,8 @@ static constexpr double AT_REST =
 static constexpr double UNSTRAINED = 1.0e-6;    // stored energy over that after the first step
 static constexpr double ROUND_OFF = 1.0e-13;    // of a sum of the heat of all points in a step
 
-/** The step of 2^bits in which a point is looked at. Multiples of the golden ratio are spread evenly for any range of
- *  IDs, and are no wave through a lattice of points. */
+/** The step of 2^bits in which a point is looked at. Multiples of the golden ratio are spread
+ *  evenly for any range of IDs, and are no wave through a lattice of points. */
 static int turn_of(tagint tag, int bits)
 {
   const auto number = (uint32_t) (tag / SAME_TURN);
@@ -70,12 +71,14 @@ void MPMEnergyWatch::step()
 }
 
 /* ----------------------------------------------------------------------
-   Work of forces in this step, at the mean of the velocities of nodes before and after it, to which these forces have led: that is the
-   way that points went, less half of what the step has changed. Points' own velocities would do where forces belong to masses, as gravity
-   does. Those of flip and aflip differ from point to point from what moves them, however, and a load on the last layers of a
-   body does no work on the difference. With the velocities before the step alone, a load of N steps would have 1/N too little work. To
-   take all points in some steps costs the same, but is wrong where a body of a few cells vibrates: its period is a few of these
-   steps. Forces that elements have added are internal
+   Work of forces in this step, at the mean of the velocities of nodes before and after it, to which
+   these forces have led: that is the way that points went, less half of what the step has changed.
+   Points' own velocities would do where forces belong to masses, as gravity does. Those of flip and
+   aflip differ from point to point from what moves them, however, and a load on the last layers of
+   a body does no work on the difference. With the velocities before the step alone, a load of N
+   steps would have 1/N too little work. To take all points in some steps costs the same, but is
+   wrong where a body of a few cells vibrates: its period is a few of these steps. Forces that
+   elements have added are internal
 ------------------------------------------------------------------------- */
 
 void MPMEnergyWatch::moved()
@@ -106,8 +109,8 @@ void MPMEnergyWatch::finish()
   for (auto &part : parts) part.list = -1;    // commands may move atoms before the run goes on
 }
 
-/** Pair styles act on atoms in neighbor lists, which may be those of a group that is first in memory; with every, on
- *  those of several lists. */
+/** Pair styles act on atoms in neighbor lists, which may be those of a group that is first in
+ *  memory; with every, on those of several lists. */
 int MPMEnergyWatch::number_met() const
 {
   const bool first_met = neighbor->includegroup && !fields[0]->every;
@@ -203,11 +206,13 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
 /* ---------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Velocities that steps have led to belong to the middle of the last step, as their work does, see moved(). With usl and musl
-   stored energy belongs to its end, where points are, and their sum would vary with each vibration by omega dt of its energy: by 4 % for a
-   block of 4 by 6 cells. The mean of stored energies before and after the step belongs to its middle, and with it the sum is
-   that of a leapfrog, which is constant: with forces f and ways s of steps, half of the sum of f_k (s_k + s_k+1) is half of that of
-   (f_k-1 + f_k) s_k, but for its ends. With usf stress is a step behind, with usavg in the middle
+   Velocities that steps have led to belong to the middle of the last step, as their work does, see
+   moved(). With usl and musl stored energy belongs to its end, where points are, and their sum
+   would vary with each vibration by omega dt of its energy: by 4 % for a block of 4 by 6 cells. The
+   mean of stored energies before and after the step belongs to its middle, and with it the sum is
+   that of a leapfrog, which is constant: with forces f and ways s of steps, half of the sum of f_k
+   (s_k + s_k+1) is half of that of (f_k-1 + f_k) s_k, but for its ends. With usf stress is a step
+   behind, with usavg in the middle
 ------------------------------------------------------------------------- */
 
 bool MPMEnergyWatch::strain_follows() const
@@ -223,10 +228,11 @@ bool MPMEnergyWatch::is_last_step() const
   return update->ntimestep + fields[0]->options.every > update->laststep;
 }
 
-/** A run may begin in the middle of a vibration: the step before it had about as much as the first one, in proportion to the
- *  velocities. What was at rest is strained by a first step that has a jump of strain or load, and was not before. Bodies that
- *  start with velocities and without strain are in the middle of their vibration, where stored energy is least: it was as
- *  much a step before as it is a step later. */
+/** A run may begin in the middle of a vibration: the step before it had about as much as the first
+ *  one, in proportion to the velocities. What was at rest is strained by a first step that has a
+ *  jump of strain or load, and was not before. Bodies that start with velocities and without strain
+ *  are in the middle of their vibration, where stored energy is least: it was as much a step before
+ *  as it is a step later. */
 void MPMEnergyWatch::center_start()
 {
   const Sums now = sums();
@@ -247,8 +253,8 @@ void MPMEnergyWatch::begin(const Sums &now)
   run.in_play = 0.0;
 }
 
-/** Heat that goes through a body at rest is in accounts as changes of all the heat that it has, whose round-off adds up over
- *  steps; nothing else may be in play. Collective. */
+/** Heat that goes through a body at rest is in accounts as changes of all the heat that it has,
+ *  whose round-off adds up over steps; nothing else may be in play. Collective. */
 bool MPMEnergyWatch::is_round_off(double energy) const
 {
   double mine = 0.0, all;
@@ -258,8 +264,8 @@ bool MPMEnergyWatch::is_round_off(double energy) const
 }
 
 /* ----------------------------------------------------------------------
-   points that other commands have added or removed bring or take energy that is in no account; that of points which fixes of this
-   package emit and absorb is in the ledger
+   points that other commands have added or removed bring or take energy that is in no account; that
+   of points which fixes of this package emit and absorb is in the ledger
 ------------------------------------------------------------------------- */
 
 void MPMEnergyWatch::check()

@@ -20,16 +20,17 @@ class MPMField;
 
 /** Detects when numerical errors add energy to the points (keyword gain of fix mpm).
  *
- *  The energy that all points have and have spent may grow by the work that is done on them. The work of moving walls, rigid
- *  bodies, atoms, and deleted points is always counted. The work of friction at walls and between bodies is not: where
- *  friction holds material at rest, nodes have velocities that points do not have, and its work is mostly spurious. The work
- *  of forces on points is estimated from a part of the points in each step, chosen by their IDs, so that it does not depend
- *  on their order and on which rank has them.
+ *  The energy that all points have and have spent may grow by the work that is done on them. The
+ *  work of moving walls, rigid bodies, atoms, and deleted points is always counted. The work of
+ *  friction at walls and between bodies is not: where friction holds material at rest, nodes have
+ *  velocities that points do not have, and its work is mostly spurious. The work of forces on
+ *  points is estimated from a part of the points in each step, chosen by their IDs, so that it does
+ *  not depend on their order and on which rank has them.
  *
- *  The remaining growth is the sum of the errors transfer, integration, and residual of compute mpm/energy. It counts from
- *  its lowest value in a run, so that energy that a dissipative transfer took at first does not hide energy that is added
- *  later. It is compared with the energy in play: the largest sum so far of kinetic energy, stored energy, and energy spent
- *  in this run.
+ *  The remaining growth is the sum of the errors transfer, integration, and residual of compute
+ *  mpm/energy. It counts from its lowest value in a run, so that energy that a dissipative transfer
+ *  took at first does not hide energy that is added later. It is compared with the energy in play:
+ *  the largest sum so far of kinetic energy, stored energy, and energy spent in this run.
  */
 class MPMEnergyWatch : public MPMWatch, protected Pointers {
  public:
@@ -42,8 +43,8 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   void start() override { run = {}; }
   /** Start of a step of the cycle, where positions, velocities, and forces belong to one time. */
   void step() override;
-  /** Later in the same step: points have moved and have their new velocities, and still have the forces and the places in
-   *  memory of its start. */
+  /** Later in the same step: points have moved and have their new velocities, and still have the
+   *  forces and the places in memory of its start. */
   void moved() override;
   /** End of a run. */
   void finish() override;
@@ -62,8 +63,8 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   };
 
   static constexpr int AHEAD = 16;
-  /** The points from begin to end in memory. Each is looked at in one of 2^bits steps (its turn). places: points whose turn
-   *  comes in this step or one of the next AHEAD - 1. */
+  /** The points from begin to end in memory. Each is looked at in one of 2^bits steps (its turn).
+   *  places: points whose turn comes in this step or one of the next AHEAD - 1. */
   struct Part {
     int bits = 0;
     int begin = -1, end = -1, first = 0;    // first: turn of places[0]
@@ -77,7 +78,8 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   const std::vector<MPMField *> &fields;
   Part parts[2];
   std::vector<const double *> forces;    // [field] on points in this step
-  /** A point that is looked at in this step, once in so many turns, with its place and velocity before. */
+  /** A point that is looked at in this step, once in so many turns, with its place and velocity
+   *  before. */
   struct Seen {
     int field, i, turns;
     double x[3], v[3];

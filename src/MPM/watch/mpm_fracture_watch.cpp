@@ -31,8 +31,9 @@ static constexpr int LOOK_EVERY = 400;    // steps
 static constexpr double TENSION =
     1.0e-3;    // of density times wave speed squared: a solid holds together
 
-/** Distance of neighbors, in node spacings, from which on bodies have come apart in trials: a cantilever
- *  of rubber, with three spacings. Bounds of tests with bars: unittest/BOUNDS.md (Fracture). */
+/** Distance of neighbors, in node spacings, from which on bodies have come apart in trials: a
+ *  cantilever of rubber, with three spacings. Bounds of tests with bars: unittest/BOUNDS.md
+ *  (Fracture). */
 static double limit(Shape shape)
 {
   return shape == QUADRATIC ? 1.2 : shape == CUBIC ? 1.15 : 1.0;
@@ -46,8 +47,8 @@ void MPMFractureWatch::step()
 }
 
 /* ----------------------------------------------------------------------
-   Points are as far apart as the undeformed edges of a point, with F. What has no neighbor in this direction is
-   found, too, but is not stretched
+   Points are as far apart as the undeformed edges of a point, with F. What has no neighbor in this
+   direction is found, too, but is not stretched
 ------------------------------------------------------------------------- */
 
 void MPMFractureWatch::look()

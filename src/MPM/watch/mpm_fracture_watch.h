@@ -15,8 +15,8 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Warns if a body comes apart numerically (keyword apart of fix mpm): a material that resists tension is
- *  stretched so far that neighboring points no longer share enough nodes. */
+/** Warns if a body comes apart numerically (keyword apart of fix mpm): a material that resists
+ *  tension is stretched so far that neighboring points no longer share enough nodes. */
 class MPMFractureWatch : public MPMWatch, protected Pointers {
  public:
   MPMFractureWatch(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}

@@ -11,7 +11,8 @@
 
 namespace LAMMPS_NS {
 
-/** Energy that material points have now, and energy that they have spent so far [energy], on this rank. */
+/** Energy that material points have now, and energy that they have spent so far [energy], on this
+ *  rank. */
 struct MPMPointEnergies {
   double kinetic;
   double stored;              ///< elastic energy and energy of the equation of state

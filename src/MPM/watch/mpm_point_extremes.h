@@ -13,9 +13,9 @@
 
 namespace LAMMPS_NS {
 
-/** Part of the summary of a run: the time step as a fraction of the largest stable one, and a line with the
- *  smallest and largest volume ratio det F and the largest speed of the points of a field, with the IDs of
- *  these points. Collective. */
+/** Part of the summary of a run: the time step as a fraction of the largest stable one, and a line
+ *  with the smallest and largest volume ratio det F and the largest speed of the points of a field,
+ *  with the IDs of these points. Collective. */
 std::string point_extremes(class LAMMPS *lmp, const class MPMField &field);
 
 }    // namespace LAMMPS_NS

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "loads/mpm_mouth.h"
+#include "loads/mpm_inlet.h"
 
 #include "base/mpm_image.h"
 #include "comm.h"
@@ -33,14 +33,14 @@ static constexpr int PRISM_SAMPLES = 40, PRISM_SECTIONS = 9;
 static constexpr double MOST_DIFFERENT = 0.01;
 static constexpr int MARCH = 2000;    // steps that look for the surface
 static constexpr double EDGE =
-    1.0e-9;    // lengths, relative to that of the mouth, that are round-off
+    1.0e-9;    // lengths, relative to that of the inlet, that are round-off
 static constexpr double INFINITE = 1.0e19;    // bounds of regions beyond it are INF
 static constexpr double MOST_COLUMNS = 1.0e7;
 
-MPMMouth::MPMMouth(LAMMPS *lmp, const std::string &user, Region *mouth, const double *direction,
+MPMInlet::MPMInlet(LAMMPS *lmp, const std::string &user, Region *inlet, const double *direction,
                    double spacing, double known_area, bool axisymmetric) :
     Pointers(lmp),
-    region(mouth)
+    region(inlet)
 {
   const int dim = domain->dimension;
   const std::string name = user + " region " + region->id;
@@ -125,13 +125,13 @@ MPMMouth::MPMMouth(LAMMPS *lmp, const std::string &user, Region *mouth, const do
 
 /* ---------------------------------------------------------------------- */
 
-bool MPMMouth::inside(const double *x) const
+bool MPMInlet::inside(const double *x) const
 {
   return region->match(x[0], x[1], domain->dimension == 2 ? 0.0 : x[2]);
 }
 
 /** At coordinates from the center. */
-bool MPMMouth::inside(double along, double a, double b) const
+bool MPMInlet::inside(double along, double a, double b) const
 {
   double x[3];
   for (int d = 0; d < 3; d++)
@@ -140,7 +140,7 @@ bool MPMMouth::inside(double along, double a, double b) const
 }
 
 /** Distance of the surface from the center in this direction. */
-double MPMMouth::reach_of(const double *direction, double most) const
+double MPMInlet::reach_of(const double *direction, double most) const
 {
   const auto inside_at = [&](double s) {
     const double x[3] = {center[0] + s * direction[0], center[1] + s * direction[1],
@@ -158,7 +158,7 @@ double MPMMouth::reach_of(const double *direction, double most) const
 }
 
 /** Axes of the box, where the flow is along one of them. */
-void MPMMouth::choose_axes()
+void MPMInlet::choose_axes()
 {
   for (auto &axis : across) std::fill_n(axis, 3, 0.0);
   if (domain->dimension == 2) {
@@ -188,7 +188,7 @@ void MPMMouth::choose_axes()
    Area of the section in the middle, and its extent along both axes: is it all of the rectangle of these?
 ------------------------------------------------------------------------- */
 
-bool MPMMouth::find_section(const std::string &user, const double *low, const double *high)
+bool MPMInlet::find_section(const std::string &user, const double *low, const double *high)
 {
   if (domain->dimension == 2) {
     area = width[0];
@@ -237,10 +237,10 @@ bool MPMMouth::find_section(const std::string &user, const double *low, const do
 }
 
 /* ----------------------------------------------------------------------
-   all sections must be the same, or else points would leave the mouth through its sides, or not fill it
+   all sections must be the same, or else points would leave the inlet through its sides, or not fill it
 ------------------------------------------------------------------------- */
 
-void MPMMouth::check_prism(const std::string &user) const
+void MPMInlet::check_prism(const std::string &user) const
 {
   const int second = domain->dimension == 3 ? PRISM_SAMPLES : 1;
   bigint n = 0, different = 0;
@@ -265,7 +265,7 @@ void MPMMouth::check_prism(const std::string &user) const
 
 /* ---------------------------------------------------------------------- */
 
-bool MPMMouth::holds(const double *x, double reach) const
+bool MPMInlet::holds(const double *x, double reach) const
 {
   double r[3] = {x[0] - center[0], x[1] - center[1],
                  domain->dimension == 2 ? 0.0 : x[2] - center[2]};
@@ -277,7 +277,7 @@ bool MPMMouth::holds(const double *x, double reach) const
   return true;
 }
 
-bool MPMMouth::is_near(const double *from_middle, double distance) const
+bool MPMInlet::is_near(const double *from_middle, double distance) const
 {
   double r[3] = {from_middle[0], from_middle[1], from_middle[2]};
   nearest_image(*domain, r);

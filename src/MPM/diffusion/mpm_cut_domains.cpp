@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "diffusion/mpm_cut_rooms.h"
+#include "diffusion/mpm_cut_domains.h"
 
 #include "atom.h"
 #include "field/mpm_field.h"
@@ -19,11 +19,11 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double NEAR =
-    1.0e-6;    // of the end of a room, in cells: a side there does not divide it
+    1.0e-6;    // of the end of a domain, in cells: a side there does not divide it
 static constexpr double MOST =
-    0.499;    // half of a room, in cells: at most one side along an axis divides it
+    0.499;    // half of a domain, in cells: at most one side along an axis divides it
 
-int MPMCutRooms::dim() const
+int MPMCutDomains::dim() const
 {
   return field.lattice.dim;
 }
@@ -31,7 +31,7 @@ int MPMCutRooms::dim() const
 /* ---------------------------------------------------------------------- */
 
 /** The functions in the middle of a part, in cells from the origin. False if this rank does not have all nodes. */
-bool MPMCutRooms::set_nodes(const double *middle, int slot, Part &part) const
+bool MPMCutDomains::set_nodes(const double *middle, int slot, Part &part) const
 {
   const Grid &grid = field.grid;
   const auto &block = grid.blocks[slot];
@@ -58,7 +58,7 @@ bool MPMCutRooms::set_nodes(const double *middle, int slot, Part &part) const
   return true;
 }
 
-bool MPMCutRooms::make_whole(int point, const MPMPointMap::Run &run, Part &part) const
+bool MPMCutDomains::make_whole(int point, const MPMPointMap::Run &run, Part &part) const
 {
   const auto &lattice = field.lattice;
   const double *const x = field.frame->places()[point];
@@ -70,7 +70,7 @@ bool MPMCutRooms::make_whole(int point, const MPMPointMap::Run &run, Part &part)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMCutRooms::find(const std::function<bool(const MPMPointMap::Run &)> &wanted)
+void MPMCutDomains::find(const std::function<bool(const MPMPointMap::Run &)> &wanted)
 {
   const Lattice &lattice = field.lattice;
   const MPMFrame &frame = *field.frame;
@@ -116,7 +116,7 @@ void MPMCutRooms::find(const std::function<bool(const MPMPointMap::Run &)> &want
   }
 }
 
-void MPMCutRooms::gradient(const Part &part, const std::vector<double> &values, double g[3]) const
+void MPMCutDomains::gradient(const Part &part, const std::vector<double> &values, double g[3]) const
 {
   g[0] = g[1] = g[2] = 0.0;
   each_node(part, [&](int node, const double *slope) {
@@ -124,7 +124,7 @@ void MPMCutRooms::gradient(const Part &part, const std::vector<double> &values, 
   });
 }
 
-void MPMCutRooms::add(const Part &part, const double *q, std::vector<double> &nodes) const
+void MPMCutDomains::add(const Part &part, const double *q, std::vector<double> &nodes) const
 {
   each_node(part, [&](int node, const double *slope) {
     nodes[node] += q[0] * slope[0] + q[1] * slope[1] + q[2] * slope[2];

@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_CUT_ROOMS_H
-#define LMP_MPM_CUT_ROOMS_H
+#ifndef LMP_MPM_CUT_DOMAINS_H
+#define LMP_MPM_CUT_DOMAINS_H
 
 #include "field/mpm_point_map.h"
 
@@ -17,10 +17,10 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** The parts in each cell of the rooms of points (boxes of their volume around them) that are divided by sides of cells. For
+/** The parts in each cell of the domains of points (boxes of their volume around them) that are divided by sides of cells. For
  *  Bernstein polynomials, whose gradients jump at these sides. Sums of gradients over parts are integrals wherever the points
  *  are; with gradients at the points instead, sums depend on how many points are in a cell. */
-class MPMCutRooms {
+class MPMCutDomains {
  public:
   static constexpr int NODES = 3;    ///< along an axis
   struct Part {
@@ -32,15 +32,15 @@ class MPMCutRooms {
     int node[NODES * NODES * NODES];    ///< in 2d the first NODES^2
   };
 
-  explicit MPMCutRooms(MPMField &field) : field(field) {}
+  explicit MPMCutDomains(MPMField &field) : field(field) {}
 
   /** Finds the parts of the points in wanted runs, in cells of which this rank has all nodes. */
   void find(const std::function<bool(const MPMPointMap::Run &)> &wanted);
   std::vector<Part> parts;
   bool any() const { return !parts.empty(); }
-  /** [n] Is the room of a point divided into parts? */
+  /** [n] Is the domain of a point divided into parts? */
   std::vector<char> is_cut;
-  /** The room of a point that is not cut, as one part; false if this rank does not have all of its nodes. */
+  /** The domain of a point that is not cut, as one part; false if this rank does not have all of its nodes. */
   bool make_whole(int point, const MPMPointMap::Run &, Part &) const;
 
   /** Calls f(node, gradient[3] of its function in the middle of the part). */

@@ -1,0 +1,78 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_SETUP_CHECKS_H
+#define LMP_MPM_SETUP_CHECKS_H
+
+#include "pointers.h"
+
+#include <optional>
+
+namespace LAMMPS_NS {
+class MPMField;
+
+/** Checks of the input and of the points of a field at the start of each run. Each is one function,
+ *  and stops with an error or warns. */
+class MPMSetupChecks : protected Pointers {
+ public:
+  MPMSetupChecks(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
+
+  /** Groups of checks, in the order in which they are possible. */
+  enum When {
+    POINTS,    ///< points have their materials
+    PAIRS,     ///< only with a pair style
+    PLACES,    ///< the frame knows where points are on the lattice
+    LISTS      ///< only with a pair style: there are neighbor lists
+  };
+  /** Makes the checks of one group. first: also those that are of all fields together.
+   *  Collective. */
+  void run(When, bool first);
+
+  /** Settings that decide when neighbor lists are made, and with this the order of sums. */
+  struct Lists {
+    double skin;
+    int every, delay, check, once;
+  };
+  /** The present settings. */
+  Lists lists() const;
+  /** Settings of the restart file that the next run continues from. */
+  std::optional<Lists> lists_of_file;
+
+  /** Stops with an error if points that meet grains have no radius or one that is too large, or are
+   *  rings around an axis of symmetry. */
+  void radii();
+
+ private:
+  MPMField &field;
+  bool told_of_locking = false;
+
+  /** Is another fix an integrator of points of the field, too? */
+  void integrators();
+  /** Has each point one material, positive volume and mass, and a finite state? */
+  void points();
+  /** Have rings around an axis the volumes of rings? */
+  void rings();
+  /** Are there points that no field moves? */
+  void forgotten_points();
+  /** Do other fixes silently have no effect on points, or do harm? */
+  void fixes();
+  void skin();
+  /** Are neighbor lists made as in the run that wrote the restart file? */
+  void lists_after_restart();
+  /** Do settings of LAMMPS make neighbor lists of points and grains slow? */
+  void neighbors();
+  /** Are points, by construction, at places where round-off decides which stress they get? */
+  void places();
+  /** Are there nearly incompressible solids without a cure for locking? */
+  void locking();
+  /** Do neighbor lists consist mostly of skin? */
+  void lists_of_pairs();
+};
+
+}    // namespace LAMMPS_NS
+#endif

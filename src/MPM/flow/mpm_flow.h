@@ -1,0 +1,112 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_FLOW_H
+#define LMP_MPM_FLOW_H
+
+#include "base/mpm_rows.h"
+#include "base/mpm_stage_list.h"
+#include "flow/mpm_flow_checks.h"
+#include "flow/mpm_flow_momentum.h"
+#include "flow/mpm_flow_parts.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+struct MPMFlowPoints;
+
+/** Incompressible flow with free surfaces: its parts, and its step as a list of stages.
+ *
+ *  Points give momentum to the faces of a staggered lattice, forces and the pressure change the velocities of the faces, and
+ *  points move with these velocities. */
+class MPMFlow : protected Pointers {
+ public:
+  MPMIncompressibleOptions
+      options;    ///< transfer, and the share that points keep, change during a run
+  MPMFlowLiquids liquids;
+  MPMFlowFields fields;
+  MPMFlowParts parts;
+  MPMFlowResults results;    ///< of the last step
+  MPMFlowChecks checks;
+
+  /** groupbit: of the points. id: of the fix, for messages. gradient: [n][flow_slopes(dim)] gradients of the velocities of
+   *  points, or null; see has_gradients(). */
+  MPMFlow(class LAMMPS *, const MPMIncompressibleOptions &, int groupbit, const std::string &id,
+          const MPMRows &gradient);
+
+  /** Do points have gradients of their velocities? */
+  bool has_gradients() const;
+  /** Start of a run: finds regions, bodies, grains, and inflow. Collective. */
+  void init();
+  /** Start of a run, after init() and MPMFlowChecks::check_points(): finds cells, and makes the list of stages. Collective. */
+  void start();
+  /** A step of duration update->dt. Collective. */
+  void step() { stages.run(); }
+  /** The stages of a step. */
+  const MPMStageList &plan() const { return stages; }
+
+  /** Largest velocity component on the lattice and of walls after the last step, on all ranks. */
+  double largest_velocity() const { return fastest; }
+  /** Stable time step of this rank, see FixMPMIncompressible::stable_dt(). */
+  double stable_dt(tagint &tag) const;
+  /** Energy that spreading has added to the points of this rank so far. */
+  double energy_of_spreading() const { return spreading_energy; }
+
+  /** State for restart files: duration of the last step, limit of the next one with its forces, the share that points keep,
+   *  halvings, motion of regions, and gas; complete on the first rank. Collective. */
+  std::vector<double> restart_data() const;
+  /** Takes what restart_data() has given. */
+  void restart(const double *from);
+  double memory_usage() const;
+
+ private:
+  const int groupbit;
+  const std::string id, who;
+  const MPMRows &gradient;
+  MPMFlowMomentum momentum;
+  MPMStageList stages;
+
+  // of this step: its duration and that of the one before, share of it in which forces act before points move;
+  // do the durations differ, and do points keep a part of their velocities?
+  struct {
+    double dt, dt_before, part;
+    bool differs, keeps;
+  } now = {};
+  double dt_before = 0.0;    // duration of the last step; 0: none so far
+  mutable double limit_before =
+      0.0;    // last stable_dt() with forces; after a restart, of all ranks; 0: none
+  bool forces_known = false;        // false at the start of a run, when forces are cleared
+  bool stiffness_known = false;     // was check_stiffness() done in this run?
+  double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
+  double spreading_energy = 0.0;
+  double fastest = 0.0;
+
+  void choose_transfer();
+  void make_plan();
+  void begin_step();
+  void find_cells();
+  void find_apertures();
+  void points_to_faces();
+  void find_wet_cells();
+  void find_flow();
+  void find_paths();
+  void find_shift();
+  void faces_to_points();
+  void sum_last_step(bool valid, double *all) const;
+  MPMFlowPoints points_now(double dt) const;
+  double limit_of_motion(double dt, tagint &tag) const;
+  void find_velocities();
+  void find_inverse_densities();
+  void find_filled_volume();
+  void fit_gradients();
+  void check_speed();
+};
+
+}    // namespace LAMMPS_NS
+#endif

@@ -1,0 +1,199 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "flow/mpm_flow_checks.h"
+
+#include "field/mpm_integrators.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "fix.h"
+#include "modify.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+
+static const char *const STYLE = "mpm/incompressible";
+// ratio of the volume of a point to that of a cell that is too large
+static constexpr double LARGEST_POINT = 1.01;
+
+MPMFlowChecks::MPMFlowChecks(LAMMPS *lmp, const MPMIncompressibleOptions &options,
+                             MPMFlowLiquids &liquids, const MPMFlowParts &parts,
+                             const std::string &id) :
+    Pointers(lmp),
+    options(options), liquids(liquids), parts(parts), id(id),
+    who(fmt::format("Fix {} {}", STYLE, id))
+{
+}
+
+void MPMFlowChecks::check_box() const
+{
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!parts.cells.is_point(i)) continue;
+    for (int d = 0; d < domain->dimension; d++)
+      if (!domain->periodicity[d] &&
+          !(atom->x[i][d] >= domain->boxlo[d] && atom->x[i][d] <= domain->boxhi[d]))
+        error->one(FLERR, Error::NOLASTLINE,
+                   "Point {} of fix {} is outside of the box, whose fixed faces are walls",
+                   atom->tag[i], STYLE);
+  }
+}
+
+void MPMFlowChecks::check_points()
+{
+  bigint mine[3] = {0, 0, 0},
+         all[3];    // points, those of another density, and those larger than a cell
+  if (parts.solids) check_solids();
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!parts.cells.is_point(i)) continue;
+    const double mass = density(i) * atom->vfrac[i];
+    if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = mass;
+    mine[0]++;
+    if (std::fabs(atom->rmass[i] / mass - 1.0) > MPMFlowLiquids::SAME_DENSITY) mine[1]++;
+    if (atom->vfrac[i] > LARGEST_POINT * parts.cells.lattice.cell_volume()) mine[2]++;
+    for (int d = 0; d < domain->dimension; d++)
+      if (!std::isfinite(atom->v[i][d]) || !std::isfinite(atom->x[i][d]))
+        error->one(FLERR, Error::NOLASTLINE,
+                   "Fix {}: point {} has a position or velocity that is not a number", STYLE,
+                   atom->tag[i]);
+  }
+  MPI_Allreduce(mine, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all[0] == 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "{} has no material points in its group: make some with create_points", who);
+  if (all[1])
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: {} points have another mass than density {} times their volume; there is one "
+               "density but for points of keywords liquid and solid",
+               who, all[1], options.density);
+  if (all[2] && comm->me == 0 && !warned_of_size)
+    error->warning(FLERR,
+                   "{}: {} points are larger than a cell, and leave others empty when they "
+                   "move: use points with a spacing of at most {:.6g}, better {:.6g}",
+                   who, all[2], options.h, 0.5 * options.h);
+  warned_of_size = all[2] > 0;
+  check_liquids();
+}
+
+/** Checks the groups of liquids. They have the points that there were at the time of their command; an empty
+ *  group is no liquid. */
+void MPMFlowChecks::check_liquids()
+{
+  std::vector<int> mine(options.liquids.size(), 0), all(options.liquids.size(), 0);
+  for (std::size_t k = 0; k < options.liquids.size(); k++)
+    for (int i = 0; i < atom->nlocal; i++)
+      if (parts.cells.is_point(i) && atom->mask[i] & liquids.bits[k]) mine[k] = 1;
+  for (const auto *inlet : modify->get_fix_by_style("^mpm/emit$"))    // its points are yet to come
+    for (std::size_t k = 0; k < options.liquids.size(); k++)
+      if (inlet->groupbit & liquids.bits[k]) mine[k] = 1;
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_MAX, world);
+  for (std::size_t k = 0; k < options.liquids.size(); k++)
+    if (!all[k] && comm->me == 0 && !warned_of_liquids)
+      error->warning(
+          FLERR,
+          "{}: the group {} of keyword liquid has no points of this fix: put some into it, "
+          "with keyword group of create_points, or with the group command after it",
+          who, options.liquids[k].group);
+  warned_of_liquids = true;
+}
+
+/** Checks solids, which have laws and perhaps other densities. */
+void MPMFlowChecks::check_solids()
+{
+  parts.solids->check_points();
+  double mine[2] = {options.density, -options.density}, all[2];    // greatest, and minus the least
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!parts.cells.is_point(i)) continue;
+    mine[0] = std::max(mine[0], density(i));
+    mine[1] = std::max(mine[1], -density(i));
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  liquids.least_density = -all[1];
+  liquids.has_several_densities =
+      all[0] > (1.0 + MPMFlowLiquids::SAME_DENSITY) * liquids.least_density;
+}
+
+double MPMFlowChecks::density(int i) const
+{
+  return parts.solids && parts.solids->holds(i) ? parts.solids->density_of(i)
+                                                : liquids.density(atom->mask[i]);
+}
+
+void MPMFlowChecks::check_gas()
+{
+  const char *const other = parts.bodies           ? "bodies of fix mpm/rigid"
+      : parts.regions && parts.regions->any_move() ? "regions that move"
+      : parts.grains                               ? "grains of fix mpm/immersed"
+      : parts.inflow                               ? "points of fix mpm/emit"
+                                                   : nullptr;
+  if (other)
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: gas cannot be used with {}: remove these, or the keyword gas", who, other);
+  if (!parts.regions) return;
+  parts.gas->pockets.find_solid(parts.regions.get());
+  if (parts.regions->n() > 1 && comm->me == 0 && !warned_of_regions)
+    error->warning(
+        FLERR,
+        "{}: forces on its regions are those of the water alone, without the gas, "
+        "as there are several: use a union of them as one region if you need these forces",
+        who);
+  warned_of_regions = true;
+}
+
+void MPMFlowChecks::check_others()
+{
+  for (const auto *other : modify->get_fix_by_style("^mpm/incompressible$"))
+    if (other->id != id)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fluids of fixes {} and {} (style {}) would go through each other: give their "
+                 "points to one "
+                 "of these fixes",
+                 id, other->id, STYLE);
+  for (const auto *other : modify->get_fix_by_style("^mpm$"))
+    if (comm->me == 0 && !warned_of_bodies)
+      error->warning(
+          FLERR,
+          "Points of fix {} (style {}) go through those of fix {} (style {}), as neither feels "
+          "the other",
+          id, STYLE, other->id, other->style);
+  warned_of_bodies = true;
+  if (modify->get_fix_by_style("^mpm$").empty())    // fix mpm would warn of these itself
+    warn_of_forgotten_points(lmp, STYLE, "the flow goes through them");
+}
+
+void MPMFlowChecks::check_depths() const
+{
+  bigint mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (parts.cells.is_point(i) &&
+        parts.regions->depth(atom->x[i], 2.0 * options.h) > 0.5 * options.h)
+      mine++;
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all)
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: {} points are in a region, which is solid: create them outside of it", who,
+               all);
+}
+
+void MPMFlowChecks::check_stiffness() const
+{
+  tagint tag;
+  const double mine = std::sqrt(2.0) * parts.solids->stable_dt(tag);
+  double most;
+  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MIN, world);
+  if (update->dt > most * (1.0 + 1.0e-9))
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: the time step {:.6g} is too large for the stiffness of its solids, which "
+               "allows {:.6g}; reduce it, or let fix mpm/dt set it",
+               who, update->dt, most);
+}
