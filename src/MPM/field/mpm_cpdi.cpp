@@ -334,8 +334,8 @@ void MPMCpdi::update()
     }
     limit(i);
   }
-  if (field.options.shape == CPDI2 && !told) tell_of_boxes(nboxes, ndeformed);
-  told = true;
+  if (field.options.shape == CPDI2 && !warned) tell_of_boxes(nboxes, ndeformed);
+  warned = true;
 }
 
 /* ----------------------------------------------------------------------

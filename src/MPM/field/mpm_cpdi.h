@@ -87,7 +87,7 @@ class MPMCpdi : protected Pointers {
  private:
   MPMField &field;
   std::vector<double> edges;    // cpdi: half edges of the domains, [n][dim][dim]
-  bool told = false;            // has been said which points have no corners at the start
+  bool warned = false;          // has been said which points have no corners at the start
 
   bool follows_F() const { return !corners; }
   double *row(int i) { return corners ? corners[i] : &edges[size() * (std::size_t) i]; }

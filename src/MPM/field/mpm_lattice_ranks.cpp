@@ -39,14 +39,15 @@ const std::vector<char> &MPMLatticeRanks::gather_bytes(const void *mine, std::si
 {
   const int nprocs = lmp->comm->nprocs;
   const bigint mine_bytes = bytes;
-  of_ranks.resize(nprocs);
-  MPI_Allgather(&mine_bytes, 1, MPI_LMP_BIGINT, of_ranks.data(), 1, MPI_LMP_BIGINT, lmp->world);
-  if (std::accumulate(of_ranks.begin(), of_ranks.end(), bigint(0)) > INT_MAX)
+  bytes_of_ranks.resize(nprocs);
+  MPI_Allgather(&mine_bytes, 1, MPI_LMP_BIGINT, bytes_of_ranks.data(), 1, MPI_LMP_BIGINT,
+                lmp->world);
+  if (std::accumulate(bytes_of_ranks.begin(), bytes_of_ranks.end(), bigint(0)) > INT_MAX)
     lmp->error->all(
         FLERR,
         "Solve on the lattice is too large for its coarse levels, which all ranks have: use a "
         "larger node spacing");
-  counts.assign(of_ranks.begin(), of_ranks.end());
+  counts.assign(bytes_of_ranks.begin(), bytes_of_ranks.end());
   return gather_counts(mine);
 }
 

@@ -35,7 +35,7 @@ class MPMLatticeRanks : public MPM_NS::LatticeRanks {
   class LAMMPS *const lmp;
   const MPM_NS::Grid &grid;
   MPMHalo &halo;
-  std::vector<bigint> of_ranks;
+  std::vector<bigint> bytes_of_ranks;
   std::vector<int> counts, first;
   std::vector<char> all;
 

@@ -50,5 +50,5 @@ void MPMNodeSystem::products(int n, const double *const *a, const double *const 
 {
   mine.assign(n, 0.0);
   add_products(grid, width, n, a, b, 0, mine.data());
-  sum_in_order(lmp, n, mine.data(), of_ranks, value);
+  sum_in_order(lmp, n, mine.data(), sums_of_ranks, value);
 }

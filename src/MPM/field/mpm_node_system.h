@@ -45,7 +45,7 @@ class MPMNodeSystem : public MPM_NS::LinearSystem {
   const int width;
 
  private:
-  std::vector<double> mine, of_ranks;    // sums of this rank, and of all ranks
+  std::vector<double> mine, sums_of_ranks;    // sums of this rank, and of all ranks
 };
 
 }    // namespace LAMMPS_NS

@@ -97,7 +97,8 @@ void MPMSetupChecks::locking()
   // a bent panel of 12 cells is 2 % too stiff with 0.49, 3 % with 0.495, 7 % with 0.499
   constexpr double LOCKS = 0.4975;
   const auto &o = field.options;
-  if (told_of_locking || o.averages_stress() || o.averages_volume() || o.averages_strain()) return;
+  if (warned_of_locking || o.averages_stress() || o.averages_volume() || o.averages_strain())
+    return;
   std::vector<int> mine(field.materials.size(), 0), all(mine.size(), 0);
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i) || field.is_element_node(i)) continue;
@@ -108,7 +109,7 @@ void MPMSetupChecks::locking()
   for (std::size_t k = 0; k < all.size(); k++) {
     const double ratio = all[k] ? poisson_ratio(*field.materials[k]->material) : 0.0;
     if (ratio < LOCKS) continue;
-    told_of_locking = true;
+    warned_of_locking = true;
     if (comm->me) continue;
     error->warning(
         FLERR,

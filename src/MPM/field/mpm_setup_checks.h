@@ -49,7 +49,7 @@ class MPMSetupChecks : protected Pointers {
 
  private:
   MPMField &field;
-  bool told_of_locking = false;
+  bool warned_of_locking = false;
 
   /** Is another fix an integrator of points of the field, too? */
   void integrators();

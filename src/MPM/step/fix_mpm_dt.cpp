@@ -393,12 +393,12 @@ void FixMPMDt::post_run()
   if (until == 0.0) return;
   if (ended)
     timer->reset_timeout();
-  else if (comm->me == 0 && update->nsteps > 0 && !told_of_rest)
+  else if (comm->me == 0 && update->nsteps > 0 && !warned_of_rest)
     error->warning(FLERR,
                    "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run "
                    "more steps",
                    id, elapsed_time(*update), until);
-  told_of_rest = told_of_rest || update->nsteps > 0;    // once: runs can have many parts
+  warned_of_rest = warned_of_rest || update->nsteps > 0;    // once: runs can have many parts
 }
 
 /* ---------------------------------------------------------------------- */

@@ -73,7 +73,7 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   bigint nchanges = 0;
 
   // runs that end at a time
-  bool ended = false, told_of_rest = false;
+  bool ended = false, warned_of_rest = false;
   double time_at_start = 0.0, wall_at_start = 0.0;
 
   // state at the end of the last run, to detect changes since then

@@ -13,7 +13,6 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_cpdi.h"
-#include "field/mpm_every.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
@@ -168,5 +167,4 @@ void MPMStages::checks(MPMField &field)
   field.frame->end_of_step();
   field.time_limit->check();
   field.count_step();
-  if (field.every) field.every->finish();
 }

@@ -11,6 +11,7 @@
 // needs are not in the list of a run.
 
 #include "field/mpm_affine.h"
+#include "field/mpm_every.h"
 #include "field/mpm_field.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_plan.h"
@@ -41,6 +42,10 @@ template <bool (MPMFieldOptions::*OPTION)() const> bool with(Field field)
 bool has_ledger(Field field)
 {
   return field.ledger.on;
+}
+bool takes_long_steps(Field field)
+{
+  return field.options.every > 1;
 }
 bool takes_torques(Field field)
 {
@@ -228,6 +233,11 @@ void end(MPMPlan &plan)
   plan.each("fracture watch", STATE + Data{Data::POSITION, Data::BLOCKS}, {Data::OWN}, look,
             with<&Options::watches_fracture>);
   plan.each("checks", MOTION + STATE + AT_NODES, {Data::OWN}, checks);
+  const auto finish = [](MPMField &field) {
+    field.every->finish();
+  };
+  plan.each("end of a long step", MOTION + Data{Data::OWN}, {Data::POSITION, Data::OWN}, finish,
+            takes_long_steps);
 }
 
 }    // namespace

@@ -282,10 +282,10 @@ void MPMEnergyWatch::check()
   const double gained = run.gained = unexplained - run.lowest;
   const double speed = AT_REST * fields[0]->lattice.h / update->dt;
   const auto &options = fields[0]->options;
-  if (run.told || !(gained > options.most_gain * run.in_play) ||
+  if (run.warned || !(gained > options.most_gain * run.in_play) ||
       !(run.in_play > 0.5 * force->mvv2e * now.mass * speed * speed) || is_round_off(gained))
     return;
-  run.told = true;
+  run.warned = true;
   const std::string text =
       fmt::format("Numerical errors have added the energy {:.4g} to the material points by step {} "
                   "of this run, {:.3g} % of the energy in play ({:.4g}): results are not to be "

@@ -95,7 +95,7 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
     Sums last;         // of the last check
     double elastic;    // at the start of the step that has noted it
     bigint noted;      // steps done by then, plus 1; 0: none
-    bool told;         // has a warning been printed?
+    bool warned;       // has a warning been printed?
   } run = {};
 
   int number_met() const;

@@ -53,7 +53,7 @@ void MPMFractureWatch::step()
 
 void MPMFractureWatch::look()
 {
-  if (told) return;
+  if (warned) return;
   const auto &options = field.options;
   const double most = limit(options.shape), h = field.lattice.h;
   struct {
@@ -97,7 +97,7 @@ void MPMFractureWatch::look()
       });
   MPI_Allreduce(&mine, &widest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
   if (!(widest.distance > most)) return;
-  told = true;
+  warned = true;
   MPI_Bcast(point, 4, MPI_DOUBLE, widest.rank, world);
   if (comm->me == 0)
     error->warning(FLERR,

@@ -25,7 +25,7 @@ class MPMFractureWatch : public MPMWatch, protected Pointers {
   void start() override
   {
     steps = 0;
-    told = false;
+    warned = false;
   }
   /** End of a step of the cycle; checks the points every few hundred steps. */
   void step() override;
@@ -35,7 +35,7 @@ class MPMFractureWatch : public MPMWatch, protected Pointers {
  private:
   MPMField &field;
   bigint steps = 0;
-  bool told = false;
+  bool warned = false;
 
   void look();
 };
